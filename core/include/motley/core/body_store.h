@@ -1,0 +1,116 @@
+// Bodies as rows. What a sweep reads of a body lies together in quads of four floats, 16 bytes a row for
+// particles and planar bodies, 32 for rigid ones: moving bodies in and out of lanes is what costs.
+//
+//   kind      velocity                     delta since the step began       acceleration
+//   particle  vx vy vz 1/m                 dx dy dz  -                      ax ay az  -
+//   planar    vx vy w  1/m                 dx dy yaw 1/I                    ax ay alpha -
+//   rigid     vx vy vz 1/m | wx wy wz -    dx dy dz  - | qx qy qz qw        ax ay az - | tx ty tz -  (torque)
+//   fixed     as rigid with 1/m = 0        as rigid                         unused
+//
+// Positions stay in double; the lanes only ever see differences and the deltas of one step.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "motley/core/aligned_vector.h"
+#include "motley/core/body.h"
+#include "motley/core/ids.h"
+
+namespace motley {
+
+/// Where the rows of a body are kept. Static and kinematic bodies are `fixed`: read by lanes, never written.
+enum class BodyKind : std::uint8_t { particle, planar, rigid, fixed };
+inline constexpr int body_kind_count = 4;
+
+/// Quads in the velocity, delta and acceleration rows of a kind.
+constexpr int quads_of(BodyKind kind)
+{
+    return kind == BodyKind::rigid || kind == BodyKind::fixed ? 2 : 1;
+}
+
+/// A kind and a row in two and thirty bits.
+struct BodyRow {
+    std::uint32_t bits = 0;
+    BodyRow() = default;
+    BodyRow(BodyKind kind, std::uint32_t row) : bits(static_cast<std::uint32_t>(kind) << 30 | row) {}
+    [[nodiscard]] BodyKind kind() const { return static_cast<BodyKind>(bits >> 30); }
+    [[nodiscard]] std::uint32_t row() const { return bits & 0x3FFFFFFFU; }
+};
+
+/// Where a body is. A planar body uses yaw, a rigid or fixed one the orientation, a particle neither.
+struct BodyPose {
+    Vec3<double> position{};
+    double yaw = 0;
+};
+
+/// The rows of one kind. Row 0 is the null body of padding lanes: it cannot move and nothing is tied to it.
+struct BodyRows {
+    AlignedVector<float> velocity, delta, acceleration;
+    AlignedVector<BodyPose> pose;
+    AlignedVector<Quat<double>> orientation;     ///< rigid and fixed only
+    AlignedVector<float> world_inverse_inertia;  ///< rigid only, two quads: xx xy xz yy | yz zz - -
+    AlignedVector<float> start_inverse_inertia;  ///< the same when the step began
+    AlignedVector<Sym3<float>> inertia;          ///< rigid only, body frame
+    AlignedVector<Sym3<float>> inverse_inertia;  ///< rigid only, body frame
+    std::vector<std::uint32_t> slot;             ///< the handle slot of each row, 0 for a free one
+    std::vector<std::uint32_t> free_rows;        ///< last removed, first reused
+    [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot.size()); }
+};
+
+/// The rows of every kind, and the table from handles to rows.
+class BodyStore {
+  public:
+    BodyStore();
+
+    /// Adds a checked definition.
+    BodyId add(const BodyDefinition& definition);
+    /// Frees the slot and row of a live body.
+    void remove(BodyId body);
+    [[nodiscard]] bool is_alive(BodyId body) const
+    {
+        return body.slot < generations_.size() && generations_[body.slot] == body.generation &&
+               body.generation != 0 && live_[body.slot];
+    }
+    [[nodiscard]] BodyRow row_of(BodyId body) const { return rows_of_slot_[body.slot]; }
+    [[nodiscard]] BodyId id_of_slot(std::uint32_t slot) const { return {slot, generations_[slot]}; }
+    /// Slots ever used; slot 0 is never a body.
+    [[nodiscard]] std::uint32_t slot_count() const { return static_cast<std::uint32_t>(generations_.size()); }
+    [[nodiscard]] bool is_slot_live(std::uint32_t slot) const { return live_[slot] != 0; }
+
+    [[nodiscard]] BodyRows& rows(BodyKind kind) { return rows_[static_cast<std::size_t>(kind)]; }
+    [[nodiscard]] const BodyRows& rows(BodyKind kind) const { return rows_[static_cast<std::size_t>(kind)]; }
+
+    [[nodiscard]] BodyMotion motion(BodyId body) const { return motions_[body.slot]; }
+    [[nodiscard]] BodyModel model(BodyId body) const { return models_[body.slot]; }
+    /// Joints on each slot; lets a removal skip the search for joints.
+    std::vector<std::uint32_t> joint_counts;
+    /// Frozen by a step because its state was not finite.
+    std::vector<std::uint8_t> contained;
+    /// What the inverse mass was before a containment took it, for the revival.
+    std::vector<float> inverse_masses;
+    std::vector<float> inverse_inertias;  ///< likewise, planar only
+
+    /// Adds the deltas of a step to the poses of rows [begin, end) of a kind, and clears them. A row that is
+    /// not finite keeps its pose, loses its velocity and is contained: its slot goes to `contained_slot`.
+    /// Returns how many were contained.
+    int commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, std::uint32_t& contained_slot);
+    /// Gives a contained body its mass back.
+    void revive(BodyId body);
+    /// World inverse inertia of a rigid row from its orientation, now and for the start of the next step.
+    void refresh_world_inertia(std::uint32_t row);
+
+  private:
+    std::array<BodyRows, body_kind_count> rows_;
+    std::vector<std::uint32_t> generations_;
+    std::vector<std::uint8_t> live_;
+    std::vector<BodyRow> rows_of_slot_;
+    std::vector<BodyModel> models_;
+    std::vector<BodyMotion> motions_;
+    std::vector<std::uint32_t> free_slots_;
+
+    std::uint32_t take_row(BodyKind kind);
+};
+
+}  // namespace motley

@@ -1,0 +1,133 @@
+// Ball-socket: a point of a stays on a point of b.
+//
+//   C = p_b - p_a = 0,   J = [-I, [r_a]x, I, -[r_b]x],   K = (1/m_a + 1/m_b) I - [r_a]x I_a^-1 [r_a]x - ...
+//
+// Solved as a block: Gauss-Seidel inside one joint does not converge for long levers. Two rows in the plane.
+#pragma once
+
+#include "motley/core/constraints/ball_socket_definition.h"
+#include "motley/core/invalid_input.h"
+#include "motley/core/joint_checks.h"
+#include "motley/core/joint_pose.h"
+#include "motley/core/step_constants.h"
+
+namespace motley {
+
+struct BallSocket {
+    using Definition = BallSocketDefinition;
+    static constexpr const char* name = "ball-socket";
+    static constexpr bool has_restitution = false;
+    static constexpr bool recomputes_each_substep = true;
+
+    template <class Real>
+    struct Parameters {
+        Vec3<Real> anchor_a, anchor_b;  ///< body frames
+    };
+    template <class Real>
+    struct Memory {
+        Vec3<Real> push;  ///< N s on b
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        PairVector<Real, a, b> start_arm_a, start_arm_b;  ///< when the step began
+        PairVector<Real, a, b> start_error;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+        PairVector<Real, a, b> arm_a, arm_b;
+        PairSymmetric<Real, a, b> mass;  ///< K^-1
+        PairVector<Real, a, b> bias;     ///< rate C, m/s
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Impulse {
+        PairVector<Real, a, b> push;
+    };
+
+    static void validate(const Definition& joint, const JointBodies& bodies)
+    {
+        check_anchor("BallSocketDefinition.local_anchor_a", joint.local_anchor_a, bodies.model_a,
+                     bodies.fixed_a);
+        check_anchor("BallSocketDefinition.local_anchor_b", joint.local_anchor_b, bodies.model_b,
+                     bodies.fixed_b);
+    }
+    static Parameters<float> parameters(const Definition& joint)
+    {
+        return {joint.local_anchor_a, joint.local_anchor_b};
+    }
+
+    template <class Real, class A, class B>
+    static auto prepare(const StepConstants& step, const Parameters<Real>& joint, const Memory<Real>& memory,
+                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
+                        Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        using Vector = PairVector<Real, A::kind, B::kind>;
+        const Vec3<Real> arm_a = to_world(pose.orientation_a, joint.anchor_a);
+        const Vec3<Real> arm_b = to_world(pose.orientation_b, joint.anchor_b);
+        impulse.push = Real(step.warm_start_scale) * to_space<Vector>(memory.push);
+        return Row<Real, A::kind, B::kind>{to_space<Vector>(arm_a), to_space<Vector>(arm_b),
+                                           to_space<Vector>(pose.between + arm_b - arm_a)};
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const StepConstants& step, const Row& row, Substep& substep,
+                           const Impulse& impulse, A& a, B& b)
+    {
+        substep.arm_a = turned(a, row.start_arm_a);
+        substep.arm_b = turned(b, row.start_arm_b);
+        substep.mass = inverse(inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b));
+        substep.bias = Real(step.joint.rate) * error_now(row, substep.arm_a, substep.arm_b, a, b);
+        apply_impulse(a, substep.arm_a, -impulse.push);
+        apply_impulse(b, substep.arm_b, impulse.push);
+    }
+
+    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants& step, const Row&, const Substep& substep, Impulse& impulse, A& a,
+                      B& b)
+    {
+        auto speed = velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a);
+        if constexpr (!relax) speed = speed + substep.bias;
+        auto change = -(substep.mass * speed);
+        if constexpr (!relax) {
+            change = Real(step.joint.mass_scale) * change - Real(step.joint.impulse_scale) * impulse.push;
+        }
+        impulse.push = impulse.push + change;
+        apply_impulse(a, substep.arm_a, -change);
+        apply_impulse(b, substep.arm_b, change);
+    }
+
+    template <class Real, class Row, class Substep, class A, class B>
+    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    {
+        const auto arm_a = turned(a, row.start_arm_a);
+        const auto arm_b = turned(b, row.start_arm_b);
+        const auto mass = inverse(inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b));
+        const auto push = -(mass * error_now(row, arm_a, arm_b, a, b));
+        apply_displacement(a, arm_a, -push);
+        apply_displacement(b, arm_b, push);
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    {
+        return {to_three(impulse.push)};
+    }
+
+    /// C in double, for the report.
+    static Vec3<double> error(const Definition&, const Vec3<double>& separation) { return separation; }
+    /// The force of the remembered impulse over one substep, on b.
+    static Vec3<float> push_on_b(const Definition&, const Memory<float>& memory, const Vec3<double>&)
+    {
+        return memory.push;
+    }
+
+  private:
+    /// C = C_0 + (x_b - x_a moved) + (arms turned): only differences, so nothing is lost far from the origin.
+    template <class Row, class Vector, class A, class B>
+    static Vector error_now(const Row& row, const Vector& arm_a, const Vector& arm_b, const A& a, const B& b)
+    {
+        return row.start_error + (translation<Vector>(b) - translation<Vector>(a)) +
+               (arm_b - row.start_arm_b) - (arm_a - row.start_arm_a);
+    }
+};
+
+}  // namespace motley

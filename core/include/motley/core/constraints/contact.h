@@ -1,0 +1,276 @@
+// Contact: penetration as an inequality, friction in a circular cone, restitution.
+//
+//   C   = n . (p_b - p_a) >= 0,  lambda_n >= 0
+//   J   = [-n, -(r_a x n), n, r_b x n];  friction: the same rows with the tangents, |lambda_t| <= mu lambda_n
+//
+// The normal and the arms stay as they were when the step began, so J is constant and the separation follows
+// from the displacement, C = C_0 + J delta: exact for discs and balls, second order in the turn for the rest.
+#pragma once
+
+#include <type_traits>
+
+#include "motley/core/constraints/contact_definition.h"
+#include "motley/core/lane_body.h"
+#include "motley/core/step_constants.h"
+
+namespace motley {
+
+/// A contact's numbers as quads, in the order of Contact's members after the key.
+template <class Real>
+struct ContactParameters {
+    Vec3<Real> normal;
+    Real separation;
+    Vec3<Real> arm_a;
+    Real friction;
+    Vec3<Real> arm_b;
+    Real restitution;
+};
+
+template <class Real>
+struct ContactMemory {
+    Real normal;
+    Vec3<Real> friction;
+};
+
+/// With friction and restitution, or (`smooth`) with neither: no friction, no friction rows.
+template <bool smooth>
+struct ContactKind {
+    static constexpr const char* name = smooth ? "smooth contact" : "contact";
+    static constexpr bool has_restitution = !smooth;
+    static constexpr bool recomputes_each_substep = false;
+    template <class Real>
+    using Parameters = ContactParameters<Real>;
+    template <class Real>
+    using Memory = ContactMemory<Real>;
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+    };
+
+    template <class Real, BodyKind a, BodyKind b>
+    struct SmoothRow {
+        PairVector<Real, a, b> normal, arm_a, arm_b;
+        Real separation;
+        Real normal_mass;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct PlanarRow {
+        Vec2<Real> normal, arm_a, arm_b;
+        Real separation;
+        Real normal_mass, tangent_mass;
+        Real friction, restitution, approach;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SpatialRow {
+        Vec3<Real> normal, arm_a, arm_b;
+        Real separation;
+        Real normal_mass;
+        Vec3<Real> tangent;  ///< the first; the second is normal x tangent
+        Sym2<Real> tangent_mass;
+        Real friction, restitution, approach;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    using FullRow = std::conditional_t<is_planar_pair(a, b), PlanarRow<Real, a, b>, SpatialRow<Real, a, b>>;
+    template <class Real, BodyKind a, BodyKind b>
+    using Row = std::conditional_t<smooth, SmoothRow<Real, a, b>, FullRow<Real, a, b>>;
+
+    template <class Real>
+    struct SmoothImpulse {
+        Real normal;
+    };
+    template <class Real>
+    struct PlanarImpulse {
+        Real normal, tangent, peak;  ///< peak: the largest normal impulse of the step, decides restitution
+    };
+    template <class Real>
+    struct SpatialImpulse {
+        Real normal;
+        Vec2<Real> tangent;
+        Real peak;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    using Impulse = std::conditional_t<
+        smooth, SmoothImpulse<Real>,
+        std::conditional_t<is_planar_pair(a, b), PlanarImpulse<Real>, SpatialImpulse<Real>>>;
+
+    /// A unit vector across n: n x (the axis it leans away from).
+    template <class Real>
+    static Vec3<Real> tangent_of(const Vec3<Real>& n)
+    {
+        const auto leans_from_x = absolute(n.x) < Real(0.57735F);
+        const Vec3<Real> across{select(leans_from_x, Real(0), n.y), select(leans_from_x, n.z, -n.x),
+                                select(leans_from_x, -n.y, Real(0))};
+        const Real scale = Real(1) / square_root(dot(across, across));
+        return scale * across;
+    }
+    template <class Real>
+    static Vec2<Real> tangent_of(const Vec2<Real>& n)
+    {
+        return {-n.y, n.x};
+    }
+
+    template <class Real, class A, class B>
+    static auto prepare(const StepConstants& step, const ContactParameters<Real>& contact,
+                        const ContactMemory<Real>& memory, const A& a, const B& b,
+                        Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        using Vector = PairVector<Real, A::kind, B::kind>;
+        Row<Real, A::kind, B::kind> row;
+        row.normal = to_space<Vector>(contact.normal);
+        row.arm_a = to_space<Vector>(contact.arm_a);
+        row.arm_b = to_space<Vector>(contact.arm_b);
+        row.separation = contact.separation;
+        const auto k = inverse_point_mass(a, row.arm_a) + inverse_point_mass(b, row.arm_b);
+        row.normal_mass = inverse_or_zero(dot(row.normal, k * row.normal));
+        const Real warm(step.warm_start_scale);
+        impulse.normal = warm * memory.normal;
+        if constexpr (!smooth) {
+            row.friction = contact.friction;
+            row.restitution = contact.restitution;
+            row.approach = dot(row.normal, velocity_at(b, row.arm_b) - velocity_at(a, row.arm_a));
+            impulse.peak = Real(0);
+            if constexpr (is_planar_pair(A::kind, B::kind)) {
+                const Vector t = tangent_of(row.normal);
+                row.tangent_mass = inverse_or_zero(dot(t, k * t));
+                impulse.tangent = warm * dot(t, to_space<Vector>(memory.friction));
+            } else {
+                row.tangent = tangent_of(row.normal);
+                const Vector t2 = cross(row.normal, row.tangent);
+                const Vector kt = k * row.tangent;
+                row.tangent_mass = inverse(Sym2<Real>{dot(row.tangent, kt), dot(t2, kt), dot(t2, k * t2)});
+                impulse.tangent = {warm * dot(row.tangent, memory.friction), warm * dot(t2, memory.friction)};
+            }
+        }
+        return row;
+    }
+
+    template <class Real, class Row, class Impulse>
+    static auto total_impulse(const Row& row, const Impulse& impulse)
+    {
+        auto push = impulse.normal * row.normal;
+        if constexpr (!smooth) {
+            if constexpr (requires { row.tangent; }) {
+                push = push + impulse.tangent.x * row.tangent +
+                       impulse.tangent.y * cross(row.normal, row.tangent);
+            } else {
+                push = push + impulse.tangent * tangent_of(row.normal);
+            }
+        }
+        return push;
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const StepConstants&, const Row& row, Substep&, const Impulse& impulse, A& a, B& b)
+    {
+        const auto push = total_impulse<Real>(row, impulse);
+        apply_impulse(a, row.arm_a, -push);
+        apply_impulse(b, row.arm_b, push);
+    }
+
+    /// One sweep over this contact: friction with the bound of the normal impulse so far, then the normal.
+    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants& step, const Row& row, const Substep&, Impulse& impulse, A& a, B& b)
+    {
+        if constexpr (!smooth) solve_friction<Real>(row, impulse, a, b);
+
+        const Real moved = dot(row.normal, displacement_at(b, row.arm_b) - displacement_at(a, row.arm_a));
+        const Real separation = row.separation + moved;
+        const auto apart = separation > Real(0);
+        Real bias = Real(step.inverse_substep) * separation;
+        Real mass_scale(1);
+        Real impulse_scale(0);
+        if constexpr (relax) {
+            bias = select(apart, bias, Real(0));
+        } else {
+            constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
+            const Softness& soft = on_fixed ? step.static_contact : step.contact;
+            const Real deep = maximum(Real(soft.rate) * minimum(separation + Real(step.slop), Real(0)),
+                                      Real(-step.push_out_speed));
+            bias = select(apart, bias, deep);
+            mass_scale = select(apart, Real(1), Real(soft.mass_scale));
+            impulse_scale = select(apart, Real(0), Real(soft.impulse_scale));
+        }
+        const Real speed = dot(row.normal, velocity_at(b, row.arm_b) - velocity_at(a, row.arm_a));
+        const Real wanted =
+            impulse.normal - row.normal_mass * mass_scale * (speed + bias) - impulse_scale * impulse.normal;
+        push_normal<Real>(row, maximum(wanted, Real(0)), impulse, a, b);
+    }
+
+    /// After the substeps: contacts that were hit fast enough leave with e times the speed of approach.
+    template <class Real, class Row, class Impulse, class A, class B>
+    static void restitute(const StepConstants& step, const Row& row, Impulse& impulse, A& a, B& b)
+    {
+        const Real speed = dot(row.normal, velocity_at(b, row.arm_b) - velocity_at(a, row.arm_a));
+        const Real wanted = impulse.normal - row.normal_mass * (speed + row.restitution * row.approach);
+        const auto bounces = (row.restitution > Real(0)) &
+                             (row.approach < Real(-step.restitution_threshold)) & (impulse.peak > Real(0));
+        push_normal<Real>(row, select(bounces, maximum(wanted, Real(0)), impulse.normal), impulse, a, b);
+    }
+
+    /// A position solve: moves the bodies along J^T until `projection_rate` of the penetration is gone.
+    template <class Real, class Row, class Substep, class A, class B>
+    static void project(const StepConstants& step, const Row& row, const Substep&, A& a, B& b)
+    {
+        const Real moved = dot(row.normal, displacement_at(b, row.arm_b) - displacement_at(a, row.arm_a));
+        const Real deep = minimum(row.separation + moved + Real(step.slop), Real(0));
+        const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep start must not explode
+        const auto push = -(row.normal_mass * Real(step.projection_rate) * error) * row.normal;
+        apply_displacement(a, row.arm_a, -push);
+        apply_displacement(b, row.arm_b, push);
+    }
+
+    template <class Real, class Row, class Impulse>
+    static ContactMemory<Real> remember(const Row& row, const Impulse& impulse)
+    {
+        ContactMemory<Real> memory{impulse.normal, {Real(0), Real(0), Real(0)}};
+        if constexpr (!smooth) {
+            memory.friction = to_three(total_impulse<Real>(row, impulse) - impulse.normal * row.normal);
+        }
+        return memory;
+    }
+
+  private:
+    template <class Real, class Row, class Impulse, class A, class B>
+    static void push_normal(const Row& row, const Real& wanted, Impulse& impulse, A& a, B& b)
+    {
+        const auto push = (wanted - impulse.normal) * row.normal;
+        impulse.normal = wanted;
+        if constexpr (!smooth) impulse.peak = maximum(impulse.peak, wanted);
+        apply_impulse(a, row.arm_a, -push);
+        apply_impulse(b, row.arm_b, push);
+    }
+
+    template <class Real, class Row, class Impulse, class A, class B>
+    static void solve_friction(const Row& row, Impulse& impulse, A& a, B& b)
+    {
+        const auto slip = velocity_at(b, row.arm_b) - velocity_at(a, row.arm_a);
+        const Real bound = row.friction * impulse.normal;
+        if constexpr (requires { row.tangent; }) {
+            const Vec3<Real> t2 = cross(row.normal, row.tangent);
+            const Vec2<Real> old = impulse.tangent;
+            const Vec2<Real> free =
+                old - row.tangent_mass * Vec2<Real>{dot(row.tangent, slip), dot(t2, slip)};
+            // Back onto the circle when outside. The floor keeps 0/0 out of lanes without friction.
+            const Real length2 = maximum(dot(free, free), Real(1e-30F));
+            const auto outside = length2 > bound * bound;
+            const Real scale = select(outside, bound / square_root(length2), Real(1));
+            impulse.tangent = scale * free;
+            const Vec2<Real> change = impulse.tangent - old;
+            const Vec3<Real> push = change.x * row.tangent + change.y * t2;
+            apply_impulse(a, row.arm_a, -push);
+            apply_impulse(b, row.arm_b, push);
+        } else {
+            const Vec2<Real> t = tangent_of(row.normal);
+            const Real free = impulse.tangent - row.tangent_mass * dot(t, slip);
+            const Real held = maximum(minimum(free, bound), -bound);
+            const Vec2<Real> push = (held - impulse.tangent) * t;
+            impulse.tangent = held;
+            apply_impulse(a, row.arm_a, -push);
+            apply_impulse(b, row.arm_b, push);
+        }
+    }
+};
+
+using FrictionContact = ContactKind<false>;
+using SmoothContact = ContactKind<true>;
+
+}  // namespace motley

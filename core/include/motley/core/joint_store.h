@@ -1,0 +1,127 @@
+// The joints of a scene, one store a type: what the host defined, and what persists from step to step.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+#include "motley/core/aligned_vector.h"
+#include "motley/core/constraint_types.h"
+#include "motley/core/contact_cache.h"
+#include "motley/core/ids.h"
+
+namespace motley {
+
+/// Floats of T rounded up to whole quads, the unit in which rows enter lanes.
+template <class T>
+inline constexpr std::size_t quad_floats = (sizeof(T) / sizeof(float) + 3) / 4 * 4;
+
+/// Joints of one type, dense. The order decides blocks and so bits; removal moves the last joint into the
+/// gap.
+template <class JointType>
+struct JointStore {
+    using Type = JointType;
+    using Parameters = typename Type::template Parameters<float>;
+    using Memory = typename Type::template Memory<float>;
+
+    std::vector<typename Type::Definition> definitions;
+    AlignedVector<float> parameters;    ///< quad_floats<Parameters> a joint
+    AlignedVector<float> memory;        ///< quad_floats<Memory> a joint: impulses of the last substep
+    std::vector<std::uint8_t> colours;  ///< no_colour until the first step
+    std::vector<std::uint32_t> slots;   ///< handle slot of each joint
+
+    [[nodiscard]] std::size_t size() const { return definitions.size(); }
+
+    void push_back(const typename Type::Definition& definition, std::uint32_t slot)
+    {
+        const Parameters packed = Type::parameters(definition);
+        definitions.push_back(definition);
+        parameters.resize(parameters.size() + quad_floats<Parameters>);
+        std::memcpy(&parameters[parameters.size() - quad_floats<Parameters>], &packed, sizeof packed);
+        memory.resize(memory.size() + quad_floats<Memory>);
+        colours.push_back(no_colour);
+        slots.push_back(slot);
+    }
+    void forget_impulse(std::size_t index)
+    {
+        std::memset(&memory[index * quad_floats<Memory>], 0, quad_floats<Memory> * sizeof(float));
+    }
+    [[nodiscard]] Memory memory_of(std::size_t index) const
+    {
+        Memory m;
+        std::memcpy(static_cast<void*>(&m), &memory[index * quad_floats<Memory>], sizeof m);
+        return m;
+    }
+    void swap_remove(std::size_t index)
+    {
+        const std::size_t last = size() - 1;
+        definitions[index] = definitions[last];
+        std::memcpy(&parameters[index * quad_floats<Parameters>], &parameters[last * quad_floats<Parameters>],
+                    quad_floats<Parameters> * sizeof(float));
+        std::memcpy(&memory[index * quad_floats<Memory>], &memory[last * quad_floats<Memory>],
+                    quad_floats<Memory> * sizeof(float));
+        colours[index] = colours[last];
+        slots[index] = slots[last];
+        definitions.pop_back();
+        parameters.resize(last * quad_floats<Parameters>);
+        memory.resize(last * quad_floats<Memory>);
+        colours.pop_back();
+        slots.pop_back();
+    }
+};
+
+template <class List>
+struct StoresOf;
+template <class... Types>
+struct StoresOf<TypeList<Types...>> {
+    using type = std::tuple<JointStore<Types>...>;
+};
+
+/// Every type's store, the handles, and a count that grows with each change of the set.
+struct JointStores {
+    struct Slot {
+        std::uint32_t generation = 0;
+        std::uint32_t index = 0;
+        std::uint8_t type = 0;
+        bool live = false;
+    };
+    typename StoresOf<JointTypes>::type stores;
+    std::vector<Slot> slots{Slot{}};  ///< slot 0 is null
+    std::vector<std::uint32_t> free_slots;
+    /// Names this set of joints: null after a change, given by the next step, shared by copies of the scene.
+    /// A layout that holds the same token was made from the same joints.
+    std::shared_ptr<const char> version;
+
+    /// Calls visit(store, type number) for each type.
+    template <class Visit>
+    void for_each(Visit&& visit)
+    {
+        int type = 0;
+        std::apply([&](auto&... store) { (visit(store, type++), ...); }, stores);
+    }
+    template <class Visit>
+    void for_each(Visit&& visit) const
+    {
+        int type = 0;
+        std::apply([&](const auto&... store) { (visit(store, type++), ...); }, stores);
+    }
+};
+
+/// The joint type whose definition is Definition, and its number in JointTypes.
+template <class Definition, class List>
+struct TypeOfDefinition;
+template <class Definition, class First, class... Rest>
+struct TypeOfDefinition<Definition, TypeList<First, Rest...>> {
+    static constexpr bool here = std::is_same_v<Definition, typename First::Definition>;
+    static constexpr int index = [] {
+        if constexpr (here) {
+            return 0;
+        } else {
+            return 1 + TypeOfDefinition<Definition, TypeList<Rest...>>::index;
+        }
+    }();
+};
+
+}  // namespace motley

@@ -1,0 +1,65 @@
+// The operations that constraint maths may use on a Real, for float; soa/ gives the same names to lanes.
+// Each is defined by what it selects, not by a library call, so that every width answers with the same bits:
+// std::max(0, -0) and max(0, NaN) differ between processors' instructions.
+#pragma once
+
+#include <cmath>
+
+namespace motley {
+
+inline float select(bool mask, float if_true, float if_false)
+{
+    return mask ? if_true : if_false;
+}
+inline float square_root(float x)
+{
+    return std::sqrt(x);
+}
+
+template <class Real>
+Real minimum(const Real& x, const Real& y)
+{
+    return select(x < y, x, y);
+}
+
+template <class Real>
+Real maximum(const Real& x, const Real& y)
+{
+    return select(x > y, x, y);
+}
+
+template <class Real>
+Real absolute(const Real& x)
+{
+    return select(x < Real(0), -x, x);
+}
+
+template <class Real>
+struct SineCosine {
+    Real sine, cosine;
+};
+
+/// Sine and cosine for |x| <= pi, absolute error below 4e-7. Ours, so that they have one answer everywhere:
+/// Taylor polynomials of sine (degree 9) and cosine (degree 8) on |x| <= pi/4 of the quarter angle folded
+/// twice.
+template <class Real>
+SineCosine<Real> sine_cosine(const Real& angle)
+{
+    // Halve twice, evaluate on |y| <= pi/4, and double twice: no branches and no range table.
+    const Real y = angle * Real(0.25F);
+    const Real y2 = y * y;
+    const Real s =
+        y * (Real(1) + y2 * (Real(-1.0F / 6) +
+                             y2 * (Real(1.0F / 120) + y2 * (Real(-1.0F / 5040) + y2 * Real(1.0F / 362880)))));
+    // versine = 1 - cos keeps its digits when the angle is small.
+    const Real v =
+        y2 * (Real(0.5F) + y2 * (Real(-1.0F / 24) + y2 * (Real(1.0F / 720) + y2 * Real(-1.0F / 40320))));
+    // sin 2y = 2 s (1 - v); versin 2y = 2 s^2.
+    const Real s2 = (s + s) * (Real(1) - v);
+    const Real v2 = (s + s) * s;
+    const Real s4 = (s2 + s2) * (Real(1) - v2);
+    const Real v4 = (s2 + s2) * s2;
+    return {s4, Real(1) - v4};
+}
+
+}  // namespace motley

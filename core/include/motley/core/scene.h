@@ -1,0 +1,133 @@
+// A scene: bodies, joints, and the memory of contacts. A plain value: copy it to run one state two ways.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "motley/core/body.h"
+#include "motley/core/body_store.h"
+#include "motley/core/constraint_types.h"
+#include "motley/core/contact_cache.h"
+#include "motley/core/ids.h"
+#include "motley/core/joint_store.h"
+#include "motley/core/step_report.h"
+#include "motley/core/strided_span.h"
+
+namespace motley {
+
+/// What a joint did in the last step.
+struct JointForce {
+    Vec3<float> force{};  ///< N, world, on body b at its anchor
+    float error = 0;      ///< m: |C| now, of a rope only what it is too long by
+};
+
+/// Holds everything that decides what the next step computes. Every call that is refused throws
+/// InvalidInput and changes nothing. Not thread-safe; one scene, one thread, or many scenes, many threads.
+class Scene {
+  public:
+    Scene();
+
+    // ---- bodies -------------------------------------------------------------------------------------------
+    /// Adds a body. Refuses a definition out of the ranges stated at BodyDefinition.
+    BodyId add_body(const BodyDefinition& definition);
+    /// Adds many; `ids` must be as long as `definitions`. Either all are added or none.
+    void add_bodies(std::span<const BodyDefinition> definitions, std::span<BodyId> ids);
+    /// Removes a body and every joint on it.
+    void remove_body(BodyId body);
+    /// Removes many. Refuses a list that names a body twice.
+    void remove_bodies(std::span<const BodyId> bodies);
+    [[nodiscard]] bool is_alive(BodyId body) const;
+    /// The static body at the origin to which joints to "the world" are tied.
+    [[nodiscard]] BodyId ground() const { return ground_; }
+    /// Bodies alive, the ground not counted.
+    [[nodiscard]] std::size_t body_count() const { return body_count_; }
+
+    [[nodiscard]] BodyModel model(BodyId body) const;
+    [[nodiscard]] BodyMotion motion(BodyId body) const;
+    [[nodiscard]] BodyState state(BodyId body) const;
+    /// Teleports a body. Velocities are kept. Joints on it start cold in the next step.
+    void set_pose(BodyId body, const Vec3<double>& position, const Quat<double>& orientation, double yaw);
+    /// Sets one body's velocity. Refused for static bodies and for components that the model does not have.
+    void set_velocity(BodyId body, const Vec3<float>& linear, const Vec3<float>& angular);
+    /// A force (N) and torque (N m), world, that act in every step until changed. Dynamic bodies only.
+    void set_force(BodyId body, const Vec3<float>& force, const Vec3<float>& torque);
+    /// Thaws a body that a step contained: the host says where it is and how it moves.
+    void revive(BodyId body, const Vec3<double>& position, const Vec3<float>& linear);
+    /// True when a step froze the body because its state was not finite.
+    [[nodiscard]] bool is_contained(BodyId body) const;
+
+    /// Bulk writes: element i belongs to bodies[i]. `angular`, `torques` may be empty: left alone.
+    void set_velocities(std::span<const BodyId> bodies, StridedSpan<const Vec3<float>> linear,
+                        StridedSpan<const Vec3<float>> angular = {});
+    void set_forces(std::span<const BodyId> bodies, StridedSpan<const Vec3<float>> forces,
+                    StridedSpan<const Vec3<float>> torques = {});
+    /// Bulk reads into arrays of the host; an empty span is skipped.
+    void read_positions(std::span<const BodyId> bodies, StridedSpan<Vec3<double>> positions) const;
+    void read_velocities(std::span<const BodyId> bodies, StridedSpan<Vec3<float>> linear,
+                         StridedSpan<Vec3<float>> angular = {}) const;
+    void read_yaws(std::span<const BodyId> bodies, StridedSpan<double> yaws) const;
+
+    // ---- joints -------------------------------------------------------------------------------------------
+    /// Adds a joint of any registered type: add_joint(BallSocketDefinition{...}).
+    template <class Definition>
+    ConstraintId add_joint(const Definition& definition);
+    void remove_joint(ConstraintId joint);
+    [[nodiscard]] bool is_alive(ConstraintId joint) const;
+    [[nodiscard]] std::size_t joint_count() const;
+    /// The force that a joint applied in the last substep of the last step, and its error now.
+    [[nodiscard]] JointForce joint_force(ConstraintId joint) const;
+
+    // ---- contacts -----------------------------------------------------------------------------------------
+    /// What the contacts of the last step did, in the order of its list.
+    [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const { return contacts_.impulses(); }
+
+    // ---- whole scene --------------------------------------------------------------------------------------
+    /// 64-bit hash of every body's position, orientation and velocity bits, in slot order.
+    [[nodiscard]] std::uint64_t state_hash() const;
+    [[nodiscard]] SceneErrors errors() const;
+
+    // ---- for the solver
+    // ------------------------------------------------------------------------------------
+    [[nodiscard]] const BodyStore& bodies() const { return bodies_; }
+    [[nodiscard]] BodyStore& bodies() { return bodies_; }
+    [[nodiscard]] const JointStores& joints() const { return joints_; }
+    [[nodiscard]] JointStores& joints() { return joints_; }
+    [[nodiscard]] ContactCache& contact_cache() { return contacts_; }
+    [[nodiscard]] const ContactCache& contact_cache() const { return contacts_; }
+    /// Seconds of the last substep: turns impulses into forces. 0 before the first step.
+    float last_substep = 0;
+
+  private:
+    BodyStore bodies_;
+    JointStores joints_;
+    ContactCache contacts_;
+    BodyId ground_{};
+    std::size_t body_count_ = 0;
+
+    void require_alive(BodyId body, const char* what) const;
+    void require_alive(std::span<const BodyId> bodies, const char* what) const;
+    JointBodies check_joint_bodies(BodyId a, BodyId b) const;
+    ConstraintId take_joint_slot(int type, std::size_t index);
+    void remove_joints_of(std::span<const BodyId> bodies);
+    void remove_joint_at(int type, std::size_t index);
+    void write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular);
+    void check_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular) const;
+};
+
+template <class Definition>
+ConstraintId Scene::add_joint(const Definition& definition)
+{
+    constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
+    auto& store = std::get<static_cast<std::size_t>(type)>(joints_.stores);
+    using Type = typename std::remove_cvref_t<decltype(store)>::Type;
+    Type::validate(definition, check_joint_bodies(definition.body_a, definition.body_b));
+    const ConstraintId id = take_joint_slot(type, store.size());
+    store.push_back(definition, id.slot);
+    ++bodies_.joint_counts[definition.body_a.slot];
+    ++bodies_.joint_counts[definition.body_b.slot];
+    joints_.version.reset();
+    return id;
+}
+
+}  // namespace motley

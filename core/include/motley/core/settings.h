@@ -1,0 +1,48 @@
+// The dials of a step. Every one trades speed for accuracy or stiffness for calm; the README has the prices.
+#pragma once
+
+#include "motley/core/vector.h"
+
+namespace motley {
+
+/// How the constraints of a step are solved. All methods run on the same batches.
+enum class Method {
+    /// Substeps with soft constraints and a relaxation pass. Few sweeps a substep, many substeps.
+    soft_step,
+    /// The theory's loop: integrate velocities, warm start, iterate rigid constraints, integrate positions.
+    sequential_impulse,
+};
+
+/// What `sequential_impulse` does about the position error that velocity constraints leave.
+enum class DriftCorrection {
+    none,        ///< nothing: shows the drift
+    baumgarte,   ///< adds beta C / h to the velocity constraint
+    projection,  ///< moves positions along J^T after the integration, weighted by inverse mass
+};
+
+/// Settings of a step. A default-constructed value is a sensible crowd at 60 Hz.
+struct SolverSettings {
+    Method method = Method::soft_step;
+    int substeps = 4;              ///< 1 to 1024; position and velocity integrations a step
+    int iterations = 1;            ///< 1 to 10000; sweeps a substep (sequential_impulse wants 8 or more)
+    int relaxations = 1;           ///< 0 to 10000; soft_step: sweeps without bias a substep
+    bool warm_start = true;        ///< start from the impulses of the step before
+    Vec3<float> gravity{0, 0, 0};  ///< m/s2; planar bodies ignore z
+
+    float contact_hertz = 30;          ///< soft_step: stiffness of contacts, > 0, capped at 0.25 / substep
+    float contact_damping_ratio = 10;  ///< >= 0
+    float push_out_speed = 3;          ///< m/s, > 0: the fastest that penetration is resolved
+    float joint_hertz = 60;            ///< soft_step: stiffness of joints, > 0, capped at 0.25 / substep
+    float joint_damping_ratio = 2;     ///< >= 0
+    float restitution_threshold = 1;   ///< m/s, >= 0: slower impacts do not bounce
+
+    DriftCorrection drift_correction = DriftCorrection::baumgarte;  ///< sequential_impulse only
+    float baumgarte = 0.2F;  ///< 0 to 1: share of the error removed a step
+    int projections = 2;     ///< 0 to 10000: position sweeps a substep with DriftCorrection::projection
+    float penetration_slop = 0.0005F;  ///< m, >= 0: penetration that baumgarte and projection leave alone
+
+    /// Throws InvalidInput naming the first field out of its range.
+    void validate() const;
+};
+
+}  // namespace motley

@@ -1,0 +1,67 @@
+// What a step did.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "motley/core/ids.h"
+
+namespace motley {
+
+/// The stages of a step, in their order, for the time table.
+enum class Stage {
+    colour,
+    prepare,
+    integrate_velocities,
+    warm_start,
+    solve,
+    integrate_positions,
+    relax,
+    restitution,
+    store
+};
+inline constexpr int stage_count = 9;
+/// "colour", "prepare", ...
+const char* stage_name(Stage stage);
+
+/// How a step ended.
+enum class StepStatus {
+    done,     ///< the scene has moved on by dt
+    refused,  ///< bad input: nothing was changed; `error` says why
+};
+
+/// Returned by Solver::step. Counting is free; times cost two clock reads a stage.
+struct StepReport {
+    StepStatus status = StepStatus::done;
+    std::string error;  ///< empty unless refused
+
+    std::int64_t contacts = 0;
+    std::int64_t joints = 0;
+    int colours = 0;                    ///< colours in use, the overflow not counted
+    std::int64_t overflow = 0;          ///< constraints that found no colour and ran in order
+    std::int64_t blocks = 0;            ///< blocks of 16 lanes
+    double lane_occupancy = 0;          ///< constraints / (16 blocks); 0 without constraints
+    double bytes_per_constraint = 0;    ///< streamed by one sweep of solve: rows, impulses and indices
+    std::int64_t sweeps = 0;            ///< sweeps over all constraints: warm starts, solves and relaxations
+    std::int64_t bodies_contained = 0;  ///< bodies frozen in this step because their state was not finite
+    BodyId first_contained{};           ///< one of them
+
+    std::array<double, stage_count> seconds{};  ///< by Stage
+    [[nodiscard]] double total_seconds() const
+    {
+        double sum = 0;
+        for (const double s : seconds) sum += s;
+        return sum;
+    }
+};
+
+/// The errors of a scene's positions, in double from the definitions, not from what the solver believes.
+struct SceneErrors {
+    double joint_separation_rms = 0;  ///< m, over all ball-sockets and rigid distances
+    double joint_separation_max = 0;
+    double kinetic_energy = 0;       ///< J
+    double momentum[3] = {0, 0, 0};  ///< kg m/s
+};
+
+}  // namespace motley

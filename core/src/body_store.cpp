@@ -1,0 +1,243 @@
+// Rows of bodies: added, removed, and moved on at the end of a step.
+#include "motley/core/body_store.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace motley {
+namespace {
+
+void set_quad(AlignedVector<float>& rows, std::size_t quad, float x, float y, float z, float w)
+{
+    float* q = &rows[quad * 4];
+    q[0] = x;
+    q[1] = y;
+    q[2] = z;
+    q[3] = w;
+}
+
+Sym3<float> inverse_of(const Sym3<float>& m)
+{
+    const double xx = m.xx, xy = m.xy, xz = m.xz, yy = m.yy, yz = m.yz, zz = m.zz;
+    const double d = 1 / determinant(Sym3<double>{xx, xy, xz, yy, yz, zz});
+    const auto f = [d](double v) { return static_cast<float>(d * v); };
+    return {f(yy * zz - yz * yz), f(xz * yz - xy * zz), f(xy * yz - xz * yy),
+            f(xx * zz - xz * xz), f(xz * xy - xx * yz), f(xx * yy - xy * xy)};
+}
+
+/// Finite exactly when every one of the floats is: infinity and NaN survive the multiplication by zero as
+/// NaN.
+bool all_finite(const float* values, int count)
+{
+    float zero = 0;
+    for (int i = 0; i < count; ++i) zero += values[i] * 0.0F;
+    return zero == 0.0F;
+}
+
+}  // namespace
+
+BodyStore::BodyStore()
+{
+    generations_.push_back(0);
+    live_.push_back(0);
+    rows_of_slot_.emplace_back();
+    models_.push_back(BodyModel::rigid);
+    motions_.push_back(BodyMotion::static_body);
+    joint_counts.push_back(0);
+    contained.push_back(0);
+    inverse_masses.push_back(0);
+    inverse_inertias.push_back(0);
+    for (int kind = 0; kind < body_kind_count; ++kind)
+        take_row(static_cast<BodyKind>(kind));  // the null bodies
+}
+
+std::uint32_t BodyStore::take_row(BodyKind kind)
+{
+    BodyRows& r = rows(kind);
+    std::uint32_t row;
+    if (r.free_rows.empty()) {
+        row = r.size();
+        const std::size_t floats = static_cast<std::size_t>(quads_of(kind)) * 4 * (row + 1);
+        r.slot.push_back(0);
+        r.velocity.resize(floats);
+        r.delta.resize(floats);
+        r.acceleration.resize(floats);
+        r.pose.resize(row + 1);
+        if (kind == BodyKind::rigid || kind == BodyKind::fixed) r.orientation.resize(row + 1, {0, 0, 0, 1});
+        if (kind == BodyKind::rigid) {
+            r.world_inverse_inertia.resize(std::size_t{8} * (row + 1));
+            r.start_inverse_inertia.resize(std::size_t{8} * (row + 1));
+            r.inertia.resize(row + 1);
+            r.inverse_inertia.resize(row + 1);
+        }
+    } else {
+        row = r.free_rows.back();
+        r.free_rows.pop_back();
+    }
+    if (quads_of(kind) == 2) {
+        set_quad(r.delta, std::size_t{2} * row, 0, 0, 0, 0);
+        set_quad(r.delta, std::size_t{2} * row + 1, 0, 0, 0, 1);
+    }
+    return row;
+}
+
+BodyId BodyStore::add(const BodyDefinition& d)
+{
+    const bool dynamic = d.motion == BodyMotion::dynamic_body;
+    const BodyKind kind = dynamic ? static_cast<BodyKind>(d.model) : BodyKind::fixed;
+    const std::uint32_t row = take_row(kind);
+
+    std::uint32_t slot;
+    if (free_slots_.empty()) {
+        slot = slot_count();
+        generations_.push_back(1);
+        live_.push_back(1);
+        rows_of_slot_.emplace_back(kind, row);
+        models_.push_back(d.model);
+        motions_.push_back(d.motion);
+        joint_counts.push_back(0);
+        contained.push_back(0);
+        inverse_masses.push_back(0);
+        inverse_inertias.push_back(0);
+    } else {
+        slot = free_slots_.back();
+        free_slots_.pop_back();
+        if (++generations_[slot] == 0) generations_[slot] = 1;  // zero is the null handle's
+        live_[slot] = 1;
+        rows_of_slot_[slot] = BodyRow(kind, row);
+        models_[slot] = d.model;
+        motions_[slot] = d.motion;
+        joint_counts[slot] = 0;
+        contained[slot] = 0;
+    }
+
+    BodyRows& r = rows(kind);
+    r.slot[row] = slot;
+    r.pose[row] = {d.position, d.yaw};
+    const float inverse_mass = dynamic ? 1 / d.mass : 0.0F;
+    inverse_masses[slot] = inverse_mass;
+    inverse_inertias[slot] = kind == BodyKind::planar ? 1 / d.inertia.zz : 0.0F;
+    const Vec3<float>& v = d.linear_velocity;
+    const Vec3<float>& w = d.angular_velocity;
+    const std::size_t quad = static_cast<std::size_t>(quads_of(kind)) * row;
+    set_quad(r.acceleration, quad, 0, 0, 0, 0);
+    switch (kind) {
+        case BodyKind::particle:
+            set_quad(r.velocity, quad, v.x, v.y, v.z, inverse_mass);
+            set_quad(r.delta, quad, 0, 0, 0, 0);
+            break;
+        case BodyKind::planar:
+            set_quad(r.velocity, quad, v.x, v.y, w.z, inverse_mass);
+            set_quad(r.delta, quad, 0, 0, 0, inverse_inertias[slot]);
+            break;
+        case BodyKind::rigid:
+        case BodyKind::fixed: {
+            set_quad(r.velocity, quad, v.x, v.y, v.z, inverse_mass);
+            set_quad(r.velocity, quad + 1, w.x, w.y, w.z, 0);
+            set_quad(r.acceleration, quad + 1, 0, 0, 0, 0);
+            const Quat<double>& q = d.orientation;
+            const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+            r.orientation[row] = {q.x / length, q.y / length, q.z / length, q.w / length};
+            if (kind == BodyKind::rigid) {
+                r.inertia[row] = d.inertia;
+                r.inverse_inertia[row] = inverse_of(d.inertia);
+                refresh_world_inertia(row);
+            }
+            break;
+        }
+    }
+    return {slot, generations_[slot]};
+}
+
+void BodyStore::remove(BodyId body)
+{
+    const BodyRow where = row_of(body);
+    BodyRows& r = rows(where.kind());
+    const std::size_t quads = static_cast<std::size_t>(quads_of(where.kind()));
+    // A free row must not move: no mass, no speed, no force, no displacement.
+    for (std::size_t q = quads * where.row(); q < quads * (where.row() + 1); ++q) {
+        set_quad(r.velocity, q, 0, 0, 0, 0);
+        set_quad(r.delta, q, 0, 0, 0, 0);
+        set_quad(r.acceleration, q, 0, 0, 0, 0);
+        if (where.kind() == BodyKind::rigid) {
+            set_quad(r.world_inverse_inertia, q, 0, 0, 0, 0);
+            set_quad(r.start_inverse_inertia, q, 0, 0, 0, 0);
+        }
+    }
+    r.slot[where.row()] = 0;
+    r.free_rows.push_back(where.row());
+    live_[body.slot] = 0;
+    free_slots_.push_back(body.slot);
+}
+
+void BodyStore::refresh_world_inertia(std::uint32_t row)
+{
+    BodyRows& r = rows(BodyKind::rigid);
+    const Sym3<float> i = rotate_tensor(convert<float>(r.orientation[row]), r.inverse_inertia[row]);
+    for (AlignedVector<float>* tensors : {&r.world_inverse_inertia, &r.start_inverse_inertia}) {
+        set_quad(*tensors, std::size_t{2} * row, i.xx, i.xy, i.xz, i.yy);
+        set_quad(*tensors, std::size_t{2} * row + 1, i.yz, i.zz, 0, 0);
+    }
+}
+
+void BodyStore::revive(BodyId body)
+{
+    const BodyRow where = row_of(body);
+    BodyRows& r = rows(where.kind());
+    contained[body.slot] = 0;
+    r.velocity[std::size_t{4} * static_cast<std::size_t>(quads_of(where.kind())) * where.row() + 3] =
+        inverse_masses[body.slot];
+    if (where.kind() == BodyKind::planar)
+        r.delta[std::size_t{4} * where.row() + 3] = inverse_inertias[body.slot];
+    if (where.kind() == BodyKind::rigid) refresh_world_inertia(where.row());
+}
+
+int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, std::uint32_t& contained_slot)
+{
+    BodyRows& r = rows(kind);
+    const int quads = quads_of(kind);
+    int count = 0;
+    for (std::uint32_t row = begin; row < end; ++row) {
+        if (r.slot[row] == 0) continue;
+        float* velocity = &r.velocity[std::size_t{4} * quads * row];
+        float* delta = &r.delta[std::size_t{4} * quads * row];
+        if (!all_finite(velocity, 4 * quads) || !all_finite(delta, 4 * quads)) {
+            // Frozen where it was last known to be: without mass nothing can move it until the host revives
+            // it.
+            for (int i = 0; i < 4 * quads; ++i) velocity[i] = 0;
+            if (kind == BodyKind::rigid) {
+                for (std::size_t q = std::size_t{2} * row; q < std::size_t{2} * row + 2; ++q) {
+                    set_quad(r.world_inverse_inertia, q, 0, 0, 0, 0);
+                    set_quad(r.start_inverse_inertia, q, 0, 0, 0, 0);
+                }
+            }
+            contained[r.slot[row]] = 1;
+            contained_slot = std::min(contained_slot, r.slot[row]);
+            ++count;
+        } else {
+            BodyPose& pose = r.pose[row];
+            pose.position.x += static_cast<double>(delta[0]);
+            pose.position.y += static_cast<double>(delta[1]);
+            if (kind == BodyKind::planar) {
+                pose.yaw += static_cast<double>(delta[2]);
+            } else {
+                pose.position.z += static_cast<double>(delta[2]);
+            }
+            if (quads == 2) {
+                const Quat<double> turn{delta[4], delta[5], delta[6], delta[7]};
+                const Quat<double> q = normalised(turn * r.orientation[row]);
+                r.orientation[row] = normalised(q);
+                if (kind == BodyKind::rigid && contained[r.slot[row]] == 0) refresh_world_inertia(row);
+            }
+        }
+        delta[0] = delta[1] = delta[2] = 0;
+        if (quads == 2) {
+            delta[4] = delta[5] = delta[6] = 0;
+            delta[7] = 1;
+        }
+        if (kind == BodyKind::planar && contained[r.slot[row]] != 0) delta[3] = 0;
+    }
+    return count;
+}
+
+}  // namespace motley

@@ -1,0 +1,80 @@
+// Settings: their ranges, and what a step makes of them.
+#include "motley/core/step_constants.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "motley/core/invalid_input.h"
+
+namespace motley {
+namespace {
+
+void check(std::string_view field, double value, double low, double high, std::string_view expected)
+{
+    if (!(value >= low && value <= high)) refuse(field, value, expected);  // NaN fails too
+}
+
+}  // namespace
+
+void SolverSettings::validate() const
+{
+    if (method != Method::soft_step && method != Method::sequential_impulse) {
+        refuse("SolverSettings.method", static_cast<double>(method), "soft_step or sequential_impulse");
+    }
+    if (drift_correction < DriftCorrection::none || drift_correction > DriftCorrection::projection) {
+        refuse("SolverSettings.drift_correction", static_cast<double>(drift_correction),
+               "none, baumgarte or projection");
+    }
+    check("SolverSettings.substeps", substeps, 1, 1024, "1 to 1024");
+    check("SolverSettings.iterations", iterations, 1, 10000, "1 to 10000");
+    check("SolverSettings.relaxations", relaxations, 0, 10000, "0 to 10000");
+    check("SolverSettings.projections", projections, 0, 10000, "0 to 10000");
+    constexpr double big = 1e9;
+    check("SolverSettings.gravity.x", gravity.x, -big, big, "a finite value from -1e9 to 1e9 (m/s2)");
+    check("SolverSettings.gravity.y", gravity.y, -big, big, "a finite value from -1e9 to 1e9 (m/s2)");
+    check("SolverSettings.gravity.z", gravity.z, -big, big, "a finite value from -1e9 to 1e9 (m/s2)");
+    check("SolverSettings.contact_hertz", contact_hertz, 1e-3F, 1e6, "0.001 to 1e6 (Hz)");
+    check("SolverSettings.contact_damping_ratio", contact_damping_ratio, 0, 1e6, "0 to 1e6");
+    check("SolverSettings.joint_hertz", joint_hertz, 1e-3F, 1e6, "0.001 to 1e6 (Hz)");
+    check("SolverSettings.joint_damping_ratio", joint_damping_ratio, 0, 1e6, "0 to 1e6");
+    check("SolverSettings.push_out_speed", push_out_speed, 1e-6F, big, "1e-6 to 1e9 (m/s)");
+    check("SolverSettings.restitution_threshold", restitution_threshold, 0, big, "0 to 1e9 (m/s)");
+    check("SolverSettings.baumgarte", baumgarte, 0, 1, "0 to 1");
+    check("SolverSettings.penetration_slop", penetration_slop, 0, big, "0 to 1e9 (m)");
+}
+
+Softness soft(float hertz, float damping_ratio, float substep)
+{
+    const float omega = 6.2831853F * std::min(hertz, 0.25F / substep);
+    const float a1 = 2 * damping_ratio + substep * omega;
+    const float a2 = substep * omega * a1;
+    const float a3 = 1 / (1 + a2);
+    return {omega / a1, a2 * a3, a3};
+}
+
+StepConstants step_constants(const SolverSettings& settings, float dt, float last_substep)
+{
+    StepConstants step;
+    step.substep = dt / static_cast<float>(settings.substeps);
+    step.inverse_substep = 1 / step.substep;
+    step.gravity = settings.gravity;
+    step.restitution_threshold = settings.restitution_threshold;
+    step.push_out_speed = settings.push_out_speed;
+    // An impulse is a force times the substep, so a cached one is scaled when the substep changes.
+    step.warm_start_scale = settings.warm_start && last_substep > 0 ? step.substep / last_substep : 0.0F;
+    if (settings.method == Method::soft_step) {
+        step.joint = soft(settings.joint_hertz, settings.joint_damping_ratio, step.substep);
+        step.contact = soft(settings.contact_hertz, settings.contact_damping_ratio, step.substep);
+        // What cannot give way is made twice as stiff, or a crowd would sink into its walls first.
+        step.static_contact = soft(2 * settings.contact_hertz, settings.contact_damping_ratio, step.substep);
+    } else {
+        const bool baumgarte = settings.drift_correction == DriftCorrection::baumgarte;
+        const Softness rigid{baumgarte ? settings.baumgarte * step.inverse_substep : 0.0F, 1, 0};
+        step.joint = step.contact = step.static_contact = rigid;
+        step.slop = settings.penetration_slop;
+        step.projection_rate = settings.baumgarte;
+    }
+    return step;
+}
+
+}  // namespace motley

@@ -1,0 +1,14 @@
+// Names for the report.
+#include "motley/core/step_report.h"
+
+namespace motley {
+
+const char* stage_name(Stage stage)
+{
+    static constexpr const char* names[stage_count] = {"colour",     "prepare",     "integrate velocities",
+                                                       "warm start", "solve",       "integrate positions",
+                                                       "relax",      "restitution", "store"};
+    return names[static_cast<int>(stage)];
+}
+
+}  // namespace motley

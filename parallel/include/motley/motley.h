@@ -1,0 +1,10 @@
+// Everything that a host includes.
+#pragma once
+
+#include "motley/core/scene.h"
+#include "motley/core/settings.h"
+#include "motley/core/step_report.h"
+#include "motley/parallel/executor.h"
+#include "motley/parallel/parallel_for.h"
+#include "motley/parallel/solver.h"
+#include "motley/soa/isa.h"

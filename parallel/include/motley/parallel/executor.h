@@ -1,0 +1,20 @@
+// How a step gets its threads: a host may pass its own pool, or let oneTBB do it.
+#pragma once
+
+#include <functional>
+
+namespace motley {
+
+/// Lends threads to a step. Implement it to run motley on a job system of your own.
+class Executor {
+  public:
+    virtual ~Executor() = default;
+    /// Threads that may run a job at once, the caller counted; >= 1, constant.
+    [[nodiscard]] virtual int concurrency() const = 0;
+    /// Calls job(0) on the calling thread, and may call job(1) ... job(workers - 1) each once on other
+    /// threads at any time meanwhile, or not at all: the step finishes with whoever comes. Returns when every
+    /// call that began has returned and no further one will begin.
+    virtual void run(int workers, const std::function<void(int worker)>& job) = 0;
+};
+
+}  // namespace motley

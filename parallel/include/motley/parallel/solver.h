@@ -1,0 +1,52 @@
+// The solver: takes a scene from one step to the next.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "motley/core/constraints/contact_definition.h"
+#include "motley/core/scene.h"
+#include "motley/core/settings.h"
+#include "motley/core/step_report.h"
+#include "motley/parallel/executor.h"
+#include "motley/soa/isa.h"
+
+namespace motley {
+
+/// What a solver runs on. None of it changes a bit of the result.
+struct SolverOptions {
+    int threads = 1;               ///< >= 1; 1 starts no thread at all; ignored when `executor` is set
+    std::optional<Isa> isa{};      ///< default: MOTLEY_ISA, else the widest this machine has
+    Executor* executor = nullptr;  ///< the host's own threads; not owned, must outlive the solver
+};
+
+/// Steps scenes. Holds buffers and threads but no state that decides a result: two solvers step copies of a
+/// scene to the same bits. One solver steps one scene at a time.
+class Solver {
+  public:
+    /// Throws InvalidInput for settings or options out of range, or an instruction set not available here.
+    explicit Solver(const SolverSettings& settings = {}, const SolverOptions& options = {});
+    ~Solver();
+    Solver(Solver&&) noexcept;
+    Solver& operator=(Solver&&) noexcept;
+
+    /// Moves the scene on by `dt` seconds (0 to 1; 0 changes nothing), with the contacts of this step. The
+    /// list is read during the call only. Never throws: bad input gives StepStatus::refused, a message, and
+    /// an untouched scene. Allocates nothing once the scene has stopped growing.
+    StepReport step(Scene& scene, float dt, std::span<const Contact> contacts = {}) noexcept;
+
+    [[nodiscard]] const SolverSettings& settings() const;
+    /// Throws InvalidInput and keeps the old settings when one is out of range.
+    void set_settings(const SolverSettings& settings);
+    [[nodiscard]] Isa isa() const;
+    [[nodiscard]] int threads() const;
+    /// The threads that the solver runs on; a host may share them (a neighbour search, say).
+    [[nodiscard]] Executor& executor();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace motley

@@ -1,0 +1,267 @@
+// One step, on one screen: Solver::step names the stages in their order, and does nothing else.
+#include "motley/parallel/solver.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+
+#include "layout.h"
+#include "motley/core/invalid_input.h"
+#include "motley/core/step_constants.h"
+#include "stage_runner.h"
+#include "tbb_executor.h"
+
+namespace motley {
+namespace {
+
+/// Bodies and contacts a chunk: a few microseconds of streaming.
+constexpr std::int64_t rows_per_chunk = 1024;
+constexpr std::int64_t contacts_per_chunk = 1024;
+
+std::int64_t chunks_of(std::int64_t count, std::int64_t grain)
+{
+    return (count + grain - 1) / grain;
+}
+
+Isa checked_isa(const std::optional<Isa>& wanted)
+{
+    if (!wanted) return default_isa();
+    for (const Isa isa : available_isas()) {
+        if (isa == *wanted) return isa;
+    }
+    refuse("SolverOptions.isa", isa_name(*wanted), "an instruction set of available_isas()");
+}
+
+/// Adds the time since the last call to a stage.
+class StageClock {
+  public:
+    explicit StageClock(StepReport& report) : report_(report) {}
+    void charge(Stage stage)
+    {
+        const auto now = std::chrono::steady_clock::now();
+        report_.seconds[static_cast<std::size_t>(stage)] +=
+            std::chrono::duration<double>(now - last_).count();
+        last_ = now;
+    }
+
+  private:
+    StepReport& report_;
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+struct Solver::Impl {
+    SolverSettings settings;
+    Isa isa;
+    std::unique_ptr<Executor> own_executor;
+    StageRunner runner;
+    Layout layout;
+
+    Impl(const SolverSettings& s, Isa i, Executor* host, int threads)
+        : settings(s),
+          isa(i),
+          own_executor(host ? nullptr : make_executor(threads)),
+          runner(host ? host : own_executor.get()),
+          layout(kernel_table(i))
+    {
+    }
+
+    // The stages. Each runs over chunks that do not depend on the number of threads.
+    std::string take_in(Scene& scene, std::span<const Contact> contacts);
+    void prepare();
+    void integrate_velocities();
+    void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel);
+    void integrate_positions();
+    void store_impulses();
+    void move_bodies(Scene& scene, StepReport& report);
+    void solve_substeps(Scene& scene, StepReport& report);
+};
+
+Solver::Solver(const SolverSettings& settings, const SolverOptions& options)
+{
+    settings.validate();
+    if (options.threads < 1 || options.threads > 1024)
+        refuse("SolverOptions.threads", options.threads, "1 to 1024");
+    impl_ = std::make_unique<Impl>(settings, checked_isa(options.isa), options.executor, options.threads);
+}
+
+Solver::~Solver() = default;
+Solver::Solver(Solver&&) noexcept = default;
+Solver& Solver::operator=(Solver&&) noexcept = default;
+
+const SolverSettings& Solver::settings() const
+{
+    return impl_->settings;
+}
+void Solver::set_settings(const SolverSettings& settings)
+{
+    settings.validate();
+    impl_->settings = settings;
+}
+Isa Solver::isa() const
+{
+    return impl_->isa;
+}
+int Solver::threads() const
+{
+    return impl_->runner.executor()->concurrency();
+}
+Executor& Solver::executor()
+{
+    return *impl_->runner.executor();
+}
+
+StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contacts) noexcept
+{
+    StepReport report;
+    try {
+        if (!(dt >= 0 && dt <= 1)) refuse("step.dt", dt, "0 to 1 (s)");
+        if (contacts.size() > INT32_MAX)
+            refuse("step.contacts.size()", static_cast<double>(contacts.size()), "at most 2^31 - 1");
+        impl_->runner.with_workers([&] {
+            StageClock clock(report);
+            report.error = impl_->take_in(scene, contacts);
+            if (!report.error.empty() || dt == 0) return;
+            impl_->layout.build(scene, contacts);
+            impl_->layout.point_at(scene, step_constants(impl_->settings, dt, scene.last_substep));
+            clock.charge(Stage::colour);
+            impl_->solve_substeps(scene, report);
+        });
+    } catch (const std::exception& error) {
+        report.error = error.what();
+    }
+    if (!report.error.empty()) report.status = StepStatus::refused;
+    return report;
+}
+
+/// The step as the data sees it.
+void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
+{
+    const bool soft = settings.method == Method::soft_step;
+    const bool projects = !soft && settings.drift_correction == DriftCorrection::projection;
+    StageClock clock(report);
+
+    prepare();
+    clock.charge(Stage::prepare);
+    for (int substep = 0; substep < settings.substeps; ++substep) {
+        integrate_velocities();
+        clock.charge(Stage::integrate_velocities);
+        sweep(&ConstraintKernels::warm_start);
+        clock.charge(Stage::warm_start);
+        for (int i = 0; i < settings.iterations; ++i) sweep(&ConstraintKernels::solve);
+        clock.charge(Stage::solve);
+        integrate_positions();
+        for (int i = 0; projects && i < settings.projections; ++i) sweep(&ConstraintKernels::project);
+        clock.charge(Stage::integrate_positions);
+        for (int i = 0; soft && i < settings.relaxations; ++i) sweep(&ConstraintKernels::relax);
+        clock.charge(Stage::relax);
+    }
+    sweep(&ConstraintKernels::restitute);
+    clock.charge(Stage::restitution);
+    store_impulses();
+    move_bodies(scene, report);
+    scene.contact_cache().accept_staged();
+    scene.last_substep = layout.context.step.substep;
+
+    layout.report(report);
+    report.sweeps = settings.substeps * (1 + settings.iterations + (soft ? settings.relaxations : 0) +
+                                         (projects ? settings.projections : 0));
+    clock.charge(Stage::store);
+}
+
+std::string Solver::Impl::take_in(Scene& scene, std::span<const Contact> contacts)
+{
+    layout.intake.begin(scene, contacts.size());
+    const auto count = static_cast<std::int64_t>(contacts.size());
+    runner.run(chunks_of(count, contacts_per_chunk), [&](std::int64_t chunk) {
+        const std::int64_t first = chunk * contacts_per_chunk;
+        layout.intake.take(scene, contacts, static_cast<std::size_t>(first),
+                           static_cast<std::size_t>(std::min(first + contacts_per_chunk, count)));
+    });
+    return layout.intake.error(scene, contacts);
+}
+
+void Solver::Impl::prepare()
+{
+    const auto& transfers = layout.transfers();
+    runner.run(static_cast<std::int64_t>(transfers.size()), [&](std::int64_t i) {
+        const TransferChunk& chunk = transfers[static_cast<std::size_t>(i)];
+        chunk.kernels->prepare(layout.context, chunk.streams, layout.data(chunk.type), chunk.begin,
+                               chunk.end);
+    });
+}
+
+void Solver::Impl::store_impulses()
+{
+    const auto& transfers = layout.transfers();
+    runner.run(static_cast<std::int64_t>(transfers.size()), [&](std::int64_t i) {
+        const TransferChunk& chunk = transfers[static_cast<std::size_t>(i)];
+        chunk.kernels->store(layout.context, chunk.streams, layout.data(chunk.type), chunk.begin, chunk.end);
+    });
+}
+
+void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel)
+{
+    const auto run_chunk = [&](const SweepChunk& chunk) {
+        const ConstraintKernels::Sweep run = chunk.kernels->*kernel;
+        if (run != nullptr) run(layout.context, chunk.streams, chunk.order, chunk.begin, chunk.end);
+    };
+    // The overflow first and in order, so that the colours have the last word.
+    for (const SweepChunk& chunk : layout.sweeps(overflow_colour)) run_chunk(chunk);
+    for (int colour = 0; colour < parallel_colours; ++colour) {
+        const auto& chunks = layout.sweeps(colour);
+        runner.run(static_cast<std::int64_t>(chunks.size()),
+                   [&](std::int64_t i) { run_chunk(chunks[static_cast<std::size_t>(i)]); });
+    }
+}
+
+void Solver::Impl::integrate_velocities()
+{
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        const auto integrate = layout.kernels().bodies[kind].integrate_velocities;
+        const std::int64_t rows = layout.context.bodies[kind].size;
+        if (integrate == nullptr || rows == 1) continue;  // the null row alone
+        runner.run(chunks_of(rows, rows_per_chunk), [&](std::int64_t chunk) {
+            integrate(layout.context, static_cast<std::int32_t>(chunk * rows_per_chunk),
+                      static_cast<std::int32_t>(std::min((chunk + 1) * rows_per_chunk, rows)));
+        });
+    }
+}
+
+void Solver::Impl::integrate_positions()
+{
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        const auto integrate = layout.kernels().bodies[kind].integrate_positions;
+        const std::int64_t rows = layout.context.bodies[kind].size;
+        if (rows == 1) continue;
+        runner.run(chunks_of(rows, rows_per_chunk), [&](std::int64_t chunk) {
+            integrate(layout.context, static_cast<std::int32_t>(chunk * rows_per_chunk),
+                      static_cast<std::int32_t>(std::min((chunk + 1) * rows_per_chunk, rows)));
+        });
+    }
+}
+
+void Solver::Impl::move_bodies(Scene& scene, StepReport& report)
+{
+    std::atomic<std::int64_t> contained{0};
+    std::atomic<std::uint32_t> lowest_slot{UINT32_MAX};
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        const std::int64_t rows = layout.context.bodies[kind].size;
+        runner.run(chunks_of(rows, rows_per_chunk), [&](std::int64_t chunk) {
+            std::uint32_t slot = UINT32_MAX;
+            const int count = scene.bodies().commit(
+                static_cast<BodyKind>(kind), static_cast<std::uint32_t>(chunk * rows_per_chunk),
+                static_cast<std::uint32_t>(std::min((chunk + 1) * rows_per_chunk, rows)), slot);
+            if (count == 0) return;
+            contained += count;
+            std::uint32_t lowest = lowest_slot.load();
+            while (slot < lowest && !lowest_slot.compare_exchange_weak(lowest, slot)) {
+            }
+        });
+    }
+    report.bodies_contained = contained;
+    if (contained > 0) report.first_contained = scene.bodies().id_of_slot(lowest_slot);
+}
+
+}  // namespace motley

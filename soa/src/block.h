@@ -1,0 +1,104 @@
+// Blocks of sixteen lanes, and the table of kernels that run over them.
+//
+// A block holds up to sixteen constraints of one type and one pair of body kinds, none of which shares a
+// moving body with another. Sixteen whatever the instruction set (it runs 16 x 1, 4 x 4, 2 x 8 or 1 x 16), so
+// that blocks, their order and so every bit do not depend on the machine.
+#pragma once
+
+#include <cstdint>
+
+#include "motley/core/body_store.h"
+#include "motley/core/constraint_types.h"
+#include "motley/core/step_constants.h"
+#include "motley/soa/isa.h"
+
+namespace motley {
+
+inline constexpr int block_lanes = 16;
+
+/// Who is in a block. Lanes from `count` on are padding: their bodies are the null rows, and they are never
+/// stored.
+struct alignas(64) BlockIndex {
+    std::int32_t a[block_lanes];  ///< row of body a
+    std::int32_t b[block_lanes];
+    std::int32_t constraint[block_lanes];  ///< index in the list or store of the type
+    std::int32_t count;
+};
+
+/// Everything that a kernel reads and writes of one type and pair: blocks, and their streams of floats.
+/// Stream s of block k starts at s + k * floats * 16; a field of a row is sixteen floats in line.
+struct BlockStreams {
+    const BlockIndex* index = nullptr;
+    float* rows = nullptr;          ///< constant through a step
+    float* substep_rows = nullptr;  ///< made by warm_start each substep
+    float* impulses = nullptr;
+};
+
+/// Where definitions and remembered impulses of a type lie, an entry a constraint.
+struct ConstraintData {
+    const float* parameters = nullptr;
+    std::int64_t parameter_stride = 0;  ///< floats
+    const float* memory_in = nullptr;
+    const std::int32_t* memory_index =
+        nullptr;                     ///< entry of memory_in by constraint; null: the constraint's own
+    float* memory_out = nullptr;     ///< by constraint
+    std::int64_t memory_stride = 0;  ///< floats
+};
+
+/// Rows of one kind as the kernels see them.
+struct BodyArrays {
+    float* velocity = nullptr;
+    float* delta = nullptr;
+    const float* acceleration = nullptr;
+    float* world_inverse_inertia = nullptr;
+    const float* start_inverse_inertia = nullptr;
+    const BodyPose* pose = nullptr;
+    const Quat<double>* orientation = nullptr;
+    std::int32_t size = 0;
+};
+
+struct KernelContext {
+    StepConstants step;
+    BodyArrays bodies[body_kind_count];
+};
+
+/// The kernels of one type and pair: each runs over blocks order[begin] ... order[end - 1].
+struct ConstraintKernels {
+    using Sweep = void (*)(const KernelContext&, const BlockStreams&, const std::int32_t* order,
+                           std::int32_t begin, std::int32_t end);
+    using Transfer = void (*)(const KernelContext&, const BlockStreams&, const ConstraintData&,
+                              std::int32_t begin, std::int32_t end);
+    Transfer prepare = nullptr;  ///< definitions and memory -> rows and impulses
+    Sweep warm_start = nullptr;
+    Sweep solve = nullptr;
+    Sweep relax = nullptr;
+    Sweep restitute = nullptr;  ///< null for types that do not bounce
+    Sweep project = nullptr;
+    Transfer store = nullptr;  ///< impulses -> memory
+    int row_floats = 0, substep_floats = 0, impulse_floats = 0;
+};
+
+/// The kernels of one kind of body, over rows begin ... end - 1.
+struct BodyKernels {
+    using Move = void (*)(const KernelContext&, std::int32_t begin, std::int32_t end);
+    Move integrate_velocities = nullptr;
+    Move integrate_positions = nullptr;
+};
+
+/// A constraint type with a pair of body kinds: the key of batches and kernels.
+constexpr int class_of(int type, BodyKind a, BodyKind b)
+{
+    return (type * body_kind_count + static_cast<int>(a)) * body_kind_count + static_cast<int>(b);
+}
+inline constexpr int class_count = constraint_type_count * body_kind_count * body_kind_count;
+
+/// Every kernel of one instruction set.
+struct KernelTable {
+    ConstraintKernels constraints[class_count];
+    BodyKernels bodies[body_kind_count];
+};
+
+/// The table compiled for an instruction set; only for those of available_isas().
+const KernelTable& kernel_table(Isa isa);
+
+}  // namespace motley

@@ -1,0 +1,184 @@
+// Contacts checked at the door. The quick test of every contact is one expression a range; only a contact
+// that fails it is looked at again, to say which field, which value and what was expected.
+#include "contact_intake.h"
+
+#include <cmath>
+
+#include "motley/core/invalid_input.h"
+
+namespace motley {
+namespace {
+
+constexpr float largest_arm = 1e9F;
+constexpr float largest_friction = 1e9F;
+
+bool within(float value, float low, float high)
+{
+    return value >= low && value <= high;
+}
+
+bool is_arm(const Vec3<float>& arm)
+{
+    return within(arm.x, -largest_arm, largest_arm) && within(arm.y, -largest_arm, largest_arm) &&
+           within(arm.z, -largest_arm, largest_arm);
+}
+
+bool is_unit(const Vec3<float>& n)
+{
+    const float length2 = dot(n, n);
+    return within(length2, 0.998F, 1.002F);
+}
+
+bool numbers_are_good(const Contact& c)
+{
+    return is_unit(c.normal) && within(c.separation, -largest_arm, largest_arm) && is_arm(c.arm_a) &&
+           is_arm(c.arm_b) && within(c.friction, 0, largest_friction) && within(c.restitution, 0, 1);
+}
+
+/// Tells a body from a later one in the same slot.
+std::uint32_t fingerprint(BodyId body)
+{
+    return body.slot ^ (body.generation * 0x9E3779B9U);
+}
+
+bool is_planar(BodyRow a, BodyRow b)
+{
+    return (a.kind() == BodyKind::planar && (b.kind() == BodyKind::planar || b.kind() == BodyKind::fixed)) ||
+           (a.kind() == BodyKind::fixed && b.kind() == BodyKind::planar);
+}
+
+}  // namespace
+
+void ContactIntake::begin(Scene& scene, std::size_t count)
+{
+    if (a.size() < count) {
+        const std::size_t room = count + count / 2;
+        a.resize(room);
+        b.resize(room);
+        types.resize(room);
+        kept_colours.resize(room);
+        memory_index.resize(room);
+    }
+    scene.contact_cache().staged().reset(count);
+    first_bad_.store(none, std::memory_order_relaxed);
+}
+
+void ContactIntake::mark_bad(std::size_t index)
+{
+    std::size_t seen = first_bad_.load(std::memory_order_relaxed);
+    while (index < seen && !first_bad_.compare_exchange_weak(seen, index, std::memory_order_relaxed)) {
+    }
+}
+
+void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::size_t first, std::size_t last)
+{
+    const BodyStore& bodies = scene.bodies();
+    const ContactList& past = scene.contact_cache().current();
+    ContactList& staged = scene.contact_cache().staged();
+    // Keys are looked up this far ahead, so that the table's cache lines are on their way.
+    constexpr std::size_t ahead = 16;
+    for (std::size_t i = first; i < last; ++i) {
+        if (i + ahead < last) {
+            if (past.size() > 0) past.prefetch(contacts[i + ahead].key);
+            staged.prefetch(contacts[i + ahead].key);
+        }
+        const Contact& contact = contacts[i];
+        if (!bodies.is_alive(contact.body_a) || !bodies.is_alive(contact.body_b) ||
+            !numbers_are_good(contact)) {
+            mark_bad(i);
+            continue;
+        }
+        a[i] = bodies.row_of(contact.body_a);
+        b[i] = bodies.row_of(contact.body_b);
+        if (contact.body_a == contact.body_b ||
+            (a[i].kind() == BodyKind::fixed && b[i].kind() == BodyKind::fixed) ||
+            (is_planar(a[i], b[i]) && contact.normal.z != 0)) {
+            mark_bad(i);
+            continue;
+        }
+        // The list of contact types: smooth first, then with friction and restitution.
+        types[i] = contact.friction == 0 && contact.restitution == 0 ? 0 : 1;
+        staged.slot_a[i] = fingerprint(contact.body_a);
+        staged.slot_b[i] = fingerprint(contact.body_b);
+        if (!staged.insert(contact.key, static_cast<std::uint32_t>(i))) mark_bad(i);
+        kept_colours[i] = no_colour;
+        memory_index[i] = 0;
+        const std::uint32_t before = past.find(contact.key);
+        if (before != ContactList::none && past.slot_a[before] == staged.slot_a[i] &&
+            past.slot_b[before] == staged.slot_b[i]) {
+            kept_colours[i] = past.colours[before];
+            memory_index[i] = static_cast<std::int32_t>(before) + 1;
+        }
+    }
+}
+
+namespace {
+
+[[noreturn]] void refuse_contact(std::size_t index, std::string_view field, double value,
+                                 std::string_view expected)
+{
+    refuse("contacts[" + std::to_string(index) + "]." + std::string(field), value, expected);
+}
+
+void check_body(const Scene& scene, std::size_t index, const char* field, BodyId body)
+{
+    if (scene.is_alive(body)) return;
+    refuse("contacts[" + std::to_string(index) + "]." + field,
+           body == BodyId{} ? std::string("the null handle")
+                            : "slot " + std::to_string(body.slot) + ", not alive",
+           "a body of this scene");
+}
+
+void check_arm(std::size_t index, const std::string& field, const Vec3<float>& arm)
+{
+    const float components[3] = {arm.x, arm.y, arm.z};
+    const char* names[3] = {".x", ".y", ".z"};
+    for (int i = 0; i < 3; ++i) {
+        if (!within(components[i], -largest_arm, largest_arm)) {
+            refuse_contact(index, field + names[i], components[i], "a finite value from -1e9 to 1e9 (m)");
+        }
+    }
+}
+
+}  // namespace
+
+std::string ContactIntake::error(const Scene& scene, std::span<const Contact> contacts) const
+{
+    const std::size_t bad = first_bad_.load(std::memory_order_relaxed);
+    if (bad == none) return {};
+    const Contact& c = contacts[bad];
+    try {
+        check_body(scene, bad, "body_a", c.body_a);
+        check_body(scene, bad, "body_b", c.body_b);
+        if (!is_unit(c.normal)) {
+            refuse_contact(bad, "normal", std::sqrt(static_cast<double>(dot(c.normal, c.normal))),
+                           "a length of 1 +- 1e-3 (length shown)");
+        }
+        if (!within(c.separation, -largest_arm, largest_arm)) {
+            refuse_contact(bad, "separation", c.separation, "a finite value from -1e9 to 1e9 (m)");
+        }
+        check_arm(bad, "arm_a", c.arm_a);
+        check_arm(bad, "arm_b", c.arm_b);
+        if (!within(c.friction, 0, largest_friction))
+            refuse_contact(bad, "friction", c.friction, "a finite value from 0 to 1e9");
+        if (!within(c.restitution, 0, 1)) refuse_contact(bad, "restitution", c.restitution, "0 to 1");
+        if (c.body_a == c.body_b) {
+            refuse("contacts[" + std::to_string(bad) + "].body_b", "the same body as body_a",
+                   "two different bodies");
+        }
+        const BodyRow row_a = scene.bodies().row_of(c.body_a), row_b = scene.bodies().row_of(c.body_b);
+        if (row_a.kind() == BodyKind::fixed && row_b.kind() == BodyKind::fixed) {
+            refuse("contacts[" + std::to_string(bad) + "].body_b", "a second body that cannot move",
+                   "at least one dynamic body");
+        }
+        if (is_planar(row_a, row_b) && c.normal.z != 0) {
+            refuse_contact(bad, "normal.z", c.normal.z, "0 between planar bodies");
+        }
+        refuse("contacts[" + std::to_string(bad) + "].key", std::to_string(c.key) + ", twice in the list",
+               "a key of its own");
+    } catch (const InvalidInput& refusal) {
+        return refusal.what();
+    }
+}
+
+}  // namespace motley

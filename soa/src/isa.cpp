@@ -1,0 +1,123 @@
+// Which kernels were compiled, and which of them this machine can run.
+#include "motley/soa/isa.h"
+
+#include <cstdlib>
+#include <string>
+
+#include "block.h"
+#include "motley/core/invalid_input.h"
+
+namespace motley {
+
+const KernelTable& kernel_table_scalar();
+const KernelTable& kernel_table_sse2();
+const KernelTable& kernel_table_avx2();
+const KernelTable& kernel_table_avx512();
+const KernelTable& kernel_table_neon();
+
+namespace {
+
+struct IsaEntry {
+    Isa isa;
+    std::string_view name;
+    int width;
+};
+constexpr IsaEntry entries[] = {{Isa::scalar, "scalar", 1},
+                                {Isa::sse2, "sse2", 4},
+                                {Isa::avx2, "avx2", 8},
+                                {Isa::avx512, "avx512", 16},
+                                {Isa::neon, "neon", 4}};
+
+/// The builtin asks the processor and the operating system, for every flag the file is compiled with.
+bool is_available(Isa isa)
+{
+    switch (isa) {
+        case Isa::scalar:
+            return true;
+#ifdef MOTLEY_X86
+        case Isa::sse2:
+            return true;
+        case Isa::avx2:
+            return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+        case Isa::avx512:
+            return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                   __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+                   __builtin_cpu_supports("avx512cd");
+#endif
+#ifdef MOTLEY_NEON
+        case Isa::neon:
+            return true;
+#endif
+        default:
+            return false;
+    }
+}
+
+}  // namespace
+
+std::string_view isa_name(Isa isa)
+{
+    for (const IsaEntry& entry : entries) {
+        if (entry.isa == isa) return entry.name;
+    }
+    return "unknown";
+}
+
+std::optional<Isa> isa_from_name(std::string_view name)
+{
+    for (const IsaEntry& entry : entries) {
+        if (entry.name == name) return entry.isa;
+    }
+    return std::nullopt;
+}
+
+int isa_width(Isa isa)
+{
+    for (const IsaEntry& entry : entries) {
+        if (entry.isa == isa) return entry.width;
+    }
+    return 0;
+}
+
+std::vector<Isa> available_isas()
+{
+    std::vector<Isa> isas;
+    for (const IsaEntry& entry : entries) {
+        if (is_available(entry.isa)) isas.push_back(entry.isa);
+    }
+    return isas;
+}
+
+Isa default_isa()
+{
+    const char* forced = std::getenv("MOTLEY_ISA");
+    if (forced == nullptr || *forced == '\0') return available_isas().back();
+    const std::optional<Isa> isa = isa_from_name(forced);
+    if (isa && is_available(*isa)) return *isa;
+    std::string names;
+    for (const Isa available : available_isas())
+        names.append(names.empty() ? "" : ", ").append(isa_name(available));
+    refuse("MOTLEY_ISA", forced, "one of " + names + " on this machine");
+}
+
+const KernelTable& kernel_table(Isa isa)
+{
+    switch (isa) {
+#ifdef MOTLEY_X86
+        case Isa::sse2:
+            return kernel_table_sse2();
+        case Isa::avx2:
+            return kernel_table_avx2();
+        case Isa::avx512:
+            return kernel_table_avx512();
+#endif
+#ifdef MOTLEY_NEON
+        case Isa::neon:
+            return kernel_table_neon();
+#endif
+        default:
+            return kernel_table_scalar();
+    }
+}
+
+}  // namespace motley

@@ -1,0 +1,231 @@
+// Bodies in and out of lanes, and their integration. Included inside an anonymous namespace, after Lanes.
+// What a kernel does not use of a loaded body is never fetched: the compiler drops loads without a reader.
+
+template <class... Numbers>
+void unused(const Numbers&...)
+{
+}
+
+template <BodyKind kind>
+using Body = LaneBody<Lanes, kind>;
+
+inline Body<BodyKind::particle> load_body(const BodyArrays& arrays, const std::int32_t* rows,
+                                          Body<BodyKind::particle>*)
+{
+    Lanes v[4], d[4];
+    load_quads(arrays.velocity, 4, rows, v);
+    load_quads(arrays.delta, 4, rows, d);
+    return {{v[0], v[1], v[2]}, v[3], {d[0], d[1], d[2]}};
+}
+
+inline Body<BodyKind::planar> load_body(const BodyArrays& arrays, const std::int32_t* rows,
+                                        Body<BodyKind::planar>*)
+{
+    Lanes v[4], d[4];
+    load_quads(arrays.velocity, 4, rows, v);
+    load_quads(arrays.delta, 4, rows, d);
+    return {{v[0], v[1]}, v[2], v[3], {d[0], d[1]}, d[2], d[3]};
+}
+
+inline Sym3<Lanes> load_tensor(const float* tensors, const std::int32_t* rows)
+{
+    Lanes i[4], j[4];
+    load_quads(tensors, 8, rows, i);
+    load_quads(tensors + 4, 8, rows, j);
+    return {i[0], i[1], i[2], i[3], j[0], j[1]};
+}
+
+inline Body<BodyKind::rigid> load_body(const BodyArrays& arrays, const std::int32_t* rows,
+                                       Body<BodyKind::rigid>*)
+{
+    Lanes v[4], w[4], d[4], q[4];
+    load_quads(arrays.velocity, 8, rows, v);
+    load_quads(arrays.velocity + 4, 8, rows, w);
+    load_quads(arrays.delta, 8, rows, d);
+    load_quads(arrays.delta + 4, 8, rows, q);
+    return {{v[0], v[1], v[2]},       v[3],
+            {w[0], w[1], w[2]},       {d[0], d[1], d[2]},
+            {q[0], q[1], q[2], q[3]}, load_tensor(arrays.world_inverse_inertia, rows)};
+}
+
+inline Body<BodyKind::fixed> load_body(const BodyArrays& arrays, const std::int32_t* rows,
+                                       Body<BodyKind::fixed>*)
+{
+    Lanes v[4], w[4], d[4], q[4];
+    load_quads(arrays.velocity, 8, rows, v);
+    load_quads(arrays.velocity + 4, 8, rows, w);
+    load_quads(arrays.delta, 8, rows, d);
+    load_quads(arrays.delta + 4, 8, rows, q);
+    return {{v[0], v[1], v[2]}, {w[0], w[1], w[2]}, {d[0], d[1], d[2]}, {q[0], q[1], q[2], q[3]}};
+}
+
+inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
+                           const Body<BodyKind::particle>& body, int count)
+{
+    store_quads(arrays.velocity, 4, rows, {body.linear.x, body.linear.y, body.linear.z, body.inverse_mass},
+                count);
+}
+inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
+                           const Body<BodyKind::planar>& body, int count)
+{
+    store_quads(arrays.velocity, 4, rows, {body.linear.x, body.linear.y, body.yaw_rate, body.inverse_mass},
+                count);
+}
+inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
+                           const Body<BodyKind::rigid>& body, int count)
+{
+    store_quads(arrays.velocity, 8, rows, {body.linear.x, body.linear.y, body.linear.z, body.inverse_mass},
+                count);
+    store_quads(arrays.velocity + 4, 8, rows, {body.angular.x, body.angular.y, body.angular.z, Lanes(0)},
+                count);
+}
+/// What cannot be moved is read by lanes and never written.
+inline void store_velocity(const BodyArrays&, const std::int32_t*, const Body<BodyKind::fixed>&, int) {}
+
+inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows,
+                        const Body<BodyKind::particle>& body, int count)
+{
+    store_quads(arrays.delta, 4, rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)}, count);
+}
+inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows,
+                        const Body<BodyKind::planar>& body, int count)
+{
+    store_quads(arrays.delta, 4, rows, {body.delta.x, body.delta.y, body.delta_yaw, body.inverse_inertia},
+                count);
+}
+inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows, const Body<BodyKind::rigid>& body,
+                        int count)
+{
+    const Quat<Lanes>& q = body.delta_rotation;
+    store_quads(arrays.delta, 8, rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)}, count);
+    store_quads(arrays.delta + 4, 8, rows, {q.x, q.y, q.z, q.w}, count);
+}
+inline void store_delta(const BodyArrays&, const std::int32_t*, const Body<BodyKind::fixed>&, int) {}
+
+// ---- v += h a
+// -----------------------------------------------------------------------------------------------
+
+/// Solves I (w' - w) + h w' x (I w') = 0 by one Newton step from w: implicit, so it cannot pump energy into a
+/// tumbling body as the explicit gyroscopic term does. (E. Catto, Numerical Methods, GDC 2015)
+inline Vec3<Lanes> gyrate(const Sym3<Lanes>& inertia, const Vec3<Lanes>& w, const Lanes& h)
+{
+    const Vec3<Lanes> l = inertia * w;
+    const Vec3<Lanes> f = h * cross(w, l);
+    // Columns of I + h ([w]x I - [I w]x).
+    const Vec3<Lanes> ix{inertia.xx, inertia.xy, inertia.xz}, iy{inertia.xy, inertia.yy, inertia.yz};
+    const Vec3<Lanes> iz{inertia.xz, inertia.yz, inertia.zz};
+    const Lanes zero(0);
+    const Vec3<Lanes> cx = ix + h * (cross(w, ix) - Vec3<Lanes>{zero, l.z, -l.y});
+    const Vec3<Lanes> cy = iy + h * (cross(w, iy) - Vec3<Lanes>{-l.z, zero, l.x});
+    const Vec3<Lanes> cz = iz + h * (cross(w, iz) - Vec3<Lanes>{l.y, -l.x, zero});
+    // Cramer's rule on columns scaled by the inertia's size, so that small bodies do not underflow.
+    const Lanes scale = inverse_or_zero(inertia.xx + inertia.yy + inertia.zz);
+    const Vec3<Lanes> x = scale * cx, y = scale * cy, z = scale * cz, r = scale * f;
+    const Vec3<Lanes> yz = cross(y, z);
+    const Lanes d = inverse_or_zero(dot(x, yz));
+    return w - Vec3<Lanes>{d * dot(r, yz), d * dot(x, cross(r, z)), d * dot(x, cross(y, r))};
+}
+
+inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* rows,
+                       Body<BodyKind::particle>& body)
+{
+    Lanes a[4];
+    load_quads(arrays.acceleration, 4, rows, a);
+    const Lanes h(context.step.substep);
+    const Vec3<float>& g = context.step.gravity;
+    body.linear = body.linear + h * Vec3<Lanes>{a[0] + Lanes(g.x), a[1] + Lanes(g.y), a[2] + Lanes(g.z)};
+}
+inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* rows,
+                       Body<BodyKind::planar>& body)
+{
+    Lanes a[4];
+    load_quads(arrays.acceleration, 4, rows, a);
+    const Lanes h(context.step.substep);
+    body.linear = body.linear +
+                  h * Vec2<Lanes>{a[0] + Lanes(context.step.gravity.x), a[1] + Lanes(context.step.gravity.y)};
+    body.yaw_rate = body.yaw_rate + h * a[2];
+}
+inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* rows,
+                       Body<BodyKind::rigid>& body)
+{
+    Lanes a[4], t[4];
+    load_quads(arrays.acceleration, 8, rows, a);
+    load_quads(arrays.acceleration + 4, 8, rows, t);
+    const Lanes h(context.step.substep);
+    const Vec3<float>& g = context.step.gravity;
+    body.linear = body.linear + h * Vec3<Lanes>{a[0] + Lanes(g.x), a[1] + Lanes(g.y), a[2] + Lanes(g.z)};
+    const Vec3<Lanes> turned = gyrate(inverse(body.inverse_inertia), body.angular, h);
+    body.angular = turned + h * (body.inverse_inertia * Vec3<Lanes>{t[0], t[1], t[2]});
+}
+
+/// The consecutive rows first ... first + width - 1 as an index; past `end`, the null row.
+struct RowIndex {
+    std::int32_t rows[Lanes_width];
+    int count;
+    RowIndex(std::int32_t first, std::int32_t end)
+    {
+        count = end - first < Lanes_width ? end - first : Lanes_width;
+        for (int lane = 0; lane < Lanes_width; ++lane) rows[lane] = lane < count ? first + lane : 0;
+    }
+};
+
+template <BodyKind kind>
+void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
+{
+    const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
+    for (std::int32_t first = begin; first < end; first += Lanes_width) {
+        const RowIndex index(first, end);
+        Body<kind> body = load_body(arrays, index.rows, static_cast<Body<kind>*>(nullptr));
+        const Body<kind> still = body;
+        accelerate(context, arrays, index.rows, body);
+        // A body without inverse mass is a null, free or contained row: it must not even fall.
+        const auto moves = body.inverse_mass > Lanes(0);
+        body.linear.x = select(moves, body.linear.x, still.linear.x);
+        body.linear.y = select(moves, body.linear.y, still.linear.y);
+        if constexpr (kind != BodyKind::planar) body.linear.z = select(moves, body.linear.z, still.linear.z);
+        store_velocity(arrays, index.rows, body, index.count);
+    }
+}
+
+// ---- x += h v
+// -----------------------------------------------------------------------------------------------
+
+/// The rotation of the vector h w by the exponential map, at most half a turn a substep.
+inline Quat<Lanes> rotation_of(const Vec3<Lanes>& w, const Lanes& h)
+{
+    const Lanes speed = square_root(maximum(dot(w, w), Lanes(1e-30F)));
+    const SineCosine<Lanes> half = sine_cosine(minimum(Lanes(0.5F) * h * speed, Lanes(1.5707963F)));
+    const Lanes scale = half.sine / speed;
+    return {scale * w.x, scale * w.y, scale * w.z, half.cosine};
+}
+
+template <BodyKind kind>
+void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
+{
+    const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
+    const Lanes h(context.step.substep);
+    for (std::int32_t first = begin; first < end; first += Lanes_width) {
+        const RowIndex index(first, end);
+        Body<kind> body = load_body(arrays, index.rows, static_cast<Body<kind>*>(nullptr));
+        body.delta = body.delta + h * body.linear;
+        if constexpr (kind == BodyKind::planar) body.delta_yaw = body.delta_yaw + h * body.yaw_rate;
+        if constexpr (kind == BodyKind::rigid || kind == BodyKind::fixed) {
+            body.delta_rotation = normalised(rotation_of(body.angular, h) * body.delta_rotation);
+        }
+        if constexpr (kind == BodyKind::fixed) {
+            const Quat<Lanes>& q = body.delta_rotation;
+            store_quads(arrays.delta, 8, index.rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)},
+                        index.count);
+            store_quads(arrays.delta + 4, 8, index.rows, {q.x, q.y, q.z, q.w}, index.count);
+        } else {
+            store_delta(arrays, index.rows, body, index.count);
+        }
+        if constexpr (kind == BodyKind::rigid) {
+            const Sym3<Lanes> i =
+                rotate_tensor(body.delta_rotation, load_tensor(arrays.start_inverse_inertia, index.rows));
+            store_quads(arrays.world_inverse_inertia, 8, index.rows, {i.xx, i.xy, i.xz, i.yy}, index.count);
+            store_quads(arrays.world_inverse_inertia + 4, 8, index.rows, {i.yz, i.zz, Lanes(0), Lanes(0)},
+                        index.count);
+        }
+    }
+}

@@ -1,0 +1,271 @@
+// The kernels of a constraint type and pair of body kinds, over blocks: gather, maths, scatter, written once
+// for every type, every pair and every instruction set. Included inside an anonymous namespace, after
+// kernel_bodies.h.
+
+template <class Row>
+inline constexpr int fields_of = std::is_empty_v<Row> ? 0 : static_cast<int>(sizeof(Row) / sizeof(Lanes));
+
+/// A row is nothing but Reals, so it is its fields in line: field i of lanes l ... is at stream[16 i + l].
+template <class Row, int... field>
+void load_fields(Row& row, const float* stream, std::integer_sequence<int, field...>)
+{
+    Lanes* fields = reinterpret_cast<Lanes*>(&row);
+    ((fields[field] = load_lanes(stream + block_lanes * field)), ...);
+    unused(fields, stream);
+}
+template <class Row, int... field>
+void store_fields(const Row& row, float* stream, std::integer_sequence<int, field...>)
+{
+    const Lanes* fields = reinterpret_cast<const Lanes*>(&row);
+    (store_lanes(fields[field], stream + block_lanes * field), ...);
+    unused(fields, stream);
+}
+template <class Row>
+Row load_row(const float* stream)
+{
+    Row row;
+    load_fields(row, stream, std::make_integer_sequence<int, fields_of<Row>>{});
+    return row;
+}
+template <class Row>
+void store_row(const Row& row, float* stream)
+{
+    store_fields(row, stream, std::make_integer_sequence<int, fields_of<Row>>{});
+}
+
+/// Entries of a table of structs, an entry a lane, turned into a struct of lanes.
+template <class Struct>
+Struct gather_struct(const float* table, std::int64_t stride, const std::int32_t* index)
+{
+    constexpr int quads = (fields_of<Struct> + 3) / 4;
+    Lanes padded[quads][4];
+    for (int q = 0; q < quads; ++q) load_quads(table + 4 * q, stride, index, padded[q]);
+    Struct result;
+    Lanes* fields = reinterpret_cast<Lanes*>(&result);
+    for (int i = 0; i < fields_of<Struct>; ++i) fields[i] = padded[i / 4][i % 4];
+    return result;
+}
+template <class Struct>
+void scatter_struct(const Struct& value, float* table, std::int64_t stride, const std::int32_t* index,
+                    int count)
+{
+    constexpr int quads = (fields_of<Struct> + 3) / 4;
+    Lanes padded[quads][4];
+    const Lanes* fields = reinterpret_cast<const Lanes*>(&value);
+    for (int i = 0; i < 4 * quads; ++i) padded[i / 4][i % 4] = i < fields_of<Struct> ? fields[i] : Lanes(0);
+    for (int q = 0; q < quads; ++q) store_quads(table + 4 * q, stride, index, padded[q], count);
+}
+
+// ---- where bodies are when a step begins: doubles, subtracted and narrowed a lane at a time
+// ------------------
+
+inline Vec3<Lanes> between_bodies(const BodyArrays& a, const std::int32_t* rows_a, const BodyArrays& b,
+                                  const std::int32_t* rows_b)
+{
+    alignas(64) float x[Lanes_width], y[Lanes_width], z[Lanes_width];
+    for (int lane = 0; lane < Lanes_width; ++lane) {
+        const Vec3<double>& from = a.pose[rows_a[lane]].position;
+        const Vec3<double>& to = b.pose[rows_b[lane]].position;
+        x[lane] = static_cast<float>(to.x - from.x);
+        y[lane] = static_cast<float>(to.y - from.y);
+        z[lane] = static_cast<float>(to.z - from.z);
+    }
+    return {load_lanes(x), load_lanes(y), load_lanes(z)};
+}
+
+template <BodyKind kind>
+Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays, const std::int32_t* rows)
+{
+    if constexpr (kind == BodyKind::particle) {
+        return {};
+    } else if constexpr (kind == BodyKind::planar) {
+        alignas(64) float yaw[Lanes_width];
+        for (int lane = 0; lane < Lanes_width; ++lane) {
+            const double angle = arrays.pose[rows[lane]].yaw;
+            const double turns = angle * 0.15915494309189535;
+            const auto whole =
+                static_cast<double>(static_cast<long long>(turns < 0 ? turns - 0.5 : turns + 0.5));
+            yaw[lane] = static_cast<float>(angle - whole * 6.283185307179586);
+        }
+        return {load_lanes(yaw)};
+    } else {
+        alignas(64) float x[Lanes_width], y[Lanes_width], z[Lanes_width], w[Lanes_width];
+        for (int lane = 0; lane < Lanes_width; ++lane) {
+            const Quat<double>& q = arrays.orientation[rows[lane]];
+            x[lane] = static_cast<float>(q.x);
+            y[lane] = static_cast<float>(q.y);
+            z[lane] = static_cast<float>(q.z);
+            w[lane] = static_cast<float>(q.w);
+        }
+        return {{load_lanes(x), load_lanes(y), load_lanes(z), load_lanes(w)}};
+    }
+}
+
+// ---- the kernels
+// ---------------------------------------------------------------------------------------------
+
+template <class Type, BodyKind kind_a, BodyKind kind_b>
+struct Kernels {
+    using A = Body<kind_a>;
+    using B = Body<kind_b>;
+    using Row = typename Type::template Row<Lanes, kind_a, kind_b>;
+    using Substep = typename Type::template SubstepRow<Lanes, kind_a, kind_b>;
+    using Impulse = typename Type::template Impulse<Lanes, kind_a, kind_b>;
+    using Parameters = typename Type::template Parameters<Lanes>;
+    using Memory = typename Type::template Memory<Lanes>;
+    static constexpr int row_stride = fields_of<Row> * block_lanes;
+    static constexpr int substep_stride = fields_of<Substep> * block_lanes;
+    static constexpr int impulse_stride = fields_of<Impulse> * block_lanes;
+
+    /// One bundle of a block: its bodies, and where its lanes lie in the streams.
+    struct Bundle {
+        const BodyArrays& arrays_a;
+        const BodyArrays& arrays_b;
+        const std::int32_t* rows_a;
+        const std::int32_t* rows_b;
+        const std::int32_t* constraint;
+        float* row;
+        float* substep;
+        float* impulse;
+        int count;  ///< lanes of this bundle that are not padding
+        [[nodiscard]] A load_a() const { return load_body(arrays_a, rows_a, static_cast<A*>(nullptr)); }
+        [[nodiscard]] B load_b() const { return load_body(arrays_b, rows_b, static_cast<B*>(nullptr)); }
+    };
+
+    template <class Work>
+    static void for_each_bundle(const KernelContext& context, const BlockStreams& streams, std::int64_t block,
+                                const Work& work)
+    {
+        const BlockIndex& index = streams.index[block];
+        for (int lane = 0; lane < index.count; lane += Lanes_width) {
+            work(Bundle{context.bodies[static_cast<int>(kind_a)], context.bodies[static_cast<int>(kind_b)],
+                        index.a + lane, index.b + lane, index.constraint + lane,
+                        streams.rows + block * row_stride + lane,
+                        streams.substep_rows + block * substep_stride + lane,
+                        streams.impulses + block * impulse_stride + lane, index.count - lane});
+        }
+    }
+
+    static void prepare(const KernelContext& context, const BlockStreams& streams, const ConstraintData& data,
+                        std::int32_t begin, std::int32_t end)
+    {
+        for (std::int32_t block = begin; block < end; ++block) {
+            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+                const auto parameters =
+                    gather_struct<Parameters>(data.parameters, data.parameter_stride, bundle.constraint);
+                std::int32_t entry[Lanes_width];
+                for (int lane = 0; lane < Lanes_width; ++lane) {
+                    const std::int32_t c = bundle.constraint[lane];
+                    entry[lane] = data.memory_index ? data.memory_index[c] : c;
+                }
+                const auto memory = gather_struct<Memory>(data.memory_in, data.memory_stride, entry);
+                const A a = bundle.load_a();
+                const B b = bundle.load_b();
+                Impulse impulse;
+                if constexpr (requires { typename Type::Definition; }) {
+                    const JointPose<Lanes, kind_a, kind_b> pose{
+                        between_bodies(bundle.arrays_a, bundle.rows_a, bundle.arrays_b, bundle.rows_b),
+                        load_orientation<kind_a>(bundle.arrays_a, bundle.rows_a),
+                        load_orientation<kind_b>(bundle.arrays_b, bundle.rows_b)};
+                    store_row(Type::prepare(context.step, parameters, memory, pose, a, b, impulse),
+                              bundle.row);
+                } else {
+                    store_row(Type::prepare(context.step, parameters, memory, a, b, impulse), bundle.row);
+                }
+                store_row(impulse, bundle.impulse);
+            });
+        }
+    }
+
+    static void warm_start(const KernelContext& context, const BlockStreams& streams,
+                           const std::int32_t* order, std::int32_t begin, std::int32_t end)
+    {
+        for (std::int32_t i = begin; i < end; ++i) {
+            for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
+                A a = bundle.load_a();
+                B b = bundle.load_b();
+                Substep substep;
+                Type::template warm_start<Lanes>(context.step, load_row<Row>(bundle.row), substep,
+                                                 load_row<Impulse>(bundle.impulse), a, b);
+                if constexpr (Type::recomputes_each_substep) store_row(substep, bundle.substep);
+                store_velocity(bundle.arrays_a, bundle.rows_a, a, bundle.count);
+                store_velocity(bundle.arrays_b, bundle.rows_b, b, bundle.count);
+            });
+        }
+    }
+
+    template <bool relax>
+    static void sweep(const KernelContext& context, const BlockStreams& streams, const std::int32_t* order,
+                      std::int32_t begin, std::int32_t end)
+    {
+        for (std::int32_t i = begin; i < end; ++i) {
+            for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
+                A a = bundle.load_a();
+                B b = bundle.load_b();
+                auto impulse = load_row<Impulse>(bundle.impulse);
+                Type::template solve<relax, Lanes>(context.step, load_row<Row>(bundle.row),
+                                                   load_row<Substep>(bundle.substep), impulse, a, b);
+                store_row(impulse, bundle.impulse);
+                store_velocity(bundle.arrays_a, bundle.rows_a, a, bundle.count);
+                store_velocity(bundle.arrays_b, bundle.rows_b, b, bundle.count);
+            });
+        }
+    }
+
+    static void restitute(const KernelContext& context, const BlockStreams& streams,
+                          const std::int32_t* order, std::int32_t begin, std::int32_t end)
+    {
+        for (std::int32_t i = begin; i < end; ++i) {
+            for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
+                A a = bundle.load_a();
+                B b = bundle.load_b();
+                auto impulse = load_row<Impulse>(bundle.impulse);
+                Type::template restitute<Lanes>(context.step, load_row<Row>(bundle.row), impulse, a, b);
+                store_row(impulse, bundle.impulse);
+                store_velocity(bundle.arrays_a, bundle.rows_a, a, bundle.count);
+                store_velocity(bundle.arrays_b, bundle.rows_b, b, bundle.count);
+            });
+        }
+    }
+
+    static void project(const KernelContext& context, const BlockStreams& streams, const std::int32_t* order,
+                        std::int32_t begin, std::int32_t end)
+    {
+        for (std::int32_t i = begin; i < end; ++i) {
+            for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
+                A a = bundle.load_a();
+                B b = bundle.load_b();
+                Type::template project<Lanes>(context.step, load_row<Row>(bundle.row),
+                                              load_row<Substep>(bundle.substep), a, b);
+                store_delta(bundle.arrays_a, bundle.rows_a, a, bundle.count);
+                store_delta(bundle.arrays_b, bundle.rows_b, b, bundle.count);
+            });
+        }
+    }
+
+    static void store(const KernelContext& context, const BlockStreams& streams, const ConstraintData& data,
+                      std::int32_t begin, std::int32_t end)
+    {
+        for (std::int32_t block = begin; block < end; ++block) {
+            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+                const Memory memory = Type::template remember<Lanes>(load_row<Row>(bundle.row),
+                                                                     load_row<Impulse>(bundle.impulse));
+                scatter_struct(memory, data.memory_out, data.memory_stride, bundle.constraint, bundle.count);
+            });
+        }
+    }
+
+    static void enter(ConstraintKernels& kernels)
+    {
+        kernels.prepare = prepare;
+        kernels.warm_start = warm_start;
+        kernels.solve = sweep<false>;
+        kernels.relax = sweep<true>;
+        if constexpr (Type::has_restitution) kernels.restitute = restitute;
+        kernels.project = project;
+        kernels.store = store;
+        kernels.row_floats = fields_of<Row>;
+        kernels.substep_floats = fields_of<Substep>;
+        kernels.impulse_floats = fields_of<Impulse>;
+    }
+};

@@ -1,0 +1,60 @@
+// Everything that is compiled once an instruction set. The including file sets the namespace and Lanes up;
+// see kernels_avx2.cpp. No include guard: included once by each.
+
+inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float));
+
+#include "kernel_bodies.h"
+#include "kernel_constraints.h"
+
+template <class Type, BodyKind a, BodyKind b>
+void enter_pair(KernelTable& table, int type)
+{
+    // Two bodies that cannot move need no constraint, and the scene refuses it.
+    if constexpr (a != BodyKind::fixed || b != BodyKind::fixed) {
+        Kernels<Type, a, b>::enter(table.constraints[class_of(type, a, b)]);
+    }
+}
+
+template <class Type, BodyKind a>
+void enter_partners(KernelTable& table, int type)
+{
+    enter_pair<Type, a, BodyKind::particle>(table, type);
+    enter_pair<Type, a, BodyKind::planar>(table, type);
+    enter_pair<Type, a, BodyKind::rigid>(table, type);
+    enter_pair<Type, a, BodyKind::fixed>(table, type);
+}
+
+template <class Type>
+void enter_type(KernelTable& table, int type)
+{
+    enter_partners<Type, BodyKind::particle>(table, type);
+    enter_partners<Type, BodyKind::planar>(table, type);
+    enter_partners<Type, BodyKind::rigid>(table, type);
+    enter_partners<Type, BodyKind::fixed>(table, type);
+}
+
+template <class... Types>
+void enter_types(KernelTable& table, int first, TypeList<Types...>)
+{
+    (enter_type<Types>(table, first++), ...);
+}
+
+template <BodyKind kind>
+void enter_body(KernelTable& table)
+{
+    BodyKernels& kernels = table.bodies[static_cast<int>(kind)];
+    if constexpr (kind != BodyKind::fixed) kernels.integrate_velocities = integrate_velocities<kind>;
+    kernels.integrate_positions = integrate_positions<kind>;
+}
+
+inline KernelTable make_table()
+{
+    KernelTable table;
+    enter_types(table, 0, ContactTypes{});
+    enter_types(table, contact_type_count, JointTypes{});
+    enter_body<BodyKind::particle>(table);
+    enter_body<BodyKind::planar>(table);
+    enter_body<BodyKind::rigid>(table);
+    enter_body<BodyKind::fixed>(table);
+    return table;
+}

@@ -1,0 +1,23 @@
+// AVX-512: sixteen lanes, a whole block at once.
+#include "kernel_prelude.h"
+
+#include <xsimd/xsimd.hpp>
+
+namespace motley {
+namespace {
+
+using Arch = xsimd::avx512f;
+#include "lanes.h"
+#include "quads_avx512.h"
+
+#include "kernels.h"
+
+}  // namespace
+
+const KernelTable& kernel_table_avx512()
+{
+    static const KernelTable table = make_table();
+    return table;
+}
+
+}  // namespace motley

@@ -1,0 +1,30 @@
+// Quads in and out of four lanes with NEON; see quads_sse.h.
+
+inline void turn(float32x4_t& r0, float32x4_t& r1, float32x4_t& r2, float32x4_t& r3)
+{
+    const float32x4x2_t even = vtrnq_f32(r0, r1), odd = vtrnq_f32(r2, r3);
+    r0 = vcombine_f32(vget_low_f32(even.val[0]), vget_low_f32(odd.val[0]));
+    r1 = vcombine_f32(vget_low_f32(even.val[1]), vget_low_f32(odd.val[1]));
+    r2 = vcombine_f32(vget_high_f32(even.val[0]), vget_high_f32(odd.val[0]));
+    r3 = vcombine_f32(vget_high_f32(even.val[1]), vget_high_f32(odd.val[1]));
+}
+
+inline void load_quads(const float* rows, std::int64_t stride, const std::int32_t* index, Lanes (&out)[4])
+{
+    float32x4_t r0 = vld1q_f32(rows + stride * index[0]), r1 = vld1q_f32(rows + stride * index[1]);
+    float32x4_t r2 = vld1q_f32(rows + stride * index[2]), r3 = vld1q_f32(rows + stride * index[3]);
+    turn(r0, r1, r2, r3);
+    out[0].v = r0;
+    out[1].v = r1;
+    out[2].v = r2;
+    out[3].v = r3;
+}
+
+inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index, const Lanes (&in)[4],
+                        int count)
+{
+    float32x4_t r[4] = {in[0].v, in[1].v, in[2].v, in[3].v};
+    turn(r[0], r[1], r[2], r[3]);
+    for (int lane = 0; lane < (count < 4 ? count : 4); ++lane)
+        vst1q_f32(rows + stride * index[lane], r[lane]);
+}
