@@ -38,9 +38,8 @@ bool all_finite(const float* values, int count)
 
 BodyStore::BodyStore()
 {
-    generations_.push_back(0);
+    slots_.emplace_back();
     live_.push_back(0);
-    rows_of_slot_.emplace_back();
     models_.push_back(BodyModel::rigid);
     motions_.push_back(BodyMotion::static_body);
     joint_counts.push_back(0);
@@ -61,6 +60,7 @@ std::uint32_t BodyStore::take_row(BodyKind kind)
         r.slot.push_back(0);
         r.velocity.resize(floats);
         r.delta.resize(floats);
+        r.unpushed.resize(floats);
         r.acceleration.resize(floats);
         r.pose.resize(row + 1);
         if (kind == BodyKind::rigid || kind == BodyKind::fixed) r.orientation.resize(row + 1, {0, 0, 0, 1});
@@ -90,9 +90,8 @@ BodyId BodyStore::add(const BodyDefinition& d)
     std::uint32_t slot;
     if (free_slots_.empty()) {
         slot = slot_count();
-        generations_.push_back(1);
+        slots_.push_back({1, BodyRow(kind, row)});
         live_.push_back(1);
-        rows_of_slot_.emplace_back(kind, row);
         models_.push_back(d.model);
         motions_.push_back(d.motion);
         joint_counts.push_back(0);
@@ -102,9 +101,8 @@ BodyId BodyStore::add(const BodyDefinition& d)
     } else {
         slot = free_slots_.back();
         free_slots_.pop_back();
-        if (++generations_[slot] == 0) generations_[slot] = 1;  // zero is the null handle's
         live_[slot] = 1;
-        rows_of_slot_[slot] = BodyRow(kind, row);
+        slots_[slot].row = BodyRow(kind, row);
         models_[slot] = d.model;
         motions_[slot] = d.motion;
         joint_counts[slot] = 0;
@@ -146,7 +144,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
             break;
         }
     }
-    return {slot, generations_[slot]};
+    return {slot, slots_[slot].generation};
 }
 
 void BodyStore::remove(BodyId body)
@@ -167,6 +165,7 @@ void BodyStore::remove(BodyId body)
     r.slot[where.row()] = 0;
     r.free_rows.push_back(where.row());
     live_[body.slot] = 0;
+    if (++slots_[body.slot].generation == 0) slots_[body.slot].generation = 1;  // zero is the null handle's
     free_slots_.push_back(body.slot);
 }
 

@@ -70,7 +70,7 @@ struct Solver::Impl {
     // The stages. Each runs over chunks that do not depend on the number of threads.
     std::string take_in(Scene& scene, std::span<const Contact> contacts);
     void prepare();
-    void integrate_velocities();
+    void integrate_velocities(BodyKernels::Move BodyKernels::*kernel);
     void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel);
     void integrate_positions();
     void store_impulses();
@@ -145,9 +145,10 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     prepare();
     clock.charge(Stage::prepare);
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        integrate_velocities();
+        const bool replays = substep > 0 && layout.has_constant_jacobians();
+        integrate_velocities(replays ? &BodyKernels::integrate_and_replay : &BodyKernels::integrate_velocities);
         clock.charge(Stage::integrate_velocities);
-        sweep(&ConstraintKernels::warm_start);
+        if (!replays) sweep(&ConstraintKernels::warm_start);
         clock.charge(Stage::warm_start);
         for (int i = 0; i < settings.iterations; ++i) sweep(&ConstraintKernels::solve);
         clock.charge(Stage::solve);
@@ -216,10 +217,10 @@ void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel)
     }
 }
 
-void Solver::Impl::integrate_velocities()
+void Solver::Impl::integrate_velocities(BodyKernels::Move BodyKernels::*kernel)
 {
     for (int kind = 0; kind < body_kind_count; ++kind) {
-        const auto integrate = layout.kernels().bodies[kind].integrate_velocities;
+        const BodyKernels::Move integrate = layout.kernels().bodies[kind].*kernel;
         const std::int64_t rows = layout.context.bodies[kind].size;
         if (integrate == nullptr || rows == 1) continue;  // the null row alone
         runner.run(chunks_of(rows, rows_per_chunk), [&](std::int64_t chunk) {

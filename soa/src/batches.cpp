@@ -11,6 +11,8 @@ constexpr std::int32_t blocks_per_chunk = 32;
 /// Overflow blocks that stay open to newcomers: enough to fill lanes from a few hubs, few enough to search.
 constexpr std::size_t open_overflow_blocks = 8;
 
+constexpr std::int32_t none = -1;
+
 template <class T>
 void grow(AlignedVector<T>& stream, std::size_t size)
 {
@@ -34,17 +36,21 @@ bool holds(const BlockIndex& block, BodyRow a, BodyRow b)
 
 }  // namespace
 
+BlockPool::BlockPool() { open_.fill(none); }
+
 void BlockPool::clear()
 {
     block_count_ = 0;
     constraint_count_ = 0;
     for (auto& order : orders_) order.clear();
+    open_.fill(none);
 }
 
 BlockIndex& BlockPool::open_block(std::uint8_t colour, std::int32_t constraint)
 {
     if (static_cast<std::size_t>(block_count_) == index_.size()) grow(index_, index_.size() + 16);
     orders_[colour].push_back(block_count_);
+    if (colour != overflow_colour) open_[colour] = block_count_;
     BlockIndex& block = index_[static_cast<std::size_t>(block_count_++)];
     std::fill_n(block.a, block_lanes, 0);
     std::fill_n(block.b, block_lanes, 0);
@@ -67,15 +73,13 @@ BlockIndex& BlockPool::open_overflow_block(BodyRow a, BodyRow b, std::int32_t co
 
 void BlockPool::place(BodyRow a, BodyRow b, std::int32_t constraint, std::uint8_t colour)
 {
-    const auto& order = orders_[colour];
-    const bool fits = !order.empty() && index_[static_cast<std::size_t>(order.back())].count < block_lanes;
     BlockIndex& block = colour == overflow_colour ? open_overflow_block(a, b, constraint)
-                        : fits                    ? index_[static_cast<std::size_t>(order.back())]
+                        : open_[colour] != none   ? index_[static_cast<std::size_t>(open_[colour])]
                                                   : open_block(colour, constraint);
     block.a[block.count] = static_cast<std::int32_t>(a.row());
     block.b[block.count] = static_cast<std::int32_t>(b.row());
     block.constraint[block.count] = constraint;
-    ++block.count;
+    if (++block.count == block_lanes && colour != overflow_colour) open_[colour] = none;
     ++constraint_count_;
 }
 
@@ -116,6 +120,11 @@ void BatchSet::cut(const KernelTable& table,
                 {&kernels, streams, type, begin, std::min(begin + blocks_per_chunk, pool.block_count())});
         }
     }
+}
+
+bool BatchSet::is_empty() const
+{
+    return std::all_of(pools_.begin(), pools_.end(), [](const BlockPool& pool) { return pool.block_count() == 0; });
 }
 
 BatchSet::Count BatchSet::count(const KernelTable& table) const

@@ -31,6 +31,7 @@ struct TransferChunk {
 /// The blocks of one class: a pool in order of opening, and for each colour the list of its blocks.
 class BlockPool {
   public:
+    BlockPool();
     void clear();
     /// Puts a constraint into the open block of its colour. Constraints keep the order in which they come,
     /// and so the locality that the host's order has.
@@ -56,6 +57,7 @@ class BlockPool {
     AlignedVector<BlockIndex> index_;
     AlignedVector<float> rows_, substep_rows_, impulses_;
     std::array<std::vector<std::int32_t>, parallel_colours + 1> orders_;
+    std::array<std::int32_t, parallel_colours> open_{};  ///< the block of each colour that still has lanes, or none
     std::int32_t block_count_ = 0;
     std::int64_t constraint_count_ = 0;
 };
@@ -78,6 +80,7 @@ class BatchSet {
         double streamed_bytes = 0;  ///< by one sweep of solve
     };
     [[nodiscard]] Count count(const KernelTable& kernels) const;
+    [[nodiscard]] bool is_empty() const;
 
   private:
     std::array<BlockPool, class_count> pools_;

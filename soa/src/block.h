@@ -49,6 +49,7 @@ struct ConstraintData {
 struct BodyArrays {
     float* velocity = nullptr;
     float* delta = nullptr;
+    float* unpushed = nullptr;
     const float* acceleration = nullptr;
     float* world_inverse_inertia = nullptr;
     const float* start_inverse_inertia = nullptr;
@@ -82,6 +83,9 @@ struct ConstraintKernels {
 struct BodyKernels {
     using Move = void (*)(const KernelContext&, std::int32_t begin, std::int32_t end);
     Move integrate_velocities = nullptr;
+    /// The same, and replays what the constraints of the last substep did to each body: a warm start without a
+    /// sweep, exact where J is constant through the step (contacts), since then M^-1 J^T lambda is that very change.
+    Move integrate_and_replay = nullptr;
     Move integrate_positions = nullptr;
 };
 

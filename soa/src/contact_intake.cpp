@@ -77,11 +77,9 @@ void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::s
     ContactList& staged = scene.contact_cache().staged();
     // Keys are looked up this far ahead, so that the table's cache lines are on their way.
     constexpr std::size_t ahead = 16;
+    std::uint32_t hint = static_cast<std::uint32_t>(first);
     for (std::size_t i = first; i < last; ++i) {
-        if (i + ahead < last) {
-            if (past.size() > 0) past.prefetch(contacts[i + ahead].key);
-            staged.prefetch(contacts[i + ahead].key);
-        }
+        if (i + ahead < last) staged.prefetch(contacts[i + ahead].key);
         const Contact& contact = contacts[i];
         if (!bodies.is_alive(contact.body_a) || !bodies.is_alive(contact.body_b) ||
             !numbers_are_good(contact)) {
@@ -98,14 +96,15 @@ void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::s
         }
         // The list of contact types: smooth first, then with friction and restitution.
         types[i] = contact.friction == 0 && contact.restitution == 0 ? 0 : 1;
-        staged.slot_a[i] = fingerprint(contact.body_a);
-        staged.slot_b[i] = fingerprint(contact.body_b);
-        if (!staged.insert(contact.key, static_cast<std::uint32_t>(i))) mark_bad(i);
+        staged.entries[i] = {contact.key, fingerprint(contact.body_a), fingerprint(contact.body_b)};
+        if (!staged.insert(static_cast<std::uint32_t>(i))) mark_bad(i);
         kept_colours[i] = no_colour;
         memory_index[i] = 0;
-        const std::uint32_t before = past.find(contact.key);
-        if (before != ContactList::none && past.slot_a[before] == staged.slot_a[i] &&
-            past.slot_b[before] == staged.slot_b[i]) {
+        const std::uint32_t before = past.find(contact.key, hint);
+        if (before == ContactList::none) continue;
+        hint = before + 1;
+        const ContactList::Entry& entry = past.entries[before];
+        if (entry.body_a == staged.entries[i].body_a && entry.body_b == staged.entries[i].body_b) {
             kept_colours[i] = past.colours[before];
             memory_index[i] = static_cast<std::int32_t>(before) + 1;
         }

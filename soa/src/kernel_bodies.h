@@ -1,4 +1,5 @@
 // Bodies in and out of lanes, and their integration. Included inside an anonymous namespace, after Lanes.
+// Kernels are flattened: a call that stays a call would pass sixteen-lane vectors through memory.
 // What a kernel does not use of a loaded body is never fetched: the compiler drops loads without a reader.
 
 template <class... Numbers>
@@ -9,8 +10,9 @@ void unused(const Numbers&...)
 template <BodyKind kind>
 using Body = LaneBody<Lanes, kind>;
 
-inline Body<BodyKind::particle> load_body(const BodyArrays& arrays, const std::int32_t* rows,
-                                          Body<BodyKind::particle>*)
+[[gnu::always_inline]] inline Body<BodyKind::particle> load_body(const BodyArrays& arrays,
+                                                                 const std::int32_t* rows,
+                                                                 Body<BodyKind::particle>*)
 {
     Lanes v[4], d[4];
     load_quads(arrays.velocity, 4, rows, v);
@@ -18,8 +20,9 @@ inline Body<BodyKind::particle> load_body(const BodyArrays& arrays, const std::i
     return {{v[0], v[1], v[2]}, v[3], {d[0], d[1], d[2]}};
 }
 
-inline Body<BodyKind::planar> load_body(const BodyArrays& arrays, const std::int32_t* rows,
-                                        Body<BodyKind::planar>*)
+[[gnu::always_inline]] inline Body<BodyKind::planar> load_body(const BodyArrays& arrays,
+                                                               const std::int32_t* rows,
+                                                               Body<BodyKind::planar>*)
 {
     Lanes v[4], d[4];
     load_quads(arrays.velocity, 4, rows, v);
@@ -27,7 +30,7 @@ inline Body<BodyKind::planar> load_body(const BodyArrays& arrays, const std::int
     return {{v[0], v[1]}, v[2], v[3], {d[0], d[1]}, d[2], d[3]};
 }
 
-inline Sym3<Lanes> load_tensor(const float* tensors, const std::int32_t* rows)
+[[gnu::always_inline]] inline Sym3<Lanes> load_tensor(const float* tensors, const std::int32_t* rows)
 {
     Lanes i[4], j[4];
     load_quads(tensors, 8, rows, i);
@@ -35,8 +38,9 @@ inline Sym3<Lanes> load_tensor(const float* tensors, const std::int32_t* rows)
     return {i[0], i[1], i[2], i[3], j[0], j[1]};
 }
 
-inline Body<BodyKind::rigid> load_body(const BodyArrays& arrays, const std::int32_t* rows,
-                                       Body<BodyKind::rigid>*)
+[[gnu::always_inline]] inline Body<BodyKind::rigid> load_body(const BodyArrays& arrays,
+                                                              const std::int32_t* rows,
+                                                              Body<BodyKind::rigid>*)
 {
     Lanes v[4], w[4], d[4], q[4];
     load_quads(arrays.velocity, 8, rows, v);
@@ -48,8 +52,9 @@ inline Body<BodyKind::rigid> load_body(const BodyArrays& arrays, const std::int3
             {q[0], q[1], q[2], q[3]}, load_tensor(arrays.world_inverse_inertia, rows)};
 }
 
-inline Body<BodyKind::fixed> load_body(const BodyArrays& arrays, const std::int32_t* rows,
-                                       Body<BodyKind::fixed>*)
+[[gnu::always_inline]] inline Body<BodyKind::fixed> load_body(const BodyArrays& arrays,
+                                                              const std::int32_t* rows,
+                                                              Body<BodyKind::fixed>*)
 {
     Lanes v[4], w[4], d[4], q[4];
     load_quads(arrays.velocity, 8, rows, v);
@@ -59,20 +64,20 @@ inline Body<BodyKind::fixed> load_body(const BodyArrays& arrays, const std::int3
     return {{v[0], v[1], v[2]}, {w[0], w[1], w[2]}, {d[0], d[1], d[2]}, {q[0], q[1], q[2], q[3]}};
 }
 
-inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
-                           const Body<BodyKind::particle>& body, int count)
+[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
+                                                  const Body<BodyKind::particle>& body, int count)
 {
     store_quads(arrays.velocity, 4, rows, {body.linear.x, body.linear.y, body.linear.z, body.inverse_mass},
                 count);
 }
-inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
-                           const Body<BodyKind::planar>& body, int count)
+[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
+                                                  const Body<BodyKind::planar>& body, int count)
 {
     store_quads(arrays.velocity, 4, rows, {body.linear.x, body.linear.y, body.yaw_rate, body.inverse_mass},
                 count);
 }
-inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
-                           const Body<BodyKind::rigid>& body, int count)
+[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
+                                                  const Body<BodyKind::rigid>& body, int count)
 {
     store_quads(arrays.velocity, 8, rows, {body.linear.x, body.linear.y, body.linear.z, body.inverse_mass},
                 count);
@@ -80,27 +85,45 @@ inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
                 count);
 }
 /// What cannot be moved is read by lanes and never written.
-inline void store_velocity(const BodyArrays&, const std::int32_t*, const Body<BodyKind::fixed>&, int) {}
+[[gnu::always_inline]] inline void store_velocity(const BodyArrays&, const std::int32_t*,
+                                                  const Body<BodyKind::fixed>&, int)
+{
+}
 
-inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows,
-                        const Body<BodyKind::particle>& body, int count)
+[[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows,
+                                               const Body<BodyKind::particle>& body, int count)
 {
     store_quads(arrays.delta, 4, rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)}, count);
 }
-inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows,
-                        const Body<BodyKind::planar>& body, int count)
+[[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows,
+                                               const Body<BodyKind::planar>& body, int count)
 {
     store_quads(arrays.delta, 4, rows, {body.delta.x, body.delta.y, body.delta_yaw, body.inverse_inertia},
                 count);
 }
-inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows, const Body<BodyKind::rigid>& body,
-                        int count)
+[[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows,
+                                               const Body<BodyKind::rigid>& body, int count)
 {
     const Quat<Lanes>& q = body.delta_rotation;
     store_quads(arrays.delta, 8, rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)}, count);
     store_quads(arrays.delta + 4, 8, rows, {q.x, q.y, q.z, q.w}, count);
 }
-inline void store_delta(const BodyArrays&, const std::int32_t*, const Body<BodyKind::fixed>&, int) {}
+[[gnu::always_inline]] inline void store_delta(const BodyArrays&, const std::int32_t*,
+                                               const Body<BodyKind::fixed>&, int)
+{
+}
+
+/// Asks for the rows of a whole block. Fixed bodies are few and stay in cache.
+template <BodyKind kind>
+void prefetch_bodies(const BodyArrays& arrays, const std::int32_t* rows)
+{
+    if constexpr (kind != BodyKind::fixed) {
+        for (int lane = 0; lane < block_lanes; ++lane) {
+            __builtin_prefetch(arrays.velocity + std::int64_t{4} * quads_of(kind) * rows[lane]);
+            __builtin_prefetch(arrays.delta + std::int64_t{4} * quads_of(kind) * rows[lane]);
+        }
+    }
+}
 
 // ---- v += h a
 // -----------------------------------------------------------------------------------------------
@@ -169,21 +192,44 @@ struct RowIndex {
     }
 };
 
-template <BodyKind kind>
-void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
+/// Calls change(component, of `from`) for each component of velocity.
+template <class Body, class Change>
+void for_each_component(Body& body, const Body& other, const Change& change)
+{
+    change(body.linear.x, other.linear.x);
+    change(body.linear.y, other.linear.y);
+    if constexpr (Body::kind != BodyKind::planar) change(body.linear.z, other.linear.z);
+    if constexpr (Body::kind == BodyKind::planar) change(body.yaw_rate, other.yaw_rate);
+    if constexpr (Body::kind == BodyKind::rigid) {
+        change(body.angular.x, other.angular.x);
+        change(body.angular.y, other.angular.y);
+        change(body.angular.z, other.angular.z);
+    }
+}
+
+template <BodyKind kind, bool replay>
+[[gnu::flatten]] void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
+    BodyArrays unpushed = arrays;
+    unpushed.velocity = arrays.unpushed;
     for (std::int32_t first = begin; first < end; first += Lanes_width) {
         const RowIndex index(first, end);
         Body<kind> body = load_body(arrays, index.rows, static_cast<Body<kind>*>(nullptr));
-        const Body<kind> still = body;
+        const Body<kind> before = body;
         accelerate(context, arrays, index.rows, body);
         // A body without inverse mass is a null, free or contained row: it must not even fall.
         const auto moves = body.inverse_mass > Lanes(0);
-        body.linear.x = select(moves, body.linear.x, still.linear.x);
-        body.linear.y = select(moves, body.linear.y, still.linear.y);
-        if constexpr (kind != BodyKind::planar) body.linear.z = select(moves, body.linear.z, still.linear.z);
+        for_each_component(body, before, [&](Lanes& now, const Lanes& then) { now = select(moves, now, then); });
+        const Body<kind> pushed_off = body;
+        if constexpr (replay) {
+            Body<kind> change = before;
+            for_each_component(change, load_body(unpushed, index.rows, static_cast<Body<kind>*>(nullptr)),
+                               [](Lanes& now, const Lanes& then) { now = now - then; });
+            for_each_component(body, change, [](Lanes& now, const Lanes& pushed) { now = now + pushed; });
+        }
         store_velocity(arrays, index.rows, body, index.count);
+        store_velocity(unpushed, index.rows, pushed_off, index.count);
     }
 }
 
@@ -200,7 +246,7 @@ inline Quat<Lanes> rotation_of(const Vec3<Lanes>& w, const Lanes& h)
 }
 
 template <BodyKind kind>
-void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
+[[gnu::flatten]] void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
     const Lanes h(context.step.substep);

@@ -56,8 +56,7 @@ void scatter_struct(const Struct& value, float* table, std::int64_t stride, cons
     for (int q = 0; q < quads; ++q) store_quads(table + 4 * q, stride, index, padded[q], count);
 }
 
-// ---- where bodies are when a step begins: doubles, subtracted and narrowed a lane at a time
-// ------------------
+// ---- where bodies are when a step begins: doubles, subtracted and narrowed a lane at a time ----------------
 
 inline Vec3<Lanes> between_bodies(const BodyArrays& a, const std::int32_t* rows_a, const BodyArrays& b,
                                   const std::int32_t* rows_b)
@@ -101,8 +100,7 @@ Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays, const std::i
     }
 }
 
-// ---- the kernels
-// ---------------------------------------------------------------------------------------------
+// ---- the kernels -------------------------------------------------------------------------------------------
 
 template <class Type, BodyKind kind_a, BodyKind kind_b>
 struct Kernels {
@@ -133,8 +131,9 @@ struct Kernels {
     };
 
     template <class Work>
-    static void for_each_bundle(const KernelContext& context, const BlockStreams& streams, std::int64_t block,
-                                const Work& work)
+    [[gnu::always_inline]] static void for_each_bundle(const KernelContext& context,
+                                                       const BlockStreams& streams, std::int64_t block,
+                                                       const Work& work)
     {
         const BlockIndex& index = streams.index[block];
         for (int lane = 0; lane < index.count; lane += Lanes_width) {
@@ -146,8 +145,8 @@ struct Kernels {
         }
     }
 
-    static void prepare(const KernelContext& context, const BlockStreams& streams, const ConstraintData& data,
-                        std::int32_t begin, std::int32_t end)
+    [[gnu::flatten]] static void prepare(const KernelContext& context, const BlockStreams& streams,
+                                         const ConstraintData& data, std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
@@ -177,10 +176,11 @@ struct Kernels {
         }
     }
 
-    static void warm_start(const KernelContext& context, const BlockStreams& streams,
-                           const std::int32_t* order, std::int32_t begin, std::int32_t end)
+    [[gnu::flatten]] static void warm_start(const KernelContext& context, const BlockStreams& streams,
+                                            const std::int32_t* order, std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t i = begin; i < end; ++i) {
+            prefetch(context, streams, order, i, end);
             for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
@@ -194,11 +194,38 @@ struct Kernels {
         }
     }
 
+    /// Asks for what a block of the near future will touch: its streams, which no hardware prefetcher follows
+    /// from block to block, and its bodies, which lie anywhere.
+    [[gnu::always_inline]] static void prefetch(const KernelContext& context, const BlockStreams& streams,
+                                                const std::int32_t* order, std::int32_t i, std::int32_t end)
+    {
+        if (i + 2 < end) {
+            const std::int64_t block = order[i + 2];
+            for (int line = 0; line < fields_of<Row>; ++line)
+                __builtin_prefetch(streams.rows + block * row_stride + line * 16);
+            for (int line = 0; line < fields_of<Substep>; ++line) {
+                __builtin_prefetch(streams.substep_rows + block * substep_stride + line * 16);
+            }
+            for (int line = 0; line < fields_of<Impulse>; ++line) {
+                __builtin_prefetch(streams.impulses + block * impulse_stride + line * 16);
+            }
+            __builtin_prefetch(streams.index[block].a);
+            __builtin_prefetch(streams.index[block].b);
+            __builtin_prefetch(&streams.index[block].count);
+        }
+        if (i + 1 < end) {
+            const BlockIndex& index = streams.index[order[i + 1]];
+            prefetch_bodies<kind_a>(context.bodies[static_cast<int>(kind_a)], index.a);
+            prefetch_bodies<kind_b>(context.bodies[static_cast<int>(kind_b)], index.b);
+        }
+    }
+
     template <bool relax>
-    static void sweep(const KernelContext& context, const BlockStreams& streams, const std::int32_t* order,
-                      std::int32_t begin, std::int32_t end)
+    [[gnu::flatten]] static void sweep(const KernelContext& context, const BlockStreams& streams,
+                                       const std::int32_t* order, std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t i = begin; i < end; ++i) {
+            prefetch(context, streams, order, i, end);
             for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
@@ -212,10 +239,11 @@ struct Kernels {
         }
     }
 
-    static void restitute(const KernelContext& context, const BlockStreams& streams,
-                          const std::int32_t* order, std::int32_t begin, std::int32_t end)
+    [[gnu::flatten]] static void restitute(const KernelContext& context, const BlockStreams& streams,
+                                           const std::int32_t* order, std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t i = begin; i < end; ++i) {
+            prefetch(context, streams, order, i, end);
             for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
@@ -228,10 +256,11 @@ struct Kernels {
         }
     }
 
-    static void project(const KernelContext& context, const BlockStreams& streams, const std::int32_t* order,
-                        std::int32_t begin, std::int32_t end)
+    [[gnu::flatten]] static void project(const KernelContext& context, const BlockStreams& streams,
+                                         const std::int32_t* order, std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t i = begin; i < end; ++i) {
+            prefetch(context, streams, order, i, end);
             for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
@@ -243,8 +272,8 @@ struct Kernels {
         }
     }
 
-    static void store(const KernelContext& context, const BlockStreams& streams, const ConstraintData& data,
-                      std::int32_t begin, std::int32_t end)
+    [[gnu::flatten]] static void store(const KernelContext& context, const BlockStreams& streams,
+                                       const ConstraintData& data, std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {

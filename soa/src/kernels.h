@@ -43,7 +43,10 @@ template <BodyKind kind>
 void enter_body(KernelTable& table)
 {
     BodyKernels& kernels = table.bodies[static_cast<int>(kind)];
-    if constexpr (kind != BodyKind::fixed) kernels.integrate_velocities = integrate_velocities<kind>;
+    if constexpr (kind != BodyKind::fixed) {
+        kernels.integrate_velocities = integrate_velocities<kind, false>;
+        kernels.integrate_and_replay = integrate_velocities<kind, true>;
+    }
     kernels.integrate_positions = integrate_positions<kind>;
 }
 

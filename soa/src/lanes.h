@@ -42,11 +42,11 @@ class Lanes {
     xsimd::batch<float, Arch> v;
 };
 
-inline Lanes load_lanes(const float* aligned)
+[[gnu::always_inline]] inline Lanes load_lanes(const float* aligned)
 {
     return Lanes::load(aligned);
 }
-inline void store_lanes(const Lanes& lanes, float* aligned)
+[[gnu::always_inline]] inline void store_lanes(const Lanes& lanes, float* aligned)
 {
     lanes.store(aligned);
 }

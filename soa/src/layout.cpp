@@ -94,6 +94,7 @@ void Layout::point_at(Scene& scene, const StepConstants& step)
         BodyRows& rows = scene.bodies().rows(static_cast<BodyKind>(kind));
         context.bodies[kind] = {rows.velocity.data(),
                                 rows.delta.data(),
+                                rows.unpushed.data(),
                                 rows.acceleration.data(),
                                 rows.world_inverse_inertia.data(),
                                 rows.start_inverse_inertia.data(),

@@ -36,6 +36,8 @@ class Layout {
     [[nodiscard]] const std::vector<TransferChunk>& transfers() const { return transfers_; }
     [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
     [[nodiscard]] const KernelTable& kernels() const { return kernels_; }
+    /// True when no constraint turns its rows within the step: contacts alone.
+    [[nodiscard]] bool has_constant_jacobians() const { return joints_.is_empty(); }
     /// Fills the counts of a report.
     void report(StepReport& report) const;
 

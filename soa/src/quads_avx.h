@@ -1,7 +1,7 @@
 // Quads in and out of eight lanes: two 4 x 4 transposes side by side. The upper half of each register is
 // loaded by an insertion from memory, which does not need the shuffle port that bounds these kernels.
 
-inline void turn(__m256& r0, __m256& r1, __m256& r2, __m256& r3)
+[[gnu::always_inline]] inline void turn(__m256& r0, __m256& r1, __m256& r2, __m256& r3)
 {
     const __m256 t0 = _mm256_unpacklo_ps(r0, r1), t1 = _mm256_unpackhi_ps(r0, r1);
     const __m256 t2 = _mm256_unpacklo_ps(r2, r3), t3 = _mm256_unpackhi_ps(r2, r3);
@@ -11,12 +11,13 @@ inline void turn(__m256& r0, __m256& r1, __m256& r2, __m256& r3)
     r3 = _mm256_shuffle_ps(t1, t3, 0xEE);
 }
 
-inline __m256 load_pair(const float* low, const float* high)
+[[gnu::always_inline]] inline __m256 load_pair(const float* low, const float* high)
 {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(low)), _mm_loadu_ps(high), 1);
 }
 
-inline void load_quads(const float* rows, std::int64_t stride, const std::int32_t* index, Lanes (&out)[4])
+[[gnu::always_inline]] inline void load_quads(const float* rows, std::int64_t stride,
+                                              const std::int32_t* index, Lanes (&out)[4])
 {
     __m256 r0 = load_pair(rows + stride * index[0], rows + stride * index[4]);
     __m256 r1 = load_pair(rows + stride * index[1], rows + stride * index[5]);
@@ -29,8 +30,8 @@ inline void load_quads(const float* rows, std::int64_t stride, const std::int32_
     out[3].v = r3;
 }
 
-inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index, const Lanes (&in)[4],
-                        int count)
+[[gnu::always_inline]] inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index,
+                                               const Lanes (&in)[4], int count)
 {
     __m256 r[4] = {in[0].v, in[1].v, in[2].v, in[3].v};
     turn(r[0], r[1], r[2], r[3]);

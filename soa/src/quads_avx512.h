@@ -1,6 +1,6 @@
 // Quads in and out of sixteen lanes: four 4 x 4 transposes side by side; see quads_avx.h for the insertions.
 
-inline void turn(__m512& r0, __m512& r1, __m512& r2, __m512& r3)
+[[gnu::always_inline]] inline void turn(__m512& r0, __m512& r1, __m512& r2, __m512& r3)
 {
     const __m512 t0 = _mm512_unpacklo_ps(r0, r1), t1 = _mm512_unpackhi_ps(r0, r1);
     const __m512 t2 = _mm512_unpacklo_ps(r2, r3), t3 = _mm512_unpackhi_ps(r2, r3);
@@ -10,7 +10,8 @@ inline void turn(__m512& r0, __m512& r1, __m512& r2, __m512& r3)
     r3 = _mm512_shuffle_ps(t1, t3, 0xEE);
 }
 
-inline __m512 load_four(const float* rows, std::int64_t stride, const std::int32_t* index)
+[[gnu::always_inline]] inline __m512 load_four(const float* rows, std::int64_t stride,
+                                               const std::int32_t* index)
 {
     __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(rows + stride * index[0]));
     r = _mm512_insertf32x4(r, _mm_loadu_ps(rows + stride * index[4]), 1);
@@ -18,7 +19,8 @@ inline __m512 load_four(const float* rows, std::int64_t stride, const std::int32
     return _mm512_insertf32x4(r, _mm_loadu_ps(rows + stride * index[12]), 3);
 }
 
-inline void load_quads(const float* rows, std::int64_t stride, const std::int32_t* index, Lanes (&out)[4])
+[[gnu::always_inline]] inline void load_quads(const float* rows, std::int64_t stride,
+                                              const std::int32_t* index, Lanes (&out)[4])
 {
     __m512 r0 = load_four(rows, stride, index), r1 = load_four(rows, stride, index + 1);
     __m512 r2 = load_four(rows, stride, index + 2), r3 = load_four(rows, stride, index + 3);
@@ -29,8 +31,8 @@ inline void load_quads(const float* rows, std::int64_t stride, const std::int32_
     out[3].v = r3;
 }
 
-inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index, const Lanes (&in)[4],
-                        int count)
+[[gnu::always_inline]] inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index,
+                                               const Lanes (&in)[4], int count)
 {
     __m512 r[4] = {in[0].v, in[1].v, in[2].v, in[3].v};
     turn(r[0], r[1], r[2], r[3]);

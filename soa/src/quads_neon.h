@@ -1,6 +1,6 @@
 // Quads in and out of four lanes with NEON; see quads_sse.h.
 
-inline void turn(float32x4_t& r0, float32x4_t& r1, float32x4_t& r2, float32x4_t& r3)
+[[gnu::always_inline]] inline void turn(float32x4_t& r0, float32x4_t& r1, float32x4_t& r2, float32x4_t& r3)
 {
     const float32x4x2_t even = vtrnq_f32(r0, r1), odd = vtrnq_f32(r2, r3);
     r0 = vcombine_f32(vget_low_f32(even.val[0]), vget_low_f32(odd.val[0]));
@@ -9,7 +9,8 @@ inline void turn(float32x4_t& r0, float32x4_t& r1, float32x4_t& r2, float32x4_t&
     r3 = vcombine_f32(vget_high_f32(even.val[1]), vget_high_f32(odd.val[1]));
 }
 
-inline void load_quads(const float* rows, std::int64_t stride, const std::int32_t* index, Lanes (&out)[4])
+[[gnu::always_inline]] inline void load_quads(const float* rows, std::int64_t stride,
+                                              const std::int32_t* index, Lanes (&out)[4])
 {
     float32x4_t r0 = vld1q_f32(rows + stride * index[0]), r1 = vld1q_f32(rows + stride * index[1]);
     float32x4_t r2 = vld1q_f32(rows + stride * index[2]), r3 = vld1q_f32(rows + stride * index[3]);
@@ -20,8 +21,8 @@ inline void load_quads(const float* rows, std::int64_t stride, const std::int32_
     out[3].v = r3;
 }
 
-inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index, const Lanes (&in)[4],
-                        int count)
+[[gnu::always_inline]] inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index,
+                                               const Lanes (&in)[4], int count)
 {
     float32x4_t r[4] = {in[0].v, in[1].v, in[2].v, in[3].v};
     turn(r[0], r[1], r[2], r[3]);

@@ -1,22 +1,23 @@
 // Quads in and out of one lane. See quads_sse.h for what a quad is.
 
-inline float load_lanes(const float* address)
+[[gnu::always_inline]] inline float load_lanes(const float* address)
 {
     return *address;
 }
-inline void store_lanes(float lane, float* address)
+[[gnu::always_inline]] inline void store_lanes(float lane, float* address)
 {
     *address = lane;
 }
 
-inline void load_quads(const float* rows, std::int64_t stride, const std::int32_t* index, Lanes (&out)[4])
+[[gnu::always_inline]] inline void load_quads(const float* rows, std::int64_t stride,
+                                              const std::int32_t* index, Lanes (&out)[4])
 {
     const float* row = rows + stride * index[0];
     for (int i = 0; i < 4; ++i) out[i] = row[i];
 }
 
-inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index, const Lanes (&in)[4],
-                        int)
+[[gnu::always_inline]] inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index,
+                                               const Lanes (&in)[4], int)
 {
     float* row = rows + stride * index[0];
     for (int i = 0; i < 4; ++i) row[i] = in[i];

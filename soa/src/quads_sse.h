@@ -3,7 +3,7 @@
 // turn is a 4 x 4 transpose; wider lanes do the same in each 128-bit part (quads_avx.h, quads_avx512.h).
 // `store_quads` writes the first `count` lanes back.
 
-inline void turn(__m128& r0, __m128& r1, __m128& r2, __m128& r3)
+[[gnu::always_inline]] inline void turn(__m128& r0, __m128& r1, __m128& r2, __m128& r3)
 {
     const __m128 t0 = _mm_unpacklo_ps(r0, r1), t1 = _mm_unpackhi_ps(r0, r1);
     const __m128 t2 = _mm_unpacklo_ps(r2, r3), t3 = _mm_unpackhi_ps(r2, r3);
@@ -13,7 +13,8 @@ inline void turn(__m128& r0, __m128& r1, __m128& r2, __m128& r3)
     r3 = _mm_movehl_ps(t3, t1);
 }
 
-inline void load_quads(const float* rows, std::int64_t stride, const std::int32_t* index, Lanes (&out)[4])
+[[gnu::always_inline]] inline void load_quads(const float* rows, std::int64_t stride,
+                                              const std::int32_t* index, Lanes (&out)[4])
 {
     __m128 r0 = _mm_loadu_ps(rows + stride * index[0]), r1 = _mm_loadu_ps(rows + stride * index[1]);
     __m128 r2 = _mm_loadu_ps(rows + stride * index[2]), r3 = _mm_loadu_ps(rows + stride * index[3]);
@@ -24,8 +25,8 @@ inline void load_quads(const float* rows, std::int64_t stride, const std::int32_
     out[3].v = r3;
 }
 
-inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index, const Lanes (&in)[4],
-                        int count)
+[[gnu::always_inline]] inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index,
+                                               const Lanes (&in)[4], int count)
 {
     __m128 r[4] = {in[0].v, in[1].v, in[2].v, in[3].v};
     turn(r[0], r[1], r[2], r[3]);

@@ -48,6 +48,7 @@ struct BodyPose {
 /// The rows of one kind. Row 0 is the null body of padding lanes: it cannot move and nothing is tied to it.
 struct BodyRows {
     AlignedVector<float> velocity, delta, acceleration;
+    AlignedVector<float> unpushed;  ///< as velocity: what it was in this substep before any constraint pushed
     AlignedVector<BodyPose> pose;
     AlignedVector<Quat<double>> orientation;     ///< rigid and fixed only
     AlignedVector<float> world_inverse_inertia;  ///< rigid only, two quads: xx xy xz yy | yz zz - -
@@ -70,13 +71,13 @@ class BodyStore {
     void remove(BodyId body);
     [[nodiscard]] bool is_alive(BodyId body) const
     {
-        return body.slot < generations_.size() && generations_[body.slot] == body.generation &&
-               body.generation != 0 && live_[body.slot];
+        // A removal moves the generation on, so a handle that matches is alive; the null slot's is never handed out.
+        return body.slot < slots_.size() && slots_[body.slot].generation == body.generation && body.slot != 0;
     }
-    [[nodiscard]] BodyRow row_of(BodyId body) const { return rows_of_slot_[body.slot]; }
-    [[nodiscard]] BodyId id_of_slot(std::uint32_t slot) const { return {slot, generations_[slot]}; }
+    [[nodiscard]] BodyRow row_of(BodyId body) const { return slots_[body.slot].row; }
+    [[nodiscard]] BodyId id_of_slot(std::uint32_t slot) const { return {slot, slots_[slot].generation}; }
     /// Slots ever used; slot 0 is never a body.
-    [[nodiscard]] std::uint32_t slot_count() const { return static_cast<std::uint32_t>(generations_.size()); }
+    [[nodiscard]] std::uint32_t slot_count() const { return static_cast<std::uint32_t>(slots_.size()); }
     [[nodiscard]] bool is_slot_live(std::uint32_t slot) const { return live_[slot] != 0; }
 
     [[nodiscard]] BodyRows& rows(BodyKind kind) { return rows_[static_cast<std::size_t>(kind)]; }
@@ -103,9 +104,12 @@ class BodyStore {
 
   private:
     std::array<BodyRows, body_kind_count> rows_;
-    std::vector<std::uint32_t> generations_;
+    struct Slot {
+        std::uint32_t generation = 1;
+        BodyRow row;
+    };
+    std::vector<Slot> slots_;
     std::vector<std::uint8_t> live_;
-    std::vector<BodyRow> rows_of_slot_;
     std::vector<BodyModel> models_;
     std::vector<BodyMotion> motions_;
     std::vector<std::uint32_t> free_slots_;

@@ -23,30 +23,39 @@ class ContactList {
     void reset(std::size_t count);
     [[nodiscard]] std::size_t size() const { return count_; }
 
-    /// Puts contact `index` into the table. Safe from several threads at once, as the final table answers the
-    /// same whoever comes first. Returns false when another index already has the key.
-    bool insert(std::uint64_t key, std::uint32_t index);
-    /// The index of a key, or none.
-    [[nodiscard]] std::uint32_t find(std::uint64_t key) const;
-    /// Asks for the cache line where `key` will be looked up.
-    void prefetch(std::uint64_t key) const { __builtin_prefetch(&table_[bucket(key)]); }
+    /// Puts contact `index`, whose entry is already written, into the table. Safe from several threads at
+    /// once, as the final table answers the same whoever comes first. False when another index already has
+    /// the key.
+    bool insert(std::uint32_t index);
+    /// The index of a key, or none. `hint` is looked at first: lists mostly come in the order of the step
+    /// before, where the contact after the last one found is the next one wanted.
+    [[nodiscard]] std::uint32_t find(std::uint64_t key, std::uint32_t hint) const
+    {
+        if (hint < count_ && entries[hint].key == key) return hint;
+        return count_ == 0 ? none : find_in_table(key);
+    }
+    /// Asks for the cache line where `key` will be inserted.
+    void prefetch(std::uint64_t key) const { __builtin_prefetch(&table_[bucket(mix(key))], 1); }
 
-    std::vector<std::uint64_t> keys;
-    std::vector<std::uint32_t> slot_a, slot_b;
+    /// What tells a contact of the next step that it is the same one.
+    struct Entry {
+        std::uint64_t key = 0;
+        std::uint32_t body_a = 0, body_b = 0;  ///< fingerprints of the handles
+    };
+    std::vector<Entry> entries;
     std::vector<std::uint8_t> colours;
     /// Of contact i at i + 1; the first stays zero, where a contact without a past looks for it.
     AlignedVector<ContactImpulse> impulses;
-
     ContactList() : impulses(1) {}
 
   private:
-    [[nodiscard]] std::size_t bucket(std::uint64_t key) const
-    {
-        return (key * 0x9E3779B97F4A7C15ULL) >> shift_;
-    }
-    // A bucket holds index + 1, so zero is empty; the key is compared in `keys`.
-    std::vector<std::uint32_t> table_;
-    int shift_ = 60;
+    static std::uint64_t mix(std::uint64_t key) { return (key ^ key >> 32) * 0x9E3779B97F4A7C15ULL; }
+    [[nodiscard]] std::size_t bucket(std::uint64_t hash) const { return hash >> shift_; }
+    [[nodiscard]] std::uint32_t find_in_table(std::uint64_t key) const;
+    // A bucket holds the low half of the hash above index + 1: zero is empty, and a probe that passes
+    // strangers seldom has to fetch their keys.
+    std::vector<std::uint64_t> table_;
+    int shift_ = 58;
     std::size_t count_ = 0;
 };
 
