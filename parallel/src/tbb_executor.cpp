@@ -5,6 +5,8 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <optional>
+
 namespace motley {
 namespace {
 
@@ -17,11 +19,13 @@ class InlineExecutor final : public Executor {
 class TbbExecutor final : public Executor {
   public:
     explicit TbbExecutor(int threads)
-        : threads_(threads),
-          // More threads than cores must still be real threads: the tests of equal bits count on it.
-          limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
-          arena_(threads, 1)
+        : threads_(threads), arena_(threads, 1)
     {
+        // More threads than cores are real threads only if oneTBB is told so, and it listens process-wide: left
+        // alone unless the host asks for such a number.
+        if (threads > tbb::this_task_arena::max_concurrency()) {
+            limit_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+        }
     }
     [[nodiscard]] int concurrency() const override { return threads_; }
     void run(int workers, const std::function<void(int)>& job) override
@@ -38,7 +42,7 @@ class TbbExecutor final : public Executor {
 
   private:
     int threads_;
-    tbb::global_control limit_;
+    std::optional<tbb::global_control> limit_;
     tbb::task_arena arena_;
 };
 

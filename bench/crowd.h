@@ -1,0 +1,82 @@
+// A crowd of discs: who they are, where they want to go, and who touches whom. Steering and the neighbour search
+// are the host's part of a crowd simulation; this is just enough of a host to make real scenes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "motley/motley.h"
+#include "neighbour_grid.h"
+
+namespace motley::bench {
+
+/// One person: a disc with a goal.
+struct Agent {
+    BodyId body{};
+    float radius = 0.2F;       ///< m
+    float mass = 80;           ///< kg
+    float desired_speed = 1.34F;  ///< m/s
+    Vec2<double> goal{};       ///< m
+};
+
+/// A wall: a segment of no thickness, touched from both sides.
+struct Wall {
+    Vec2<double> from{}, to{};
+};
+
+class Crowd {
+  public:
+    float relaxation_time = 0.5F;  ///< s: how fast people take up their desired velocity
+    float friction = 0;            ///< between people, and between people and walls
+    float contact_margin = 0.03F;  ///< m: gaps up to this become contacts, so that nothing is missed within a step
+
+    std::vector<Agent> agents;
+    std::vector<Wall> walls;
+    /// As of the last observe().
+    std::vector<Vec3<double>> positions;
+    std::vector<Vec3<float>> velocities;
+
+    /// Adds a person as a planar body: a uniform disc.
+    void add(Scene& scene, Agent agent, Vec2<double> position);
+    /// Forgets agent `index` and removes its body; the last agent takes its place.
+    void remove(Scene& scene, std::size_t index);
+
+    /// Reads positions and velocities from the scene.
+    void observe(const Scene& scene, Executor& executor);
+    /// Forces that bring everyone to the desired velocity: m (v0 e - v) / tau, e towards the goal.
+    void steer(Scene& scene, Executor& executor);
+    /// The contacts of the observed positions.
+    std::span<const Contact> find_contacts(const Scene& scene, Executor& executor);
+
+    /// The number of an agent in the order of arrival, from 0; never reused.
+    [[nodiscard]] std::uint32_t number_of(std::size_t agent) const { return serial_[agent]; }
+    /// The bodies in the order of `agents`.
+    [[nodiscard]] std::span<const BodyId> bodies() const { return bodies_; }
+    /// The last list that find_contacts() made.
+    [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
+    /// Index in `agents` of each contact's people; the second is -1 for a wall.
+    struct Pair {
+        std::int32_t a, b;
+    };
+    [[nodiscard]] std::span<const Pair> pairs() const { return pairs_; }
+
+  private:
+    std::vector<BodyId> bodies_;
+    std::vector<Vec3<float>> forces_;
+    NeighbourGrid grid_;
+    std::vector<Contact> contacts_;
+    std::vector<Pair> pairs_;
+    std::vector<std::uint32_t> serial_;  ///< number of each agent's arrival: names it in contact keys
+    std::uint32_t next_serial_ = 0;
+
+    std::vector<std::vector<Pair>> chunk_pairs_;
+    std::vector<std::size_t> chunk_starts_;
+
+    [[nodiscard]] Vec2<double> nearest_point(const Wall& wall, std::size_t agent) const;
+    [[nodiscard]] bool is_near(const Wall& wall, std::size_t agent) const;
+    Contact between(std::int32_t a, std::int32_t b) const;
+    Contact with_wall(const Scene& scene, std::int32_t a, std::int32_t wall) const;
+};
+
+}  // namespace motley::bench

@@ -1,0 +1,117 @@
+// The program `motley`: run a scene, list the scenes, or do the main job.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+
+#include "demo.h"
+#include "runner.h"
+
+namespace {
+
+using namespace motley;
+using namespace motley::bench;
+
+void write_text(const std::string& path, const std::string& text)
+{
+    std::ofstream file(path);
+    file << text;
+    file.close();
+    if (!file) throw std::runtime_error(path + ": cannot be written");
+}
+
+struct RunCommand {
+    std::string scene, isa, json;
+    RunOptions options;
+    RunOutputs outputs;
+
+    void declare(CLI::App& app)
+    {
+        static const std::map<std::string, Method> methods{{"soft_step", Method::soft_step}, {"sequential_impulse", Method::sequential_impulse}};
+        static const std::map<std::string, DriftCorrection> corrections{
+            {"none", DriftCorrection::none}, {"baumgarte", DriftCorrection::baumgarte}, {"projection", DriftCorrection::projection}};
+        app.add_option("scene", scene, "one of `motley list`")->required();
+        app.add_option("--agents", options.agents, "people or bodies; default: the scene's")->check(CLI::PositiveNumber);
+        app.add_option("--seconds", options.seconds, "simulated time; default: the scene's")->check(CLI::PositiveNumber);
+        app.add_option("--dt", options.dt, "s a step")->check(CLI::Range(1e-6, 1.0))->capture_default_str();
+        app.add_option("--method", options.settings.method, "soft_step or sequential_impulse")->transform(CLI::CheckedTransformer(methods));
+        app.add_option("--drift-correction", options.settings.drift_correction, "sequential_impulse: none, baumgarte or projection")
+            ->transform(CLI::CheckedTransformer(corrections));
+        app.add_option("--substeps", options.settings.substeps, "substeps a step")->check(CLI::Range(1, 1024))->capture_default_str();
+        app.add_option("--iterations", options.settings.iterations, "sweeps a substep")->check(CLI::Range(1, 10000))->capture_default_str();
+        app.add_option("--relaxations", options.settings.relaxations, "soft_step: sweeps without bias a substep")
+            ->check(CLI::Range(0, 10000))->capture_default_str();
+        app.add_option("--contact-hertz", options.settings.contact_hertz, "soft_step: stiffness of contacts")->capture_default_str();
+        app.add_option("--joint-hertz", options.settings.joint_hertz, "soft_step: stiffness of joints")->capture_default_str();
+        app.add_option("--isa", isa, "scalar, sse2, avx2, avx512 or neon; default: MOTLEY_ISA, else the widest here");
+        app.add_option("--threads", options.solver.threads, "threads, the caller's counted")->check(CLI::Range(1, 1024))->capture_default_str();
+        app.add_option("--friction", options.friction, "between people; default: the scene's")->check(CLI::Range(0.0, 1e6));
+        app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();
+        app.add_option("--data", options.data, "bottleneck: a trajectory file; default: the experiment's")->check(CLI::ExistingFile);
+        app.add_option("--json", json, "write the figures to this file");
+        app.add_option("--trajectories", outputs.trajectories, "write PedPy text to this file");
+        app.add_option("--frames", outputs.frames, "write pictures to this folder");
+        app.add_option("--frame-every", outputs.frame_every, "steps between pictures")->check(CLI::PositiveNumber)->capture_default_str();
+        app.add_option("--hash-every", outputs.hash_every, "print the state hash every so many steps")->check(CLI::PositiveNumber);
+    }
+
+    int operator()()
+    {
+        const SceneEntry* entry = find_scene(scene);
+        if (entry == nullptr) {
+            fmt::print(stderr, "motley: no scene '{}'; `motley list` names them\n", scene);
+            return 2;
+        }
+        if (!isa.empty()) {
+            options.solver.isa = isa_from_name(isa);
+            if (!options.solver.isa) {
+                fmt::print(stderr, "motley: --isa is {}; expected scalar, sse2, avx2, avx512 or neon\n", isa);
+                return 2;
+            }
+        }
+        const RunResult result = run_scene(*entry, options, outputs);
+        fmt::print("{}", table_of(result));
+        if (!json.empty()) write_text(json, json_of(result));
+        return 0;
+    }
+};
+
+}  // namespace
+
+int main(int count, char** arguments)
+{
+    CLI::App app{"motley: rigid-body constraints for crowds, in coloured SIMD lanes"};
+    app.require_subcommand(1);
+    RunCommand run;
+    CLI::App* run_app = app.add_subcommand("run", "run a scene and print what it cost and how well it held");
+    run.declare(*run_app);
+    CLI::App* list_app = app.add_subcommand("list", "name the scenes and the instruction sets of this machine");
+    CLI::App* demo_app = app.add_subcommand("demo", "the main job: the bottleneck, then the crowd, scalar, SIMD and threads side by side");
+    DemoOptions demo;
+    demo_app->add_option("--seconds", demo.seconds, "simulated time of each crowd run")->check(CLI::PositiveNumber)->capture_default_str();
+    demo_app->add_option("--rounds", demo.rounds, "interleaved rounds")->check(CLI::Range(1, 100))->capture_default_str();
+    try {
+        app.parse(count, arguments);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    try {
+        if (*run_app) return run();
+        if (*demo_app) return run_demo(demo);
+        if (*list_app) {
+            for (const SceneEntry& entry : scene_list()) fmt::print("{:<12}{}\n", entry.name, entry.description);
+            fmt::print("instruction sets here:");
+            for (const Isa isa : available_isas()) fmt::print(" {}", isa_name(isa));
+            fmt::print("\n");
+        }
+    } catch (const InvalidInput& error) {
+        fmt::print(stderr, "motley: {}\n", error.what());
+        return 2;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "motley: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,152 @@
+// The loop around the solver: steer, search, step, observe.
+#include "runner.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "frames.h"
+#include "trajectories.h"
+
+namespace motley::bench {
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// A bar on a terminal; elsewhere a line each quarter.
+class Progress {
+  public:
+    Progress(bool shown, std::string what, std::int64_t steps) : shown_(shown), terminal_(isatty(2) != 0), what_(std::move(what)), steps_(steps) {}
+    void advance(std::int64_t step)
+    {
+        const auto percent = static_cast<int>(100 * step / std::max<std::int64_t>(1, steps_));
+        if (!shown_ || percent == percent_) return;
+        percent_ = percent;
+        if (terminal_) {
+            fmt::print(stderr, "\r{} [{:<40}] {:3} %", what_, std::string(static_cast<std::size_t>(percent * 2 / 5), '#'), percent);
+            if (percent == 100) fmt::print(stderr, "\n");
+            std::fflush(stderr);
+        } else if (percent / 25 != quarter_) {
+            quarter_ = percent / 25;
+            fmt::print(stderr, "{}: {} %\n", what_, percent);
+        }
+    }
+
+  private:
+    bool shown_, terminal_;
+    std::string what_;
+    std::int64_t steps_;
+    int percent_ = -1, quarter_ = 0;
+};
+
+/// Overlaps and what is left of approach speeds, from the positions and velocities after the last step.
+void judge_contacts(RunResult& result, BenchScene& scene, Executor& executor)
+{
+    Crowd* crowd = scene.crowd();
+    if (crowd == nullptr || crowd->agents.empty()) return;
+    crowd->observe(scene.scene, executor);
+    const auto contacts = crowd->find_contacts(scene.scene, executor);
+    const auto pairs = crowd->pairs();
+    std::vector<double> deepest(crowd->agents.size(), 0.0);
+    double squares = 0;
+    std::int64_t touching = 0;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        if (contacts[i].separation > 0) continue;
+        const auto a = static_cast<std::size_t>(pairs[i].a);
+        const auto note = [&](std::size_t agent) {
+            deepest[agent] = std::max(deepest[agent], -static_cast<double>(contacts[i].separation / crowd->agents[agent].radius));
+        };
+        note(a);
+        Vec3<float> relative = crowd->velocities[a];
+        if (pairs[i].b >= 0) {
+            note(static_cast<std::size_t>(pairs[i].b));
+            relative = crowd->velocities[static_cast<std::size_t>(pairs[i].b)] - relative;
+        }
+        const double approach = std::min(0.0, static_cast<double>(dot(contacts[i].normal, relative)));
+        squares += approach * approach;
+        ++touching;
+    }
+    std::sort(deepest.begin(), deepest.end());
+    result.overlap_p50 = deepest[deepest.size() / 2];
+    result.overlap_p99 = deepest[std::min(deepest.size() - 1, deepest.size() * 99 / 100)];
+    result.overlap_max = deepest.back();
+    result.residual = touching > 0 ? std::sqrt(squares / static_cast<double>(touching)) : 0;
+}
+
+}  // namespace
+
+RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutputs& outputs)
+{
+    if (options.agents == 0) options.agents = entry.agents;
+    if (options.seconds == 0) options.seconds = entry.seconds;
+    const std::unique_ptr<BenchScene> scene = entry.make(options);
+    scene->adjust(options.settings);
+    Solver solver(options.settings, options.solver);
+    Executor& executor = solver.executor();
+    std::unique_ptr<TrajectoryWriter> trajectories;
+    std::unique_ptr<FrameWriter> frames;
+    if (!outputs.trajectories.empty()) trajectories = std::make_unique<TrajectoryWriter>(outputs.trajectories, 1 / static_cast<double>(options.dt));
+    if (!outputs.frames.empty()) frames = std::make_unique<FrameWriter>(outputs.frames);
+    if (scene->crowd() == nullptr && (trajectories || frames)) {
+        throw std::runtime_error(fmt::format("{}: has no people, so no trajectories or frames", entry.name));
+    }
+
+    RunResult result;
+    result.scene = entry.name;
+    result.isa = isa_name(solver.isa());
+    result.method = options.settings.method == Method::soft_step ? "soft_step" : "sequential_impulse";
+    result.threads = solver.threads();
+    const auto steps = static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));
+    Progress progress(outputs.progress, entry.name, steps);
+    std::vector<double> step_seconds;
+    for (std::int64_t step = 0; step < steps; ++step) {
+        const double time = static_cast<double>(step) * static_cast<double>(options.dt);
+        const double began = now();
+        scene->steer(time, executor);
+        const double steered = now();
+        const std::span<const Contact> contacts = scene->find_contacts(executor);
+        const double found = now();
+        result.last = solver.step(scene->scene, options.dt, contacts);
+        const double solved = now();
+        if (result.last.status != StepStatus::done) throw std::runtime_error(fmt::format("step {} refused: {}", step, result.last.error));
+
+        result.steering_seconds += steered - began;
+        result.search_seconds += found - steered;
+        result.solver_seconds += solved - found;
+        step_seconds.push_back(solved - began);
+        for (std::size_t s = 0; s < stage_count; ++s) result.stages[s] += result.last.seconds[s];
+        const auto constraints = static_cast<double>(result.last.contacts + result.last.joints);
+        result.constraints += constraints;
+        result.constraint_sweeps += constraints * static_cast<double>(result.last.sweeps);
+        result.bodies += static_cast<double>(scene->scene.body_count());
+        result.contained += result.last.bodies_contained;
+        ++result.steps;
+        scene->observe(time, solver);
+        if (trajectories) trajectories->write(*scene->crowd(), step);
+        if (frames && step % outputs.frame_every == 0) frames->write(*scene->crowd(), scene->scene);
+        if (outputs.hash_every > 0 && (step + 1) % outputs.hash_every == 0) {
+            fmt::print("step {} hash {:016x}\n", step + 1, scene->scene.state_hash());
+        }
+        progress.advance(step + 1);
+        if (scene->is_over(time)) break;
+    }
+    progress.advance(steps);
+    if (trajectories) trajectories->close();
+    const auto count = static_cast<double>(std::max<std::int64_t>(1, result.steps));
+    result.bodies /= count;
+    result.constraints /= count;
+    std::nth_element(step_seconds.begin(), step_seconds.begin() + static_cast<std::ptrdiff_t>(step_seconds.size() / 2), step_seconds.end());
+    if (!step_seconds.empty()) result.median_step_seconds = step_seconds[step_seconds.size() / 2];
+    result.errors = scene->scene.errors();
+    result.state_hash = scene->scene.state_hash();
+    judge_contacts(result, *scene, executor);
+    result.figures = scene->figures();
+    return result;
+}
+
+}  // namespace motley::bench

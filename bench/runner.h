@@ -1,0 +1,53 @@
+// Runs a scene and measures it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench_scene.h"
+
+namespace motley::bench {
+
+/// What a run was and what it cost. Times are sums over all steps, in seconds.
+struct RunResult {
+    std::string scene, isa, method;
+    int threads = 1;
+    std::int64_t steps = 0;
+    double bodies = 0;                   ///< mean over the steps
+    std::array<double, stage_count> stages{};
+    double solver_seconds = 0, steering_seconds = 0, search_seconds = 0;
+    double median_step_seconds = 0;      ///< of a whole step: solver, steering and search
+    double constraints = 0;              ///< mean
+    double constraint_sweeps = 0;        ///< constraints x sweeps, summed
+    StepReport last;
+    double overlap_p50 = 0, overlap_p99 = 0, overlap_max = 0;  ///< deepest overlap of each person, share of radius
+    double residual = 0;                 ///< m/s, rms approach speed left at touching contacts
+    SceneErrors errors;
+    std::uint64_t state_hash = 0;
+    std::int64_t contained = 0;
+    std::vector<Figure> figures;
+    [[nodiscard]] double whole_seconds() const { return solver_seconds + steering_seconds + search_seconds; }
+};
+
+/// What to write besides the table.
+struct RunOutputs {
+    std::string trajectories, frames;  ///< empty: none
+    int frame_every = 30;              ///< steps
+    int hash_every = 0;                ///< steps; 0: never
+    bool progress = true;
+};
+
+/// Runs a scene. Throws InvalidInput for dials out of range and std::runtime_error for files and refused steps.
+RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutputs& outputs);
+
+/// The table of a run, for people.
+std::string table_of(const RunResult& result);
+/// The same for programs.
+std::string json_of(const RunResult& result);
+/// The load of the machine over the last minute, as the system tells it; negative if it does not.
+double host_load();
+
+}  // namespace motley::bench

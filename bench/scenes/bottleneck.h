@@ -1,0 +1,109 @@
+// A real experiment: 75 people through a 0.5 m door (bench/data/README.md). The same walls; everyone enters where
+// and when the recording first has them, and walks to the door. Flow tests steering, not the solver: it is
+// printed beside the measured one and passes no judgement.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "../bench_scene.h"
+#include "../trajectories.h"
+
+namespace motley::bench {
+
+class Bottleneck final : public CrowdScene {
+  public:
+    static constexpr double measured_flow = 1.15;  ///< persons a second
+    static constexpr int measured_people = 75;
+
+    explicit Bottleneck(const RunOptions& options)
+    {
+        people.friction = options.friction < 0 ? 0.0F : options.friction;
+        const Trajectories recording = read_trajectories(options.data.empty() ? MOTLEY_BENCH_DATA "/040_c_56_h-.txt" : options.data);
+        std::map<std::int64_t, TrajectoryPoint> first;
+        for (const TrajectoryPoint& point : recording.points) {
+            const auto [entry, added] = first.emplace(point.id, point);
+            if (!added && point.frame < entry->second.frame) entry->second = point;
+        }
+        for (const auto& [id, point] : first) {
+            arrivals_.push_back({static_cast<double>(point.frame) / recording.frames_a_second, {point.x, point.y}});
+        }
+        std::stable_sort(arrivals_.begin(), arrivals_.end(), [](const Arrival& a, const Arrival& b) { return a.time < b.time; });
+        const Vec2<double> outline[] = {{-0.7, -1.1}, {-0.25, -1.1}, {-0.25, -0.15}, {-0.4, 0}, {-2.8, 0},
+                                        {-2.8, 6.7},  {-3.05, 6.7},  {-3.05, -0.3},  {-0.7, -0.3}};
+        for (const double side : {1.0, -1.0}) {
+            for (std::size_t i = 0; i < std::size(outline); ++i) {
+                const Vec2<double>& from = outline[i];
+                const Vec2<double>& to = outline[(i + 1) % std::size(outline)];
+                people.walls.push_back({{side * from.x, from.y}, {side * to.x, to.y}});
+            }
+        }
+    }
+
+    void steer(double time, Executor& executor) override
+    {
+        enter(time);
+        people.observe(scene, executor);
+        leave(time);
+        people.observe(scene, executor);
+        for (std::size_t i = 0; i < people.agents.size(); ++i) {
+            const Vec3<double>& p = people.positions[i];
+            // To the nearest point of the opening a body can pass, then straight through.
+            const double half = 0.25 - static_cast<double>(people.agents[i].radius);
+            people.agents[i].goal = p.y > 0.2 ? Vec2<double>{std::clamp(p.x, -std::max(half, 0.02), std::max(half, 0.02)), 0.0}
+                                              : Vec2<double>{0, -3};
+        }
+        people.steer(scene, executor);
+    }
+
+    [[nodiscard]] bool is_over(double) const override { return next_ == arrivals_.size() && people.agents.empty(); }
+
+    [[nodiscard]] std::vector<Figure> figures() const override
+    {
+        const double span = last_ - first_;
+        return {{"people through the door", fmt::format("{} of {}", passed_, arrivals_.size())},
+                {"flow", passed_ > 1 ? fmt::format("{:.2f} persons/s (measured: {:.2f})", (passed_ - 1) / span, measured_flow)
+                                     : std::string("none yet")}};
+    }
+
+  private:
+    struct Arrival {
+        double time;
+        Vec2<double> at;
+    };
+    std::vector<Arrival> arrivals_;
+    std::size_t next_ = 0;
+    int passed_ = 0;
+    double first_ = 0, last_ = 0;
+    std::vector<double> height_before_;  ///< y of each agent a step ago
+
+    void enter(double time)
+    {
+        for (; next_ < arrivals_.size() && arrivals_[next_].time <= time; ++next_) {
+            Agent agent;
+            agent.radius = 0.18F;  // of equal area with the mean man, ANSUR II
+            people.add(scene, agent, arrivals_[next_].at);
+            height_before_.push_back(arrivals_[next_].at.y);
+        }
+    }
+
+    void leave(double time)
+    {
+        for (std::size_t i = people.agents.size(); i-- > 0;) {
+            const double y = people.positions[i].y;
+            if (height_before_[i] > 0 && y <= 0) {
+                if (passed_++ == 0) first_ = time;
+                last_ = time;
+            }
+            height_before_[i] = y;
+            if (y > -2) continue;
+            people.remove(scene, i);
+            height_before_[i] = height_before_.back();
+            height_before_.pop_back();
+        }
+    }
+};
+
+}  // namespace motley::bench

@@ -1,0 +1,103 @@
+// A packed slab of people, each leaning on the one in front with 50 N: exactly density x length x force on the
+// wall, 4.5 kN/m with 90 people behind every metre of it. Frictionless, so that no side wall carries a share.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "../bench_scene.h"
+
+namespace motley::bench {
+
+class Push final : public CrowdScene {
+  public:
+    static constexpr double radius = 0.2;
+    static constexpr double force = 50;       ///< N each, towards -x
+    static constexpr int people_a_row = 50;   ///< along the wall
+    static constexpr double width = 2 * radius * people_a_row + radius;  ///< rows are offset by half a person
+
+    explicit Push(const RunOptions& options)
+    {
+        people.friction = options.friction < 0 ? 0.0F : options.friction;
+        // Hexagonal packing, touching: disorder would give force chains, whose bands differ for real.
+        const double row_pitch = std::sqrt(3.0) * radius;
+        const auto rows = static_cast<int>(options.agents / people_a_row);
+        for (int row = 0; row < rows; ++row) {
+            for (int i = 0; i < people_a_row; ++i) {
+                Agent agent;
+                agent.radius = static_cast<float>(radius);
+                people.add(scene, agent, {radius + row_pitch * row, radius * (1 + row % 2) + 2 * radius * i});
+            }
+        }
+        const double length = 2 * radius + row_pitch * rows + 5;
+        people.walls = {{{0, 0}, {0, width}}, {{0, 0}, {length, 0}}, {{0, width}, {length, width}}};
+        expected_ = force * static_cast<double>(people.agents.size()) / width;
+        std::vector<Vec3<float>> forces(people.agents.size(), {-static_cast<float>(force), 0, 0});
+        scene.set_forces(people.bodies(), forces);
+    }
+
+    void steer(double, Executor& executor) override { people.observe(scene, executor); }
+
+    void observe(double time, const Solver& solver) override
+    {
+        if (time < settle) return;
+        const auto impulses = scene.contact_impulses();
+        const auto contacts = people.contacts();
+        const auto pairs = people.pairs();
+        const double per_second = 1 / static_cast<double>(scene.last_substep);
+        std::vector<double> bands(static_cast<std::size_t>(width), 0.0);
+        double total = 0;
+        for (std::size_t i = 0; i < contacts.size(); ++i) {
+            if (pairs[i].b >= 0 || contacts[i].normal.x < 0.9F) continue;  // the front wall's alone
+            const double push = static_cast<double>(impulses[i].normal) * per_second;
+            total += push;
+            spread(people.positions[static_cast<std::size_t>(pairs[i].a)].y, push, bands);
+        }
+        for (std::size_t b = 0; b < bands.size(); ++b) {
+            if (sums_.size() <= b) sums_.push_back(0);
+            sums_[b] += bands[b];
+            const double wrong = bands[b] / expected_ - 1;
+            squares_ += wrong * wrong / static_cast<double>(bands.size());
+        }
+        const double wall = total / width / expected_ - 1;
+        wall_squares_ += wall * wall;
+        ++samples_;
+        (void)solver;
+    }
+
+    [[nodiscard]] std::vector<Figure> figures() const override
+    {
+        if (samples_ == 0) return {{"wall stress", "not sampled: run longer than 2 s"}};
+        double least = 1e300, most = -1e300, mean = 0;
+        for (const double sum : sums_) {
+            const double stress = sum / samples_;
+            least = std::min(least, stress);
+            most = std::max(most, stress);
+            mean += stress / static_cast<double>(sums_.size());
+        }
+        return {{"wall stress, expected", fmt::format("{:.1f} N/m", expected_)},
+                {"wall stress, mean of bands", fmt::format("{:.1f} N/m ({:+.3f} %)", mean, 100 * (mean / expected_ - 1))},
+                {"wall stress, 1 m bands", fmt::format("{:+.2f} % to {:+.2f} %", 100 * (least / expected_ - 1), 100 * (most / expected_ - 1))},
+                {"wall force, RMS per step", fmt::format("{:.3f} %", 100 * std::sqrt(wall_squares_ / samples_))},
+                {"band stress, RMS per step", fmt::format("{:.3f} %", 100 * std::sqrt(squares_ / samples_))}};
+    }
+
+  private:
+    static constexpr double settle = 2;  ///< s before sampling
+    double expected_ = 0;                ///< N/m
+    std::vector<double> sums_;
+    double squares_ = 0, wall_squares_ = 0;
+    int samples_ = 0;
+
+    /// A person leans on the wall with a shoulder's breadth, not in a point: the force is spread over the diameter.
+    static void spread(double y, double push, std::vector<double>& bands)
+    {
+        for (std::size_t b = 0; b < bands.size(); ++b) {
+            const double from = std::max(y - radius, static_cast<double>(b)), to = std::min(y + radius, static_cast<double>(b) + 1);
+            if (to > from) bands[b] += push * (to - from) / (2 * radius);
+        }
+    }
+};
+
+}  // namespace motley::bench

@@ -1,0 +1,59 @@
+// Promise 5: nothing allocates in a warm step. Counted by replacing operator new for this whole executable.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "mixed_scene.h"
+
+namespace {
+
+std::atomic<long> allocations{0};
+
+void* counted(std::size_t size, std::size_t alignment)
+{
+    ++allocations;
+    void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    if (memory == nullptr) throw std::bad_alloc();
+    return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size, alignof(std::max_align_t)); }
+void* operator new(std::size_t size, std::align_val_t alignment) { return counted(size, static_cast<std::size_t>(alignment)); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace motley {
+namespace {
+
+/// Allocations of 20 steps after 40 to warm up.
+long allocations_of_warm_steps(int threads)
+{
+    testing::MixedScene mixed;
+    SolverSettings settings;
+    settings.gravity = {0, -9.81F, 0};
+    Solver solver(settings, {.threads = threads});
+    for (int step = 0; step < 200; ++step) solver.step(mixed.scene, 1.0F / 60, mixed.contacts());
+    const std::vector<Contact> contacts = mixed.contacts();
+    solver.step(mixed.scene, 1.0F / 60, contacts);
+    const long before = allocations;
+    for (int step = 0; step < 20; ++step) solver.step(mixed.scene, 1.0F / 60, contacts);
+    return allocations - before;
+}
+
+TEST(Allocation, TheCounterCounts)
+{
+    const long before = allocations;
+    delete new int(7);  // NOLINT: the point is the allocation
+    EXPECT_GT(allocations, before);
+}
+TEST(Allocation, AWarmStepOnOneThreadAllocatesNothing) { EXPECT_EQ(allocations_of_warm_steps(1), 0); }
+TEST(Allocation, AWarmStepOnTwoThreadsAllocatesNothing) { EXPECT_EQ(allocations_of_warm_steps(2), 0); }
+
+}  // namespace
+}  // namespace motley
