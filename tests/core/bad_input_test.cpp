@@ -1,0 +1,294 @@
+// Promise 4: bad input is refused at the door with a message that names the field, the value and the valid range,
+// and changes nothing. One table line for each field and each way in which it can be wrong.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "motley/motley.h"
+
+namespace motley {
+namespace {
+
+const float nan = std::numeric_limits<float>::quiet_NaN();
+const float infinity = std::numeric_limits<float>::infinity();
+
+/// A scene with one body of each kind and a joint, whose hash and counts must survive every refusal.
+struct Fixture {
+    Scene scene;
+    BodyId particle, planar, rigid, kinematic, stationary, removed;
+    ConstraintId joint, removed_joint;
+
+    Fixture()
+    {
+        const auto add = [&](BodyModel model, BodyMotion motion, double x) {
+            BodyDefinition body;
+            body.model = model;
+            body.motion = motion;
+            body.position.x = x;
+            return scene.add_body(body);
+        };
+        particle = add(BodyModel::particle, BodyMotion::dynamic_body, 1);
+        planar = add(BodyModel::planar, BodyMotion::dynamic_body, 2);
+        rigid = add(BodyModel::rigid, BodyMotion::dynamic_body, 3);
+        kinematic = add(BodyModel::rigid, BodyMotion::kinematic_body, 4);
+        stationary = add(BodyModel::rigid, BodyMotion::static_body, 5);
+        removed = add(BodyModel::rigid, BodyMotion::dynamic_body, 6);
+        joint = scene.add_joint(BallSocketDefinition{rigid, planar, {1, 0, 0}, {0, 0, 0}});
+        removed_joint = scene.add_joint(BallSocketDefinition{rigid, stationary, {}, {}});
+        scene.remove_joint(removed_joint);
+        scene.remove_body(removed);
+    }
+};
+
+struct Case {
+    const char* what;
+    std::function<void(Fixture&)> offend;
+    const char* field;   ///< must stand in the message
+    const char* value;   ///< likewise
+};
+
+void expect_refused(const Case& c)
+{
+    Fixture f;
+    const std::uint64_t hash = f.scene.state_hash();
+    const std::size_t bodies = f.scene.body_count(), joints = f.scene.joint_count();
+    try {
+        c.offend(f);
+        ADD_FAILURE() << c.what << ": was accepted";
+        return;
+    } catch (const InvalidInput& refusal) {
+        const std::string message = refusal.what();
+        EXPECT_NE(message.find(c.field), std::string::npos) << c.what << ": " << message;
+        EXPECT_NE(message.find(c.value), std::string::npos) << c.what << ": " << message;
+        EXPECT_NE(message.find("expected"), std::string::npos) << c.what << ": " << message;
+    }
+    EXPECT_EQ(f.scene.state_hash(), hash) << c.what;
+    EXPECT_EQ(f.scene.body_count(), bodies) << c.what;
+    EXPECT_EQ(f.scene.joint_count(), joints) << c.what;
+}
+
+/// A case that spoils one field of a good body.
+Case body(const char* what, std::function<void(BodyDefinition&)> spoil, const char* field, const char* value)
+{
+    return {what,
+            [spoil](Fixture& f) {
+                BodyDefinition good;
+                BodyDefinition bad = good;
+                spoil(bad);
+                // In a batch behind a good one: all or none.
+                const BodyDefinition both[2] = {good, bad};
+                BodyId ids[2];
+                f.scene.add_bodies(both, ids);
+            },
+            field, value};
+}
+
+TEST(BadInput, EveryFieldOfABodyIsCheckedAndABatchIsAllOrNone)
+{
+    const Case cases[] = {
+        body("model", [](auto& b) { b.model = static_cast<BodyModel>(7); }, "model", "7"),
+        body("motion", [](auto& b) { b.motion = static_cast<BodyMotion>(9); }, "motion", "9"),
+        body("position NaN", [](auto& b) { b.position.y = std::nan(""); }, "position.y", "nan"),
+        body("position infinite", [](auto& b) { b.position.x = HUGE_VAL; }, "position.x", "inf"),
+        body("position far", [](auto& b) { b.position.z = 1e13; }, "position.z", "1e+13"),
+        body("yaw", [](auto& b) { b.yaw = std::nan(""); }, "yaw", "nan"),
+        body("orientation zero", [](auto& b) { b.orientation = {0, 0, 0, 0}; }, "orientation", "0"),
+        body("orientation NaN", [](auto& b) { b.orientation.x = std::nan(""); }, "orientation", "nan"),
+        body("linear velocity", [](auto& b) { b.linear_velocity.z = nan; }, "linear_velocity.z", "nan"),
+        body("angular velocity", [](auto& b) { b.angular_velocity.x = infinity; }, "angular_velocity.x", "inf"),
+        body("mass zero", [](auto& b) { b.mass = 0; }, "mass", "0"),
+        body("mass negative", [](auto& b) { b.mass = -2; }, "mass", "-2"),
+        body("mass NaN", [](auto& b) { b.mass = nan; }, "mass", "nan"),
+        body("inertia zero", [](auto& b) { b.inertia.xx = 0; }, "inertia.xx", "0"),
+        body("inertia NaN", [](auto& b) { b.inertia.yz = nan; }, "inertia", "nan"),
+        body("inertia indefinite", [](auto& b) { b.inertia.xy = 2; }, "inertia", "positive definite"),
+        body("inertia against the triangle inequality", [](auto& b) { b.inertia = {1, 0, 0, 1, 0, 3}; }, "inertia", "triangle"),
+        body("planar out of plane", [](auto& b) { b.model = BodyModel::planar; b.linear_velocity.z = 1; }, "linear_velocity.z", "1"),
+        body("planar tilting", [](auto& b) { b.model = BodyModel::planar; b.angular_velocity.x = 1; }, "angular_velocity.x", "1"),
+        body("planar inertia", [](auto& b) { b.model = BodyModel::planar; b.inertia.zz = -1; }, "inertia.zz", "-1"),
+        body("particle spinning", [](auto& b) { b.model = BodyModel::particle; b.angular_velocity.y = 2; }, "angular_velocity.y", "2"),
+        body("static moving", [](auto& b) { b.motion = BodyMotion::static_body; b.linear_velocity.x = 3; }, "linear_velocity.x", "3"),
+    };
+    for (const Case& c : cases) expect_refused(c);
+}
+
+Case ball_socket(const char* what, std::function<void(BallSocketDefinition&, Fixture&)> spoil, const char* field, const char* value)
+{
+    return {what,
+            [spoil](Fixture& f) {
+                BallSocketDefinition joint{f.rigid, f.planar, {}, {}};
+                spoil(joint, f);
+                f.scene.add_joint(joint);
+            },
+            field, value};
+}
+
+Case distance(const char* what, std::function<void(DistanceDefinition&, Fixture&)> spoil, const char* field, const char* value)
+{
+    return {what,
+            [spoil](Fixture& f) {
+                DistanceDefinition joint;
+                joint.body_a = f.rigid;
+                joint.body_b = f.planar;
+                spoil(joint, f);
+                f.scene.add_joint(joint);
+            },
+            field, value};
+}
+
+TEST(BadInput, EveryFieldOfAJointIsChecked)
+{
+    const Case cases[] = {
+        ball_socket("null body", [](auto& j, Fixture&) { j.body_a = {}; }, "body_a", "null"),
+        ball_socket("removed body", [](auto& j, Fixture& f) { j.body_b = f.removed; }, "body_b", "not alive"),
+        ball_socket("unknown body", [](auto& j, Fixture&) { j.body_b = {12345, 1}; }, "body_b", "12345"),
+        ball_socket("one body twice", [](auto& j, Fixture&) { j.body_b = j.body_a; }, "body_b", "same"),
+        ball_socket("nothing to move", [](auto& j, Fixture& f) { j.body_a = f.kinematic; j.body_b = f.stationary; }, "body_b", "cannot move"),
+        ball_socket("anchor a", [](auto& j, Fixture&) { j.local_anchor_a.y = nan; }, "local_anchor_a.y", "nan"),
+        ball_socket("anchor b", [](auto& j, Fixture&) { j.local_anchor_b.x = infinity; }, "local_anchor_b.x", "inf"),
+        ball_socket("anchor far", [](auto& j, Fixture&) { j.local_anchor_b.z = 2e9F; }, "local_anchor_b.z", "2e+09"),
+        ball_socket("anchor of a particle", [](auto& j, Fixture& f) { j.body_b = f.particle; j.local_anchor_b.x = 1; }, "local_anchor_b.x", "1"),
+        distance("null body", [](auto& j, Fixture&) { j.body_a = {}; }, "body_a", "null"),
+        distance("anchor a", [](auto& j, Fixture&) { j.local_anchor_a.x = nan; }, "local_anchor_a.x", "nan"),
+        distance("anchor b", [](auto& j, Fixture&) { j.local_anchor_b.y = nan; }, "local_anchor_b.y", "nan"),
+        distance("length negative", [](auto& j, Fixture&) { j.length = -0.3F; }, "DistanceDefinition.length", "-0.3"),
+        distance("length NaN", [](auto& j, Fixture&) { j.length = nan; }, "DistanceDefinition.length", "nan"),
+        distance("mode", [](auto& j, Fixture&) { j.mode = static_cast<DistanceMode>(5); }, "DistanceDefinition.mode", "5"),
+        distance("hertz zero", [](auto& j, Fixture&) { j.mode = DistanceMode::spring; j.hertz = 0; }, "DistanceDefinition.hertz", "0"),
+        distance("hertz NaN", [](auto& j, Fixture&) { j.mode = DistanceMode::spring; j.hertz = nan; }, "DistanceDefinition.hertz", "nan"),
+        distance("damping", [](auto& j, Fixture&) { j.mode = DistanceMode::spring; j.damping_ratio = -1; }, "DistanceDefinition.damping_ratio", "-1"),
+    };
+    for (const Case& c : cases) expect_refused(c);
+}
+
+TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
+{
+    const Vec3<float> v[2]{};
+    const Vec3<float> bad[2] = {{0, 0, 0}, {nan, 0, 0}};
+    Vec3<double> p[2];
+    double yaw[1];
+    const Case cases[] = {
+        {"state", [](Fixture& f) { (void)f.scene.state(f.removed); }, "state.body", "not alive"},
+        {"model", [](Fixture& f) { (void)f.scene.model({}); }, "model.body", "null"},
+        {"motion", [](Fixture& f) { (void)f.scene.motion({}); }, "motion.body", "null"},
+        {"remove", [](Fixture& f) { f.scene.remove_body(f.removed); }, "remove_bodies", "not alive"},
+        {"remove the ground", [](Fixture& f) { f.scene.remove_body(f.scene.ground()); }, "remove_bodies", "ground"},
+        {"remove twice", [](Fixture& f) { const BodyId two[2] = {f.rigid, f.rigid}; f.scene.remove_bodies(two); }, "remove_bodies", "twice"},
+        {"remove a removed joint", [](Fixture& f) { f.scene.remove_joint(f.removed_joint); }, "remove_joint", "not alive"},
+        {"force of a removed joint", [](Fixture& f) { (void)f.scene.joint_force(f.removed_joint); }, "joint_force", "not alive"},
+        {"add_bodies sizes", [](Fixture& f) { const BodyDefinition d[2]; BodyId id[1]; f.scene.add_bodies(d, id); }, "ids.size()", "1"},
+        {"set_pose NaN", [](Fixture& f) { f.scene.set_pose(f.rigid, {std::nan(""), 0, 0}, {0, 0, 0, 1}, 0); }, "set_pose.position.x", "nan"},
+        {"set_pose quaternion", [](Fixture& f) { f.scene.set_pose(f.rigid, {}, {0, 0, 0, 0}, 0); }, "set_pose.orientation", "0"},
+        {"set_pose yaw", [](Fixture& f) { f.scene.set_pose(f.planar, {}, {0, 0, 0, 1}, std::nan("")); }, "set_pose.yaw", "nan"},
+        {"set_pose ground", [](Fixture& f) { f.scene.set_pose(f.scene.ground(), {}, {0, 0, 0, 1}, 0); }, "set_pose.body", "ground"},
+        {"velocity NaN", [](Fixture& f) { f.scene.set_velocity(f.rigid, {nan, 0, 0}, {}); }, "linear_velocity.x", "nan"},
+        {"velocity of a static body", [](Fixture& f) { f.scene.set_velocity(f.stationary, {1, 0, 0}, {}); }, "linear_velocity.x", "1"},
+        {"force on a kinematic body", [](Fixture& f) { f.scene.set_force(f.kinematic, {1, 0, 0}, {}); }, "set_forces.bodies", "kinematic"},
+        {"force NaN", [](Fixture& f) { f.scene.set_force(f.rigid, {0, nan, 0}, {}); }, "set_forces.forces.y", "nan"},
+        {"torque infinite", [](Fixture& f) { f.scene.set_force(f.rigid, {}, {0, 0, infinity}); }, "set_forces.torques.z", "inf"},
+        {"revive a body that moves", [](Fixture& f) { f.scene.revive(f.rigid, {}, {}); }, "revive.body", "moves"},
+        {"set_velocities sizes", [&](Fixture& f) { const BodyId one[1] = {f.rigid}; f.scene.set_velocities(one, v); }, "linear.size()", "2"},
+        {"set_velocities second is bad", [&](Fixture& f) { const BodyId two[2] = {f.rigid, f.planar}; f.scene.set_velocities(two, bad); }, "linear_velocity.x", "nan"},
+        {"set_forces sizes", [&](Fixture& f) { const BodyId one[1] = {f.rigid}; f.scene.set_forces(one, v); }, "forces.size()", "2"},
+        {"read_positions sizes", [&](Fixture& f) { const BodyId one[1] = {f.rigid}; f.scene.read_positions(one, p); }, "positions.size()", "2"},
+        {"read_yaws dead", [&](Fixture& f) { const BodyId one[1] = {f.removed}; f.scene.read_yaws(one, yaw); }, "read_yaws.bodies", "not alive"},
+    };
+    for (const Case& c : cases) expect_refused(c);
+}
+
+TEST(BadInput, EverySettingIsChecked)
+{
+    const auto refused = [](const char* field, auto spoil) {
+        SolverSettings settings;
+        spoil(settings);
+        Solver solver;
+        try {
+            solver.set_settings(settings);
+            ADD_FAILURE() << field << " was accepted";
+        } catch (const InvalidInput& refusal) {
+            EXPECT_NE(std::string(refusal.what()).find(field), std::string::npos) << refusal.what();
+            EXPECT_EQ(solver.settings().substeps, SolverSettings{}.substeps);
+        }
+        EXPECT_THROW(Solver{settings}, InvalidInput);
+    };
+    refused("method", [](auto& s) { s.method = static_cast<Method>(9); });
+    refused("drift_correction", [](auto& s) { s.drift_correction = static_cast<DriftCorrection>(9); });
+    refused("substeps", [](auto& s) { s.substeps = 0; });
+    refused("iterations", [](auto& s) { s.iterations = 0; });
+    refused("relaxations", [](auto& s) { s.relaxations = -1; });
+    refused("projections", [](auto& s) { s.projections = -1; });
+    refused("gravity.x", [](auto& s) { s.gravity.x = nan; });
+    refused("gravity.y", [](auto& s) { s.gravity.y = nan; });
+    refused("gravity.z", [](auto& s) { s.gravity.z = infinity; });
+    refused("contact_hertz", [](auto& s) { s.contact_hertz = 0; });
+    refused("contact_damping_ratio", [](auto& s) { s.contact_damping_ratio = -1; });
+    refused("push_out_speed", [](auto& s) { s.push_out_speed = 0; });
+    refused("joint_hertz", [](auto& s) { s.joint_hertz = nan; });
+    refused("joint_damping_ratio", [](auto& s) { s.joint_damping_ratio = -1; });
+    refused("restitution_threshold", [](auto& s) { s.restitution_threshold = -1; });
+    refused("baumgarte", [](auto& s) { s.baumgarte = 1.5F; });
+    refused("penetration_slop", [](auto& s) { s.penetration_slop = nan; });
+    EXPECT_THROW(Solver({}, {.threads = 0}), InvalidInput);
+}
+
+TEST(BadInput, EveryFieldOfAContactIsRefusedByTheStepWhichChangesNothing)
+{
+    struct ContactCase {
+        std::function<void(Contact&, Fixture&)> spoil;
+        const char* field;
+        const char* value;
+    };
+    const ContactCase cases[] = {
+        {[](Contact& c, Fixture&) { c.body_a = {}; }, "contacts[1].body_a", "null"},
+        {[](Contact& c, Fixture& f) { c.body_b = f.removed; }, "contacts[1].body_b", "not alive"},
+        {[](Contact& c, Fixture&) { c.body_b = c.body_a; }, "contacts[1].body_b", "same"},
+        {[](Contact& c, Fixture& f) { c.body_a = f.kinematic; c.body_b = f.stationary; }, "contacts[1].body_b", "cannot move"},
+        {[](Contact& c, Fixture&) { c.normal = {0, 0, 0}; }, "contacts[1].normal", "0"},
+        {[](Contact& c, Fixture&) { c.normal = {2, 0, 0}; }, "contacts[1].normal", "2"},
+        {[](Contact& c, Fixture&) { c.normal.x = nan; }, "contacts[1].normal", "nan"},
+        {[](Contact& c, Fixture&) { c.separation = nan; }, "contacts[1].separation", "nan"},
+        {[](Contact& c, Fixture&) { c.arm_a.y = infinity; }, "contacts[1].arm_a.y", "inf"},
+        {[](Contact& c, Fixture&) { c.arm_b.z = nan; }, "contacts[1].arm_b.z", "nan"},
+        {[](Contact& c, Fixture&) { c.friction = -0.1F; }, "contacts[1].friction", "-0.1"},
+        {[](Contact& c, Fixture&) { c.friction = infinity; }, "contacts[1].friction", "inf"},
+        {[](Contact& c, Fixture&) { c.restitution = 1.5F; }, "contacts[1].restitution", "1.5"},
+        {[](Contact& c, Fixture&) { c.restitution = nan; }, "contacts[1].restitution", "nan"},
+        {[](Contact& c, Fixture&) { c.key = 1; }, "key", "twice"},
+        {[](Contact& c, Fixture& f) { c.body_a = f.planar; c.body_b = f.stationary; c.normal = {0.6F, 0, 0.8F}; }, "contacts[1].normal.z", "0.8"},
+    };
+    for (const ContactCase& c : cases) {
+        Fixture f;
+        Contact good;
+        good.body_a = f.rigid;
+        good.body_b = f.particle;
+        good.key = 1;
+        good.normal = {1, 0, 0};
+        Contact bad = good;
+        bad.key = 2;
+        c.spoil(bad, f);
+        const Contact contacts[2] = {good, bad};
+        SolverSettings settings;
+        settings.gravity = {0, -10, 0};
+        Solver solver(settings);
+        const std::uint64_t hash = f.scene.state_hash();
+        const StepReport report = solver.step(f.scene, 0.01F, contacts);
+        EXPECT_EQ(report.status, StepStatus::refused) << c.field;
+        EXPECT_NE(report.error.find(c.field), std::string::npos) << report.error;
+        EXPECT_NE(report.error.find(c.value), std::string::npos) << report.error;
+        EXPECT_EQ(f.scene.state_hash(), hash) << c.field;
+        // The same solver goes on as if nothing had been said.
+        EXPECT_EQ(solver.step(f.scene, 0.01F, {contacts, 1}).status, StepStatus::done) << c.field;
+    }
+    Fixture f;
+    Solver solver;
+    for (const float dt : {-0.1F, 2.0F, nan, infinity}) {
+        const StepReport report = solver.step(f.scene, dt);
+        EXPECT_EQ(report.status, StepStatus::refused);
+        EXPECT_NE(report.error.find("step.dt"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace motley
