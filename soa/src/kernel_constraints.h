@@ -56,6 +56,17 @@ void scatter_struct(const Struct& value, float* table, std::int64_t stride, cons
     for (int q = 0; q < quads; ++q) store_quads(table + 4 * q, stride, index, padded[q], count);
 }
 
+/// Impulses that are not finite are forgotten: a contained body must not poison the step that revives it.
+template <class Struct>
+Struct only_finite(Struct value)
+{
+    Lanes* fields = reinterpret_cast<Lanes*>(&value);
+    for (int i = 0; i < fields_of<Struct>; ++i) {
+        fields[i] = select(absolute(fields[i]) < Lanes(1e30F), fields[i], Lanes(0));
+    }
+    return value;
+}
+
 // ---- where bodies are when a step begins: doubles, subtracted and narrowed a lane at a time ----------------
 
 inline Vec3<Lanes> between_bodies(const BodyArrays& a, const std::int32_t* rows_a, const BodyArrays& b,
@@ -277,8 +288,8 @@ struct Kernels {
     {
         for (std::int32_t block = begin; block < end; ++block) {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
-                const Memory memory = Type::template remember<Lanes>(load_row<Row>(bundle.row),
-                                                                     load_row<Impulse>(bundle.impulse));
+                const Memory memory = only_finite(Type::template remember<Lanes>(load_row<Row>(bundle.row),
+                                                                     load_row<Impulse>(bundle.impulse)));
                 scatter_struct(memory, data.memory_out, data.memory_stride, bundle.constraint, bundle.count);
             });
         }
