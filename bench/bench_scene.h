@@ -19,9 +19,9 @@ struct RunOptions {
     float dt = 1.0F / 60;
     SolverSettings settings;
     SolverOptions solver;
-    float friction = -1;      ///< below 0: the scene's default
+    float friction = -1;  ///< below 0: the scene's default
     std::uint64_t seed = 12345;
-    std::string data;         ///< bottleneck: the trajectory file; empty: the project's copy
+    std::string data;  ///< bottleneck: the trajectory file; empty: the project's copy
 };
 
 /// A line of the table at the end: what, and its value with its unit.
@@ -59,7 +59,10 @@ class CrowdScene : public BenchScene {
         people.observe(scene, executor);
         people.steer(scene, executor);
     }
-    std::span<const Contact> find_contacts(Executor& executor) override { return people.find_contacts(scene, executor); }
+    std::span<const Contact> find_contacts(Executor& executor) override
+    {
+        return people.find_contacts(scene, executor);
+    }
     void observe(double, const Solver&) override {}
     [[nodiscard]] Crowd* crowd() override { return &people; }
 

@@ -40,31 +40,35 @@ void Crowd::observe(const Scene& scene, Executor& executor)
 {
     positions.resize(agents.size());
     velocities.resize(agents.size());
-    parallel_for(executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk, [&](std::int64_t begin, std::int64_t end) {
-        const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-        const auto some = std::span<const BodyId>(bodies_).subspan(first, count);
-        scene.read_positions(some, std::span(positions).subspan(first, count));
-        scene.read_velocities(some, std::span(velocities).subspan(first, count));
-    });
+    parallel_for(executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk,
+                 [&](std::int64_t begin, std::int64_t end) {
+                     const auto first = static_cast<std::size_t>(begin),
+                                count = static_cast<std::size_t>(end - begin);
+                     const auto some = std::span<const BodyId>(bodies_).subspan(first, count);
+                     scene.read_positions(some, std::span(positions).subspan(first, count));
+                     scene.read_velocities(some, std::span(velocities).subspan(first, count));
+                 });
 }
 
 void Crowd::steer(Scene& scene, Executor& executor)
 {
     forces_.resize(agents.size());
-    parallel_for(executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk, [&](std::int64_t begin, std::int64_t end) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-            const Agent& agent = agents[i];
-            const double dx = agent.goal.x - positions[i].x, dy = agent.goal.y - positions[i].y;
-            const double distance = std::sqrt(dx * dx + dy * dy);
-            const double speed = agent.desired_speed / std::max(distance, 1e-3);
-            const double gain = agent.mass / relaxation_time;
-            forces_[i] = {static_cast<float>(gain * (speed * dx - velocities[i].x)),
-                          static_cast<float>(gain * (speed * dy - velocities[i].y)), 0};
-        }
-        const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-        scene.set_forces(std::span<const BodyId>(bodies_).subspan(first, count),
-                         std::span<const Vec3<float>>(forces_).subspan(first, count));
-    });
+    parallel_for(executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk,
+                 [&](std::int64_t begin, std::int64_t end) {
+                     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                         const Agent& agent = agents[i];
+                         const double dx = agent.goal.x - positions[i].x, dy = agent.goal.y - positions[i].y;
+                         const double distance = std::sqrt(dx * dx + dy * dy);
+                         const double speed = agent.desired_speed / std::max(distance, 1e-3);
+                         const double gain = agent.mass / relaxation_time;
+                         forces_[i] = {static_cast<float>(gain * (speed * dx - velocities[i].x)),
+                                       static_cast<float>(gain * (speed * dy - velocities[i].y)), 0};
+                     }
+                     const auto first = static_cast<std::size_t>(begin),
+                                count = static_cast<std::size_t>(end - begin);
+                     scene.set_forces(std::span<const BodyId>(bodies_).subspan(first, count),
+                                      std::span<const Vec3<float>>(forces_).subspan(first, count));
+                 });
 }
 
 std::span<const Contact> Crowd::find_contacts(const Scene& scene, Executor& executor)
@@ -84,17 +88,20 @@ std::span<const Contact> Crowd::find_contacts(const Scene& scene, Executor& exec
         const double near = static_cast<double>(agents[a].radius + agents[b].radius + contact_margin);
         if (dx * dx + dy * dy >= near * near) return;
         // The elder is `a`, so that a pair keeps its roles whoever is sorted first.
-        chunk_pairs_[static_cast<std::size_t>(chunk)].push_back(serial_[a] < serial_[b] ? Pair{i, j} : Pair{j, i});
+        chunk_pairs_[static_cast<std::size_t>(chunk)].push_back(serial_[a] < serial_[b] ? Pair{i, j}
+                                                                                        : Pair{j, i});
     });
     for (std::size_t w = 0; w < walls.size(); ++w) {
         parallel_for(executor, static_cast<std::int64_t>(chunks), 1, [&](std::int64_t chunk, std::int64_t) {
             grid_.for_each_disc(chunk, [&](std::int32_t i) {
                 if (is_near(walls[w], static_cast<std::size_t>(i))) {
-                    chunk_pairs_[static_cast<std::size_t>(chunk)].push_back({i, -1 - static_cast<std::int32_t>(w)});
+                    chunk_pairs_[static_cast<std::size_t>(chunk)].push_back(
+                        {i, -1 - static_cast<std::int32_t>(w)});
                 }
             });
         });
     }
+    if (period_y > 0) add_pairs_across_the_seam();
     std::size_t total = 0;
     chunk_starts_.resize(chunks);
     for (std::size_t c = 0; c < chunks; ++c) {
@@ -114,19 +121,40 @@ std::span<const Contact> Crowd::find_contacts(const Scene& scene, Executor& exec
     return contacts_;
 }
 
+void Crowd::add_pairs_across_the_seam()
+{
+    const auto near = [&](double y, double edge) { return std::abs(y - edge) < 1; };
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (!near(positions[i].y, 0)) continue;
+        for (std::size_t j = 0; j < positions.size(); ++j) {
+            if (!near(positions[j].y, period_y)) continue;
+            const double dx = positions[j].x - positions[i].x,
+                         dy = positions[j].y - period_y - positions[i].y;
+            const double reach = static_cast<double>(agents[i].radius + agents[j].radius + contact_margin);
+            if (dx * dx + dy * dy >= reach * reach) continue;
+            const auto a = static_cast<std::int32_t>(i), b = static_cast<std::int32_t>(j);
+            chunk_pairs_.front().push_back(serial_[i] < serial_[j] ? Pair{a, b} : Pair{b, a});
+        }
+    }
+}
+
 Contact Crowd::between(std::int32_t i, std::int32_t j) const
 {
     const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-    const double dx = positions[b].x - positions[a].x, dy = positions[b].y - positions[a].y;
+    const double dx = positions[b].x - positions[a].x;
+    double dy = positions[b].y - positions[a].y;
+    if (period_y > 0 && std::abs(dy) > period_y / 2) dy -= dy > 0 ? period_y : -period_y;
     const double distance = std::sqrt(dx * dx + dy * dy);
     Contact contact;
     contact.body_a = bodies_[a];
     contact.body_b = bodies_[b];
     contact.key = std::uint64_t{serial_[a]} << 32 | serial_[b];
     // People in one point part along x.
-    contact.normal = distance > 1e-9 ? Vec3<float>{static_cast<float>(dx / distance), static_cast<float>(dy / distance), 0}
-                                     : Vec3<float>{1, 0, 0};
-    contact.separation = static_cast<float>(distance - static_cast<double>(agents[a].radius) - static_cast<double>(agents[b].radius));
+    contact.normal =
+        distance > 1e-9 ? Vec3<float>{static_cast<float>(dx / distance), static_cast<float>(dy / distance), 0}
+                        : Vec3<float>{1, 0, 0};
+    contact.separation = static_cast<float>(distance - static_cast<double>(agents[a].radius) -
+                                            static_cast<double>(agents[b].radius));
     contact.arm_a = (agents[a].radius + contact.separation / 2) * contact.normal;
     contact.arm_b = -(agents[b].radius + contact.separation / 2) * contact.normal;
     contact.friction = friction;
@@ -165,7 +193,8 @@ Contact Crowd::with_wall(const Scene& scene, std::int32_t i, std::int32_t wall) 
     contact.body_b = bodies_[a];
     // Arrivals number less than 2^31, so the top bit tells walls from people.
     contact.key = std::uint64_t{1} << 63 | std::uint64_t{serial_[a]} << 16 | static_cast<std::uint64_t>(wall);
-    contact.normal = distance > 1e-9 ? Vec3<float>{static_cast<float>(d.x / distance), static_cast<float>(d.y / distance), 0}
+    contact.normal = distance > 1e-9 ? Vec3<float>{static_cast<float>(d.x / distance),
+                                                   static_cast<float>(d.y / distance), 0}
                                      : Vec3<float>{1, 0, 0};
     contact.separation = static_cast<float>(distance - static_cast<double>(agents[a].radius));
     // The ground stands at the origin and never turns: its arm is the point.

@@ -14,10 +14,10 @@ namespace motley::bench {
 /// One person: a disc with a goal.
 struct Agent {
     BodyId body{};
-    float radius = 0.2F;       ///< m
-    float mass = 80;           ///< kg
+    float radius = 0.2F;          ///< m
+    float mass = 80;              ///< kg
     float desired_speed = 1.34F;  ///< m/s
-    Vec2<double> goal{};       ///< m
+    Vec2<double> goal{};          ///< m
 };
 
 /// A wall: a segment of no thickness, touched from both sides.
@@ -29,7 +29,10 @@ class Crowd {
   public:
     float relaxation_time = 0.5F;  ///< s: how fast people take up their desired velocity
     float friction = 0;            ///< between people, and between people and walls
-    float contact_margin = 0.03F;  ///< m: gaps up to this become contacts, so that nothing is missed within a step
+    float contact_margin =
+        0.03F;  ///< m: gaps up to this become contacts, so that nothing is missed within a step
+
+    double period_y = 0;  ///< m: above 0, people at y near 0 touch those near this: a strip without ends
 
     std::vector<Agent> agents;
     std::vector<Wall> walls;
@@ -75,6 +78,7 @@ class Crowd {
 
     [[nodiscard]] Vec2<double> nearest_point(const Wall& wall, std::size_t agent) const;
     [[nodiscard]] bool is_near(const Wall& wall, std::size_t agent) const;
+    void add_pairs_across_the_seam();
     Contact between(std::int32_t a, std::int32_t b) const;
     Contact with_wall(const Scene& scene, std::int32_t a, std::int32_t wall) const;
 };

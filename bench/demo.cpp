@@ -45,16 +45,22 @@ bool compare_ways(const DemoOptions& options, std::int64_t agents)
             const double steps = way.last.bodies * static_cast<double>(way.last.steps);
             way.rates.push_back(steps / way.last.whole_seconds());
             way.solver_rates.push_back(steps / way.last.solver_seconds);
-            fmt::print(stderr, "crowd of {}: round {} of {}, {} x {}\n", agents, round + 1, options.rounds, isa_name(way.isa), way.threads);
+            fmt::print(stderr, "crowd of {}: round {} of {}, {} x {}\n", agents, round + 1, options.rounds,
+                       isa_name(way.isa), way.threads);
         }
     }
-    fmt::print("\ncrowd of {} people, 5 per m2, {} steps of 1/60 s, 4 substeps; medians of {} interleaved rounds, host load {:.2f}\n", agents,
-               ways[0].last.steps, options.rounds, host_load());
-    fmt::print("{:<10}{:>8}{:>22}{:>22}{:>14}{:>16}  {}\n", "isa", "threads", "M agent-steps/s", "solver alone", "x scalar", "overlap p99", "state hash");
+    fmt::print(
+        "\ncrowd of {} people, 5 per m2, {} steps of 1/60 s, 4 substeps; medians of {} interleaved rounds, "
+        "host load {:.2f}\n",
+        agents, ways[0].last.steps, options.rounds, host_load());
+    fmt::print("{:<10}{:>8}{:>22}{:>22}{:>14}{:>16}  {}\n", "isa", "threads", "M agent-steps/s",
+               "solver alone", "x scalar", "overlap p99", "state hash");
     bool same = true;
     for (const Way& way : ways) {
-        fmt::print("{:<10}{:>8}{:>22.2f}{:>22.2f}{:>14.2f}{:>14.3f} %  {:016x}\n", isa_name(way.isa), way.threads, median(way.rates) * 1e-6,
-                   median(way.solver_rates) * 1e-6, median(way.rates) / median(ways[0].rates), 100 * way.last.overlap_p99, way.last.state_hash);
+        fmt::print("{:<10}{:>8}{:>22.2f}{:>22.2f}{:>14.2f}{:>14.3f} %  {:016x}\n", isa_name(way.isa),
+                   way.threads, median(way.rates) * 1e-6, median(way.solver_rates) * 1e-6,
+                   median(way.rates) / median(ways[0].rates), 100 * way.last.overlap_p99,
+                   way.last.state_hash);
         same = same && way.last.state_hash == ways[0].last.state_hash;
     }
     fmt::print("{}\n", same ? "every way ends in the same bits" : "THE WAYS END IN DIFFERENT BITS");

@@ -27,21 +27,31 @@ Colour colour_of(double share)
     constexpr double stops[4][3] = {{70, 120, 180}, {120, 190, 170}, {250, 210, 90}, {205, 40, 45}};
     const double at = 3 * std::clamp(share, 0.0, 1.0);
     const int i = std::min(2, static_cast<int>(at));
-    const auto mix = [&](int c) { return static_cast<std::uint8_t>(stops[i][c] + (at - i) * (stops[i + 1][c] - stops[i][c])); };
+    const auto mix = [&](int c) {
+        return static_cast<std::uint8_t>(stops[i][c] + (at - i) * (stops[i + 1][c] - stops[i][c]));
+    };
     return {mix(0), mix(1), mix(2)};
 }
 
 class Picture {
   public:
-    Picture(int width, int height) : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), Colour{250, 250, 248}) {}
+    Picture(int width, int height)
+        : width_(width),
+          height_(height),
+          pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), Colour{250, 250, 248})
+    {
+    }
 
     void set(int x, int y, Colour c)
     {
-        if (x >= 0 && y >= 0 && x < width_ && y < height_) pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)] = c;
+        if (x >= 0 && y >= 0 && x < width_ && y < height_)
+            pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                    static_cast<std::size_t>(x)] = c;
     }
     void disc(double x, double y, double radius, Colour c)
     {
-        const Colour edge{static_cast<std::uint8_t>(c.r * 6 / 10), static_cast<std::uint8_t>(c.g * 6 / 10), static_cast<std::uint8_t>(c.b * 6 / 10)};
+        const Colour edge{static_cast<std::uint8_t>(c.r * 6 / 10), static_cast<std::uint8_t>(c.g * 6 / 10),
+                          static_cast<std::uint8_t>(c.b * 6 / 10)};
         for (int py = static_cast<int>(y - radius); py <= static_cast<int>(y + radius) + 1; ++py) {
             for (int px = static_cast<int>(x - radius); px <= static_cast<int>(x + radius) + 1; ++px) {
                 const double d = std::hypot(px + 0.5 - x, py + 0.5 - y);
@@ -55,8 +65,10 @@ class Picture {
         for (int i = 0; i <= steps; ++i) {
             const double t = static_cast<double>(i) / steps;
             for (int w = -1; w <= 0; ++w) {
-                set(static_cast<int>(x0 + t * (x1 - x0)) + w, static_cast<int>(y0 + t * (y1 - y0)), {50, 50, 55});
-                set(static_cast<int>(x0 + t * (x1 - x0)), static_cast<int>(y0 + t * (y1 - y0)) + w, {50, 50, 55});
+                set(static_cast<int>(x0 + t * (x1 - x0)) + w, static_cast<int>(y0 + t * (y1 - y0)),
+                    {50, 50, 55});
+                set(static_cast<int>(x0 + t * (x1 - x0)), static_cast<int>(y0 + t * (y1 - y0)) + w,
+                    {50, 50, 55});
             }
         }
     }
@@ -126,15 +138,18 @@ void FrameWriter::write(const Crowd& crowd, const Scene& scene)
     Picture picture(width_, height_);
     const auto x = [&](double world) { return margin + (world - min_x_) * scale_; };
     const auto y = [&](double world) { return height_ - margin - (world - min_y_) * scale_; };
-    for (const Wall& wall : crowd.walls) picture.line(x(wall.from.x), y(wall.from.y), x(wall.to.x), y(wall.to.y));
+    for (const Wall& wall : crowd.walls)
+        picture.line(x(wall.from.x), y(wall.from.y), x(wall.to.x), y(wall.to.y));
     for (std::size_t i = 0; i < crowd.positions.size() && i < load.size(); ++i) {
         const double radius = static_cast<double>(crowd.agents[i].radius);
         const double pressure = load[i] / (6.283185307179586 * radius);
-        picture.disc(x(crowd.positions[i].x), y(crowd.positions[i].y), radius * scale_, colour_of(pressure / full_pressure));
+        picture.disc(x(crowd.positions[i].x), y(crowd.positions[i].y), radius * scale_,
+                     colour_of(pressure / full_pressure));
     }
     for (int row = margin; row < height_ - margin; ++row) {
         const double share = 1 - static_cast<double>(row - margin) / (height_ - 2 * margin);
-        for (int column = 0; column < bar_width; ++column) picture.set(width_ - margin / 2 - bar_width + column, row, colour_of(share));
+        for (int column = 0; column < bar_width; ++column)
+            picture.set(width_ - margin / 2 - bar_width + column, row, colour_of(share));
     }
     picture.save(fmt::format("{}/frame-{:05d}.png", folder_, count_++));
 }

@@ -29,32 +29,55 @@ struct RunCommand {
 
     void declare(CLI::App& app)
     {
-        static const std::map<std::string, Method> methods{{"soft_step", Method::soft_step}, {"sequential_impulse", Method::sequential_impulse}};
+        static const std::map<std::string, Method> methods{
+            {"soft_step", Method::soft_step}, {"sequential_impulse", Method::sequential_impulse}};
         static const std::map<std::string, DriftCorrection> corrections{
-            {"none", DriftCorrection::none}, {"baumgarte", DriftCorrection::baumgarte}, {"projection", DriftCorrection::projection}};
+            {"none", DriftCorrection::none},
+            {"baumgarte", DriftCorrection::baumgarte},
+            {"projection", DriftCorrection::projection}};
         app.add_option("scene", scene, "one of `motley list`")->required();
-        app.add_option("--agents", options.agents, "people or bodies; default: the scene's")->check(CLI::PositiveNumber);
-        app.add_option("--seconds", options.seconds, "simulated time; default: the scene's")->check(CLI::PositiveNumber);
+        app.add_option("--agents", options.agents, "people or bodies; default: the scene's")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--seconds", options.seconds, "simulated time; default: the scene's")
+            ->check(CLI::PositiveNumber);
         app.add_option("--dt", options.dt, "s a step")->check(CLI::Range(1e-6, 1.0))->capture_default_str();
-        app.add_option("--method", options.settings.method, "soft_step or sequential_impulse")->transform(CLI::CheckedTransformer(methods));
-        app.add_option("--drift-correction", options.settings.drift_correction, "sequential_impulse: none, baumgarte or projection")
+        app.add_option("--method", options.settings.method, "soft_step or sequential_impulse")
+            ->transform(CLI::CheckedTransformer(methods));
+        app.add_option("--drift-correction", options.settings.drift_correction,
+                       "sequential_impulse: none, baumgarte or projection")
             ->transform(CLI::CheckedTransformer(corrections));
-        app.add_option("--substeps", options.settings.substeps, "substeps a step")->check(CLI::Range(1, 1024))->capture_default_str();
-        app.add_option("--iterations", options.settings.iterations, "sweeps a substep")->check(CLI::Range(1, 10000))->capture_default_str();
-        app.add_option("--relaxations", options.settings.relaxations, "soft_step: sweeps without bias a substep")
-            ->check(CLI::Range(0, 10000))->capture_default_str();
-        app.add_option("--contact-hertz", options.settings.contact_hertz, "soft_step: stiffness of contacts")->capture_default_str();
-        app.add_option("--joint-hertz", options.settings.joint_hertz, "soft_step: stiffness of joints")->capture_default_str();
-        app.add_option("--isa", isa, "scalar, sse2, avx2, avx512 or neon; default: MOTLEY_ISA, else the widest here");
-        app.add_option("--threads", options.solver.threads, "threads, the caller's counted")->check(CLI::Range(1, 1024))->capture_default_str();
-        app.add_option("--friction", options.friction, "between people; default: the scene's")->check(CLI::Range(0.0, 1e6));
+        app.add_option("--substeps", options.settings.substeps, "substeps a step")
+            ->check(CLI::Range(1, 1024))
+            ->capture_default_str();
+        app.add_option("--iterations", options.settings.iterations, "sweeps a substep")
+            ->check(CLI::Range(1, 10000))
+            ->capture_default_str();
+        app.add_option("--relaxations", options.settings.relaxations,
+                       "soft_step: sweeps without bias a substep")
+            ->check(CLI::Range(0, 10000))
+            ->capture_default_str();
+        app.add_option("--contact-hertz", options.settings.contact_hertz, "soft_step: stiffness of contacts")
+            ->capture_default_str();
+        app.add_option("--joint-hertz", options.settings.joint_hertz, "soft_step: stiffness of joints")
+            ->capture_default_str();
+        app.add_option("--isa", isa,
+                       "scalar, sse2, avx2, avx512 or neon; default: MOTLEY_ISA, else the widest here");
+        app.add_option("--threads", options.solver.threads, "threads, the caller's counted")
+            ->check(CLI::Range(1, 1024))
+            ->capture_default_str();
+        app.add_option("--friction", options.friction, "between people; default: the scene's")
+            ->check(CLI::Range(0.0, 1e6));
         app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();
-        app.add_option("--data", options.data, "bottleneck: a trajectory file; default: the experiment's")->check(CLI::ExistingFile);
+        app.add_option("--data", options.data, "bottleneck: a trajectory file; default: the experiment's")
+            ->check(CLI::ExistingFile);
         app.add_option("--json", json, "write the figures to this file");
         app.add_option("--trajectories", outputs.trajectories, "write PedPy text to this file");
         app.add_option("--frames", outputs.frames, "write pictures to this folder");
-        app.add_option("--frame-every", outputs.frame_every, "steps between pictures")->check(CLI::PositiveNumber)->capture_default_str();
-        app.add_option("--hash-every", outputs.hash_every, "print the state hash every so many steps")->check(CLI::PositiveNumber);
+        app.add_option("--frame-every", outputs.frame_every, "steps between pictures")
+            ->check(CLI::PositiveNumber)
+            ->capture_default_str();
+        app.add_option("--hash-every", outputs.hash_every, "print the state hash every so many steps")
+            ->check(CLI::PositiveNumber);
     }
 
     int operator()()
@@ -87,11 +110,17 @@ int main(int count, char** arguments)
     RunCommand run;
     CLI::App* run_app = app.add_subcommand("run", "run a scene and print what it cost and how well it held");
     run.declare(*run_app);
-    CLI::App* list_app = app.add_subcommand("list", "name the scenes and the instruction sets of this machine");
-    CLI::App* demo_app = app.add_subcommand("demo", "the main job: the bottleneck, then the crowd, scalar, SIMD and threads side by side");
+    CLI::App* list_app =
+        app.add_subcommand("list", "name the scenes and the instruction sets of this machine");
+    CLI::App* demo_app = app.add_subcommand(
+        "demo", "the main job: the bottleneck, then the crowd, scalar, SIMD and threads side by side");
     DemoOptions demo;
-    demo_app->add_option("--seconds", demo.seconds, "simulated time of each crowd run")->check(CLI::PositiveNumber)->capture_default_str();
-    demo_app->add_option("--rounds", demo.rounds, "interleaved rounds")->check(CLI::Range(1, 100))->capture_default_str();
+    demo_app->add_option("--seconds", demo.seconds, "simulated time of each crowd run")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    demo_app->add_option("--rounds", demo.rounds, "interleaved rounds")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
     try {
         app.parse(count, arguments);
     } catch (const CLI::ParseError& error) {
@@ -101,7 +130,8 @@ int main(int count, char** arguments)
         if (*run_app) return run();
         if (*demo_app) return run_demo(demo);
         if (*list_app) {
-            for (const SceneEntry& entry : scene_list()) fmt::print("{:<12}{}\n", entry.name, entry.description);
+            for (const SceneEntry& entry : scene_list())
+                fmt::print("{:<12}{}\n", entry.name, entry.description);
             fmt::print("instruction sets here:");
             for (const Isa isa : available_isas()) fmt::print(" {}", isa_name(isa));
             fmt::print("\n");

@@ -45,7 +45,8 @@ void NeighbourGrid::sort(std::span<const Vec3<double>> positions, double cell, E
     for (std::size_t i = 0; i < count; ++i) {
         const std::int32_t at = starts_[static_cast<std::size_t>(cells_[i]) + 1]++;
         sorted_[static_cast<std::size_t>(at)] = {static_cast<float>(positions[i].x - min_x),
-                                                 static_cast<float>(positions[i].y - min_y), static_cast<std::int32_t>(i)};
+                                                 static_cast<float>(positions[i].y - min_y),
+                                                 static_cast<std::int32_t>(i)};
     }
 }
 

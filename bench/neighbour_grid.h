@@ -20,7 +20,8 @@ class NeighbourGrid {
     void for_each_pair(float reach, Executor& executor, const Emit& emit) const
     {
         parallel_for(executor, chunk_count(), 1, [&](std::int64_t chunk, std::int64_t) {
-            for (std::int32_t y = first_row(chunk); y < first_row(chunk + 1); ++y) pairs_of_row(y, reach, chunk, emit);
+            for (std::int32_t y = first_row(chunk); y < first_row(chunk + 1); ++y)
+                pairs_of_row(y, reach, chunk, emit);
         });
     }
     /// Calls visit(chunk, i) for every disc, chunk by chunk in the order of cells.

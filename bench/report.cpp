@@ -10,13 +10,20 @@
 namespace motley::bench {
 namespace {
 
-double agent_steps(const RunResult& r) { return r.bodies * static_cast<double>(r.steps); }
-double per(double amount, double seconds) { return seconds > 0 ? amount / seconds : 0; }
+double agent_steps(const RunResult& r)
+{
+    return r.bodies * static_cast<double>(r.steps);
+}
+double per(double amount, double seconds)
+{
+    return seconds > 0 ? amount / seconds : 0;
+}
 
 /// Sweeping time only: what one visit of one constraint costs.
 double nanoseconds_per_visit(const RunResult& r)
 {
-    const double sweeps = r.stages[static_cast<std::size_t>(Stage::warm_start)] + r.stages[static_cast<std::size_t>(Stage::solve)] +
+    const double sweeps = r.stages[static_cast<std::size_t>(Stage::warm_start)] +
+                          r.stages[static_cast<std::size_t>(Stage::solve)] +
                           r.stages[static_cast<std::size_t>(Stage::relax)];
     return per(sweeps * 1e9, r.constraint_sweeps);
 }
@@ -34,11 +41,15 @@ double host_load()
 std::string table_of(const RunResult& r)
 {
     std::string text;
-    const auto line = [&](std::string_view what, const std::string& value) { text += fmt::format("  {:<34}{}\n", what, value); };
-    text += fmt::format("{}: {}, {}, {} thread{}, {} steps\n", r.scene, r.method, r.isa, r.threads, r.threads == 1 ? "" : "s", r.steps);
+    const auto line = [&](std::string_view what, const std::string& value) {
+        text += fmt::format("  {:<34}{}\n", what, value);
+    };
+    text += fmt::format("{}: {}, {}, {} thread{}, {} steps\n", r.scene, r.method, r.isa, r.threads,
+                        r.threads == 1 ? "" : "s", r.steps);
     line("bodies (mean)", fmt::format("{:.0f}", r.bodies));
     line("agent-steps/s, whole step", fmt::format("{:.3f} M", per(agent_steps(r), r.whole_seconds()) * 1e-6));
-    line("agent-steps/s, solver alone", fmt::format("{:.3f} M", per(agent_steps(r), r.solver_seconds) * 1e-6));
+    line("agent-steps/s, solver alone",
+         fmt::format("{:.3f} M", per(agent_steps(r), r.solver_seconds) * 1e-6));
     line("whole step, median", fmt::format("{:.3f} ms", r.median_step_seconds * 1e3));
     line("constraints (mean)", fmt::format("{:.0f}", r.constraints));
     line("ns per constraint and sweep", fmt::format("{:.2f}", nanoseconds_per_visit(r)));
@@ -50,10 +61,13 @@ std::string table_of(const RunResult& r)
     line("  steering (host)", fmt::format("{:9.4f}", r.steering_seconds / steps * 1e3));
     line("  neighbour search (host)", fmt::format("{:9.4f}", r.search_seconds / steps * 1e3));
     for (int s = 0; s < stage_count; ++s) {
-        line(fmt::format("  {}", stage_name(static_cast<Stage>(s))), fmt::format("{:9.4f}", r.stages[static_cast<std::size_t>(s)] / steps * 1e3));
+        line(fmt::format("  {}", stage_name(static_cast<Stage>(s))),
+             fmt::format("{:9.4f}", r.stages[static_cast<std::size_t>(s)] / steps * 1e3));
     }
-    line("overlap p50 / p99 / max", fmt::format("{:.3f} / {:.3f} / {:.3f} % of radius", 100 * r.overlap_p50, 100 * r.overlap_p99, 100 * r.overlap_max));
-    line("joint separation rms / max", fmt::format("{:.3g} / {:.3g} m", r.errors.joint_separation_rms, r.errors.joint_separation_max));
+    line("overlap p50 / p99 / max", fmt::format("{:.3f} / {:.3f} / {:.3f} % of radius", 100 * r.overlap_p50,
+                                                100 * r.overlap_p99, 100 * r.overlap_max));
+    line("joint separation rms / max",
+         fmt::format("{:.3g} / {:.3g} m", r.errors.joint_separation_rms, r.errors.joint_separation_max));
     line("residual approach speed, rms", fmt::format("{:.3g} m/s", r.residual));
     line("bodies contained", fmt::format("{}", r.contained));
     for (const Figure& figure : r.figures) line(figure.first, figure.second);
@@ -81,9 +95,12 @@ std::string json_of(const RunResult& r)
     json["bytes_per_constraint"] = r.last.bytes_per_constraint;
     json["seconds"]["steering"] = r.steering_seconds;
     json["seconds"]["neighbour search"] = r.search_seconds;
-    for (int s = 0; s < stage_count; ++s) json["seconds"][stage_name(static_cast<Stage>(s))] = r.stages[static_cast<std::size_t>(s)];
-    json["overlap_share_of_radius"] = {{"p50", r.overlap_p50}, {"p99", r.overlap_p99}, {"max", r.overlap_max}};
-    json["joint_separation_m"] = {{"rms", r.errors.joint_separation_rms}, {"max", r.errors.joint_separation_max}};
+    for (int s = 0; s < stage_count; ++s)
+        json["seconds"][stage_name(static_cast<Stage>(s))] = r.stages[static_cast<std::size_t>(s)];
+    json["overlap_share_of_radius"] = {
+        {"p50", r.overlap_p50}, {"p99", r.overlap_p99}, {"max", r.overlap_max}};
+    json["joint_separation_m"] = {{"rms", r.errors.joint_separation_rms},
+                                  {"max", r.errors.joint_separation_max}};
     json["residual_approach_speed_rms"] = r.residual;
     json["bodies_contained"] = r.contained;
     for (const Figure& figure : r.figures) json["figures"][figure.first] = figure.second;

@@ -16,19 +16,26 @@
 namespace motley::bench {
 namespace {
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 /// A bar on a terminal; elsewhere a line each quarter.
 class Progress {
   public:
-    Progress(bool shown, std::string what, std::int64_t steps) : shown_(shown), terminal_(isatty(2) != 0), what_(std::move(what)), steps_(steps) {}
+    Progress(bool shown, std::string what, std::int64_t steps)
+        : shown_(shown), terminal_(isatty(2) != 0), what_(std::move(what)), steps_(steps)
+    {
+    }
     void advance(std::int64_t step)
     {
         const auto percent = static_cast<int>(100 * step / std::max<std::int64_t>(1, steps_));
         if (!shown_ || percent == percent_) return;
         percent_ = percent;
         if (terminal_) {
-            fmt::print(stderr, "\r{} [{:<40}] {:3} %", what_, std::string(static_cast<std::size_t>(percent * 2 / 5), '#'), percent);
+            fmt::print(stderr, "\r{} [{:<40}] {:3} %", what_,
+                       std::string(static_cast<std::size_t>(percent * 2 / 5), '#'), percent);
             if (percent == 100) fmt::print(stderr, "\n");
             std::fflush(stderr);
         } else if (percent / 25 != quarter_) {
@@ -59,7 +66,8 @@ void judge_contacts(RunResult& result, BenchScene& scene, Executor& executor)
         if (contacts[i].separation > 0) continue;
         const auto a = static_cast<std::size_t>(pairs[i].a);
         const auto note = [&](std::size_t agent) {
-            deepest[agent] = std::max(deepest[agent], -static_cast<double>(contacts[i].separation / crowd->agents[agent].radius));
+            deepest[agent] = std::max(
+                deepest[agent], -static_cast<double>(contacts[i].separation / crowd->agents[agent].radius));
         };
         note(a);
         Vec3<float> relative = crowd->velocities[a];
@@ -90,7 +98,9 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     Executor& executor = solver.executor();
     std::unique_ptr<TrajectoryWriter> trajectories;
     std::unique_ptr<FrameWriter> frames;
-    if (!outputs.trajectories.empty()) trajectories = std::make_unique<TrajectoryWriter>(outputs.trajectories, 1 / static_cast<double>(options.dt));
+    if (!outputs.trajectories.empty())
+        trajectories =
+            std::make_unique<TrajectoryWriter>(outputs.trajectories, 1 / static_cast<double>(options.dt));
     if (!outputs.frames.empty()) frames = std::make_unique<FrameWriter>(outputs.frames);
     if (scene->crowd() == nullptr && (trajectories || frames)) {
         throw std::runtime_error(fmt::format("{}: has no people, so no trajectories or frames", entry.name));
@@ -101,7 +111,8 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     result.isa = isa_name(solver.isa());
     result.method = options.settings.method == Method::soft_step ? "soft_step" : "sequential_impulse";
     result.threads = solver.threads();
-    const auto steps = static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));
+    const auto steps =
+        static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));
     Progress progress(outputs.progress, entry.name, steps);
     std::vector<double> step_seconds;
     for (std::int64_t step = 0; step < steps; ++step) {
@@ -113,7 +124,8 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         const double found = now();
         result.last = solver.step(scene->scene, options.dt, contacts);
         const double solved = now();
-        if (result.last.status != StepStatus::done) throw std::runtime_error(fmt::format("step {} refused: {}", step, result.last.error));
+        if (result.last.status != StepStatus::done)
+            throw std::runtime_error(fmt::format("step {} refused: {}", step, result.last.error));
 
         result.steering_seconds += steered - began;
         result.search_seconds += found - steered;
@@ -140,7 +152,9 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     const auto count = static_cast<double>(std::max<std::int64_t>(1, result.steps));
     result.bodies /= count;
     result.constraints /= count;
-    std::nth_element(step_seconds.begin(), step_seconds.begin() + static_cast<std::ptrdiff_t>(step_seconds.size() / 2), step_seconds.end());
+    std::nth_element(step_seconds.begin(),
+                     step_seconds.begin() + static_cast<std::ptrdiff_t>(step_seconds.size() / 2),
+                     step_seconds.end());
     if (!step_seconds.empty()) result.median_step_seconds = step_seconds[step_seconds.size() / 2];
     result.errors = scene->scene.errors();
     result.state_hash = scene->scene.state_hash();

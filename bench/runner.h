@@ -16,15 +16,16 @@ struct RunResult {
     std::string scene, isa, method;
     int threads = 1;
     std::int64_t steps = 0;
-    double bodies = 0;                   ///< mean over the steps
+    double bodies = 0;  ///< mean over the steps
     std::array<double, stage_count> stages{};
     double solver_seconds = 0, steering_seconds = 0, search_seconds = 0;
-    double median_step_seconds = 0;      ///< of a whole step: solver, steering and search
-    double constraints = 0;              ///< mean
-    double constraint_sweeps = 0;        ///< constraints x sweeps, summed
+    double median_step_seconds = 0;  ///< of a whole step: solver, steering and search
+    double constraints = 0;          ///< mean
+    double constraint_sweeps = 0;    ///< constraints x sweeps, summed
     StepReport last;
-    double overlap_p50 = 0, overlap_p99 = 0, overlap_max = 0;  ///< deepest overlap of each person, share of radius
-    double residual = 0;                 ///< m/s, rms approach speed left at touching contacts
+    double overlap_p50 = 0, overlap_p99 = 0,
+           overlap_max = 0;  ///< deepest overlap of each person, share of radius
+    double residual = 0;     ///< m/s, rms approach speed left at touching contacts
     SceneErrors errors;
     std::uint64_t state_hash = 0;
     std::int64_t contained = 0;

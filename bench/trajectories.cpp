@@ -41,14 +41,16 @@ Trajectories read_trajectories(const std::string& path)
             if (key == std::string_view::npos) continue;
             line.remove_prefix(key + 10);
             if (!take(line, result.frames_a_second) || !(result.frames_a_second > 0)) {
-                throw std::runtime_error(fmt::format("{}:{}: the frame rate must be a number above 0", path, number));
+                throw std::runtime_error(
+                    fmt::format("{}:{}: the frame rate must be a number above 0", path, number));
             }
             continue;
         }
         TrajectoryPoint point;
-        if (!take(line, point.id) || !take(line, point.frame) || !take(line, point.x) || !take(line, point.y) ||
-            !std::isfinite(point.x) || !std::isfinite(point.y)) {
-            throw std::runtime_error(fmt::format("{}:{}: expected 'id frame x y [z]', found '{}'", path, number, text.substr(0, 60)));
+        if (!take(line, point.id) || !take(line, point.frame) || !take(line, point.x) ||
+            !take(line, point.y) || !std::isfinite(point.x) || !std::isfinite(point.y)) {
+            throw std::runtime_error(fmt::format("{}:{}: expected 'id frame x y [z]', found '{}'", path,
+                                                 number, text.substr(0, 60)));
         }
         result.points.push_back(point);
     }
@@ -73,8 +75,8 @@ TrajectoryWriter::~TrajectoryWriter()
 void TrajectoryWriter::write(const Crowd& crowd, std::int64_t frame)
 {
     for (std::size_t i = 0; i < crowd.positions.size(); ++i) {
-        fmt::print(file_, "{}\t{}\t{:.4f}\t{:.4f}\t{:.2f}\n", crowd.number_of(i) + 1, frame, crowd.positions[i].x,
-                   crowd.positions[i].y, 0.0);
+        fmt::print(file_, "{}\t{}\t{:.4f}\t{:.4f}\t{:.2f}\n", crowd.number_of(i) + 1, frame,
+                   crowd.positions[i].x, crowd.positions[i].y, 0.0);
     }
 }
 
@@ -82,7 +84,8 @@ void TrajectoryWriter::close()
 {
     const bool failed = std::ferror(file_) != 0 || std::fclose(file_) != 0;
     file_ = nullptr;
-    if (failed || std::rename(part_.c_str(), path_.c_str()) != 0) throw std::runtime_error(fmt::format("{}: cannot be written", path_));
+    if (failed || std::rename(part_.c_str(), path_.c_str()) != 0)
+        throw std::runtime_error(fmt::format("{}: cannot be written", path_));
 }
 
 }  // namespace motley::bench

@@ -48,8 +48,10 @@ class MixedScene {
             const float inertia = 0.4F * ball.mass * static_cast<float>(radius * radius);
             ball.inertia = {inertia, 0.1F * inertia, 0, 1.1F * inertia, 0, 0.9F * inertia};
             ball.position = {0.55 * (i % 8) + 0.02 * random.symmetric(), 0.6 + 0.55 * (i / 8), 0};
-            ball.linear_velocity = {static_cast<float>(random.symmetric()), static_cast<float>(random.symmetric()), 0};
-            if (ball.model == BodyModel::rigid) ball.angular_velocity = {0.5F, static_cast<float>(random.symmetric()), 1};
+            ball.linear_velocity = {static_cast<float>(random.symmetric()),
+                                    static_cast<float>(random.symmetric()), 0};
+            if (ball.model == BodyModel::rigid)
+                ball.angular_velocity = {0.5F, static_cast<float>(random.symmetric()), 1};
             if (ball.model == BodyModel::planar) ball.yaw = 3 * random.symmetric();
             balls.push_back(scene.add_body(ball));
         }
@@ -61,7 +63,8 @@ class MixedScene {
         paddle = scene.add_body(moving_wall);
 
         for (int i = 0; i + 9 < 3 * count; i += 4) {
-            const BodyId a = balls[static_cast<std::size_t>(i)], b = balls[static_cast<std::size_t>(i + 8 + i % 2)];
+            const BodyId a = balls[static_cast<std::size_t>(i)],
+                         b = balls[static_cast<std::size_t>(i + 8 + i % 2)];
             DistanceDefinition distance;
             distance.body_a = a;
             distance.body_b = b;
@@ -76,15 +79,17 @@ class MixedScene {
             const auto anchor = [&](BodyId body, float x) {
                 return scene.model(body) == BodyModel::particle ? Vec3<float>{} : Vec3<float>{x, 0, 0};
             };
-            joints.push_back(scene.add_joint(BallSocketDefinition{a, b, anchor(a, 0.27F), anchor(b, -0.27F)}));
+            joints.push_back(
+                scene.add_joint(BallSocketDefinition{a, b, anchor(a, 0.27F), anchor(b, -0.27F)}));
         }
         // One of each model hangs on the world, from either side of the definition.
         for (int i = 0; i < 3; ++i) {
             const BodyState s = scene.state(balls[static_cast<std::size_t>(i)]);
             const Vec3<float> hook = convert<float>(s.position);
             const BodyId ball = balls[static_cast<std::size_t>(i)];
-            joints.push_back(scene.add_joint(i % 2 == 0 ? BallSocketDefinition{scene.ground(), ball, hook, {}}
-                                                        : BallSocketDefinition{ball, scene.ground(), {}, hook}));
+            joints.push_back(scene.add_joint(i % 2 == 0
+                                                 ? BallSocketDefinition{scene.ground(), ball, hook, {}}
+                                                 : BallSocketDefinition{ball, scene.ground(), {}, hook}));
         }
     }
 
@@ -101,12 +106,14 @@ class MixedScene {
                 const Vec3<double> d = at[j] - at[i];
                 const double distance = std::sqrt(dot(d, d));
                 if (distance > 2.2 * radius || distance < 1e-9 || scene.is_contained(balls[j])) continue;
-                add(balls[i], balls[j], i << 32 | j, (1 / distance) * d, distance - 2 * radius, radius, radius);
+                add(balls[i], balls[j], i << 32 | j, (1 / distance) * d, distance - 2 * radius, radius,
+                    radius);
             }
             const double above = at[i].y - floor_height;
             if (above < 1.2 * radius) {
                 // The ground stands at the origin: its arm is the point itself.
-                Contact floor = make(scene.ground(), balls[i], i << 32 | 0xFFFFFFFF, {0, 1, 0}, above - radius);
+                Contact floor =
+                    make(scene.ground(), balls[i], i << 32 | 0xFFFFFFFF, {0, 1, 0}, above - radius);
                 floor.arm_a = {static_cast<float>(at[i].x), 0, static_cast<float>(at[i].z)};
                 floor.arm_b = {0, static_cast<float>(-above), 0};
                 if (i % 2 == 0) {  // the same contact said the other way round
@@ -137,7 +144,8 @@ class MixedScene {
         contact.restitution = key % 3 == 0 ? 0 : restitution;
         return contact;
     }
-    void add(BodyId a, BodyId b, std::uint64_t key, Vec3<double> normal, double separation, double ra, double rb)
+    void add(BodyId a, BodyId b, std::uint64_t key, Vec3<double> normal, double separation, double ra,
+             double rb)
     {
         // Two planar bodies may not have a normal that leaves the plane by rounding.
         if (scene.model(a) == BodyModel::planar && scene.model(b) == BodyModel::planar) normal.z = 0;

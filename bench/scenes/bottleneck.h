@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "../bench_scene.h"
@@ -16,22 +17,26 @@ namespace motley::bench {
 class Bottleneck final : public CrowdScene {
   public:
     static constexpr double measured_flow = 1.15;  ///< persons a second
-    static constexpr int measured_people = 75;
+    static constexpr float free_speed = 1.34F;     ///< m/s
+    static constexpr float yielding_speed = 0.3F;  ///< m/s, of people who touch somebody in front
 
     explicit Bottleneck(const RunOptions& options)
     {
         people.friction = options.friction < 0 ? 0.0F : options.friction;
-        const Trajectories recording = read_trajectories(options.data.empty() ? MOTLEY_BENCH_DATA "/040_c_56_h-.txt" : options.data);
+        const Trajectories recording =
+            read_trajectories(options.data.empty() ? MOTLEY_BENCH_DATA "/040_c_56_h-.txt" : options.data);
         std::map<std::int64_t, TrajectoryPoint> first;
         for (const TrajectoryPoint& point : recording.points) {
             const auto [entry, added] = first.emplace(point.id, point);
             if (!added && point.frame < entry->second.frame) entry->second = point;
         }
         for (const auto& [id, point] : first) {
-            arrivals_.push_back({static_cast<double>(point.frame) / recording.frames_a_second, {point.x, point.y}});
+            arrivals_.push_back(
+                {static_cast<double>(point.frame) / recording.frames_a_second, {point.x, point.y}});
         }
-        std::stable_sort(arrivals_.begin(), arrivals_.end(), [](const Arrival& a, const Arrival& b) { return a.time < b.time; });
-        const Vec2<double> outline[] = {{-0.7, -1.1}, {-0.25, -1.1}, {-0.25, -0.15}, {-0.4, 0}, {-2.8, 0},
+        std::stable_sort(arrivals_.begin(), arrivals_.end(),
+                         [](const Arrival& a, const Arrival& b) { return a.time < b.time; });
+        const Vec2<double> outline[] = {{-0.7, -1.1}, {-0.25, -1.1}, {-0.25, -0.15}, {-0.4, 0},   {-2.8, 0},
                                         {-2.8, 6.7},  {-3.05, 6.7},  {-3.05, -0.3},  {-0.7, -0.3}};
         for (const double side : {1.0, -1.0}) {
             for (std::size_t i = 0; i < std::size(outline); ++i) {
@@ -52,19 +57,32 @@ class Bottleneck final : public CrowdScene {
             const Vec3<double>& p = people.positions[i];
             // To the nearest point of the opening a body can pass, then straight through.
             const double half = 0.25 - static_cast<double>(people.agents[i].radius);
-            people.agents[i].goal = p.y > 0.2 ? Vec2<double>{std::clamp(p.x, -std::max(half, 0.02), std::max(half, 0.02)), 0.0}
-                                              : Vec2<double>{0, -3};
+            people.agents[i].goal =
+                p.y > 0.2 ? Vec2<double>{std::clamp(p.x, -half, half), 0.0} : Vec2<double>{0, -3};
+            people.agents[i].desired_speed = free_speed;
+        }
+        // Whoever touches somebody nearer to the door yields; else smooth discs arch in the door and stand for ever.
+        const auto contacts = people.contacts();
+        const auto pairs = people.pairs();
+        for (std::size_t k = 0; k < contacts.size() && !left_; ++k) {
+            if (pairs[k].b < 0) continue;
+            const auto a = static_cast<std::size_t>(pairs[k].a), b = static_cast<std::size_t>(pairs[k].b);
+            people.agents[to_door(a) < to_door(b) ? b : a].desired_speed = yielding_speed;
         }
         people.steer(scene, executor);
     }
 
-    [[nodiscard]] bool is_over(double) const override { return next_ == arrivals_.size() && people.agents.empty(); }
+    [[nodiscard]] bool is_over(double) const override
+    {
+        return next_ == arrivals_.size() && people.agents.empty();
+    }
 
     [[nodiscard]] std::vector<Figure> figures() const override
     {
         const double span = last_ - first_;
         return {{"people through the door", fmt::format("{} of {}", passed_, arrivals_.size())},
-                {"flow", passed_ > 1 ? fmt::format("{:.2f} persons/s (measured: {:.2f})", (passed_ - 1) / span, measured_flow)
+                {"flow", passed_ > 1 ? fmt::format("{:.2f} persons/s (measured: {:.2f})",
+                                                   (passed_ - 1) / span, measured_flow)
                                      : std::string("none yet")}};
     }
 
@@ -77,7 +95,15 @@ class Bottleneck final : public CrowdScene {
     std::size_t next_ = 0;
     int passed_ = 0;
     double first_ = 0, last_ = 0;
-    std::vector<double> height_before_;  ///< y of each agent a step ago
+    std::vector<double> height_before_;  ///< the least y of each agent so far
+
+    bool left_ = false;  ///< somebody left since the contacts were found: their indices are stale
+
+    [[nodiscard]] double to_door(std::size_t i) const
+    {
+        const Vec3<double>& p = people.positions[i];
+        return p.y < 0 ? p.y : std::sqrt(p.x * p.x + p.y * p.y);
+    }
 
     void enter(double time)
     {
@@ -91,15 +117,17 @@ class Bottleneck final : public CrowdScene {
 
     void leave(double time)
     {
+        left_ = false;
         for (std::size_t i = people.agents.size(); i-- > 0;) {
             const double y = people.positions[i].y;
             if (height_before_[i] > 0 && y <= 0) {
                 if (passed_++ == 0) first_ = time;
                 last_ = time;
             }
-            height_before_[i] = y;
+            height_before_[i] = std::min(height_before_[i], y);  // whoever is pushed back passes once
             if (y > -2) continue;
             people.remove(scene, i);
+            left_ = true;
             height_before_[i] = height_before_.back();
             height_before_.pop_back();
         }

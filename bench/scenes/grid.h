@@ -22,7 +22,8 @@ class Grid final : public JointScene {
   public:
     explicit Grid(const RunOptions& options)
     {
-        const int side = std::max(2, static_cast<int>(std::lround(std::sqrt(static_cast<double>(options.agents)))));
+        const int side =
+            std::max(2, static_cast<int>(std::lround(std::sqrt(static_cast<double>(options.agents)))));
         Random random(options.seed);
         std::vector<BodyId> ids;
         for (int column = 0; column < side; ++column) {
@@ -38,12 +39,16 @@ class Grid final : public JointScene {
                 ids.push_back(scene.add_body(body));
             }
         }
-        const auto at = [&](int column, int row) { return ids[static_cast<std::size_t>(column * side + row)]; };
+        const auto at = [&](int column, int row) {
+            return ids[static_cast<std::size_t>(column * side + row)];
+        };
         for (int column = 0; column < side; ++column) {
             for (int row = 1; row < side; ++row) {
-                scene.add_joint(BallSocketDefinition{at(column, row - 1), at(column, row), {0, -0.5F, 0}, {0, 0.5F, 0}});
+                scene.add_joint(
+                    BallSocketDefinition{at(column, row - 1), at(column, row), {0, -0.5F, 0}, {0, 0.5F, 0}});
                 if (column == 0) continue;
-                scene.add_joint(BallSocketDefinition{at(column - 1, row), at(column, row), {0.5F, 0, 0}, {-0.5F, 0, 0}});
+                scene.add_joint(
+                    BallSocketDefinition{at(column - 1, row), at(column, row), {0.5F, 0, 0}, {-0.5F, 0, 0}});
             }
         }
     }
@@ -64,7 +69,9 @@ class Chains final : public JointScene {
                 body.position = {0.25 + 0.5 * i, y, z};
                 body.inertia = {0.005F, 0, 0, 0.02333F, 0, 0.02333F};
                 const BodyId link = scene.add_body(body);
-                const Vec3<float> on_before = i == 0 ? Vec3<float>{0, static_cast<float>(y), static_cast<float>(z)} : Vec3<float>{0.25F, 0, 0};
+                const Vec3<float> on_before =
+                    i == 0 ? Vec3<float>{0, static_cast<float>(y), static_cast<float>(z)}
+                           : Vec3<float>{0.25F, 0, 0};
                 scene.add_joint(BallSocketDefinition{before, link, on_before, {-0.25F, 0, 0}});
                 before = link;
             }

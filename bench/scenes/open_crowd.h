@@ -24,12 +24,16 @@ class OpenCrowd final : public CrowdScene {
             Agent agent;
             // Radius 0.20 m +- 8 %, as of a crowd of men and women.
             agent.radius = static_cast<float>(0.20 * (1 + 0.08 * random_.symmetric()));
-            const Vec2<double> at{pitch * (0.5 + static_cast<double>(i % columns)) + 0.01 * random_.symmetric(),
-                                  pitch * (0.5 + static_cast<double>(i / columns)) + 0.01 * random_.symmetric()};
+            const Vec2<double> at{
+                pitch * (0.5 + static_cast<double>(i % columns)) + 0.01 * random_.symmetric(),
+                pitch * (0.5 + static_cast<double>(i / columns)) + 0.01 * random_.symmetric()};
             agent.goal = goal_near(at);
             people.add(scene, agent, at);
         }
-        people.walls = {{{0, 0}, {side_, 0}}, {{side_, 0}, {side_, side_}}, {{side_, side_}, {0, side_}}, {{0, side_}, {0, 0}}};
+        people.walls = {{{0, 0}, {side_, 0}},
+                        {{side_, 0}, {side_, side_}},
+                        {{side_, side_}, {0, side_}},
+                        {{0, side_}, {0, 0}}};
     }
 
     void steer(double time, Executor& executor) override
@@ -37,8 +41,10 @@ class OpenCrowd final : public CrowdScene {
         CrowdScene::steer(time, executor);
         // One in sixty is asked each step whether it has arrived: often enough for a walk of seconds.
         for (std::size_t i = turn_; i < people.agents.size(); i += 60) {
-            const double dx = people.agents[i].goal.x - people.positions[i].x, dy = people.agents[i].goal.y - people.positions[i].y;
-            if (dx * dx + dy * dy < 1) people.agents[i].goal = goal_near({people.positions[i].x, people.positions[i].y});
+            const double dx = people.agents[i].goal.x - people.positions[i].x,
+                         dy = people.agents[i].goal.y - people.positions[i].y;
+            if (dx * dx + dy * dy < 1)
+                people.agents[i].goal = goal_near({people.positions[i].x, people.positions[i].y});
         }
         turn_ = (turn_ + 1) % 60;
     }

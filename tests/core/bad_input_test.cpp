@@ -45,8 +45,8 @@ struct Fixture {
 struct Case {
     const char* what;
     std::function<void(Fixture&)> offend;
-    const char* field;   ///< must stand in the message
-    const char* value;   ///< likewise
+    const char* field;  ///< must stand in the message
+    const char* value;  ///< likewise
 };
 
 void expect_refused(const Case& c)
@@ -88,33 +88,87 @@ Case body(const char* what, std::function<void(BodyDefinition&)> spoil, const ch
 TEST(BadInput, EveryFieldOfABodyIsCheckedAndABatchIsAllOrNone)
 {
     const Case cases[] = {
-        body("model", [](auto& b) { b.model = static_cast<BodyModel>(7); }, "model", "7"),
-        body("motion", [](auto& b) { b.motion = static_cast<BodyMotion>(9); }, "motion", "9"),
-        body("position NaN", [](auto& b) { b.position.y = std::nan(""); }, "position.y", "nan"),
-        body("position infinite", [](auto& b) { b.position.x = HUGE_VAL; }, "position.x", "inf"),
-        body("position far", [](auto& b) { b.position.z = 1e13; }, "position.z", "1e+13"),
-        body("yaw", [](auto& b) { b.yaw = std::nan(""); }, "yaw", "nan"),
-        body("orientation zero", [](auto& b) { b.orientation = {0, 0, 0, 0}; }, "orientation", "0"),
-        body("orientation NaN", [](auto& b) { b.orientation.x = std::nan(""); }, "orientation", "nan"),
-        body("linear velocity", [](auto& b) { b.linear_velocity.z = nan; }, "linear_velocity.z", "nan"),
-        body("angular velocity", [](auto& b) { b.angular_velocity.x = infinity; }, "angular_velocity.x", "inf"),
-        body("mass zero", [](auto& b) { b.mass = 0; }, "mass", "0"),
-        body("mass negative", [](auto& b) { b.mass = -2; }, "mass", "-2"),
-        body("mass NaN", [](auto& b) { b.mass = nan; }, "mass", "nan"),
-        body("inertia zero", [](auto& b) { b.inertia.xx = 0; }, "inertia.xx", "0"),
-        body("inertia NaN", [](auto& b) { b.inertia.yz = nan; }, "inertia", "nan"),
-        body("inertia indefinite", [](auto& b) { b.inertia.xy = 2; }, "inertia", "positive definite"),
-        body("inertia against the triangle inequality", [](auto& b) { b.inertia = {1, 0, 0, 1, 0, 3}; }, "inertia", "triangle"),
-        body("planar out of plane", [](auto& b) { b.model = BodyModel::planar; b.linear_velocity.z = 1; }, "linear_velocity.z", "1"),
-        body("planar tilting", [](auto& b) { b.model = BodyModel::planar; b.angular_velocity.x = 1; }, "angular_velocity.x", "1"),
-        body("planar inertia", [](auto& b) { b.model = BodyModel::planar; b.inertia.zz = -1; }, "inertia.zz", "-1"),
-        body("particle spinning", [](auto& b) { b.model = BodyModel::particle; b.angular_velocity.y = 2; }, "angular_velocity.y", "2"),
-        body("static moving", [](auto& b) { b.motion = BodyMotion::static_body; b.linear_velocity.x = 3; }, "linear_velocity.x", "3"),
+        body(
+            "model", [](auto& b) { b.model = static_cast<BodyModel>(7); }, "model", "7"),
+        body(
+            "motion", [](auto& b) { b.motion = static_cast<BodyMotion>(9); }, "motion", "9"),
+        body(
+            "position NaN", [](auto& b) { b.position.y = std::nan(""); }, "position.y", "nan"),
+        body(
+            "position infinite", [](auto& b) { b.position.x = HUGE_VAL; }, "position.x", "inf"),
+        body(
+            "position far", [](auto& b) { b.position.z = 1e13; }, "position.z", "1e+13"),
+        body(
+            "yaw", [](auto& b) { b.yaw = std::nan(""); }, "yaw", "nan"),
+        body(
+            "orientation zero",
+            [](auto& b) {
+                b.orientation = {0, 0, 0, 0};
+            },
+            "orientation", "0"),
+        body(
+            "orientation NaN", [](auto& b) { b.orientation.x = std::nan(""); }, "orientation", "nan"),
+        body(
+            "linear velocity", [](auto& b) { b.linear_velocity.z = nan; }, "linear_velocity.z", "nan"),
+        body(
+            "angular velocity", [](auto& b) { b.angular_velocity.x = infinity; }, "angular_velocity.x",
+            "inf"),
+        body(
+            "mass zero", [](auto& b) { b.mass = 0; }, "mass", "0"),
+        body(
+            "mass negative", [](auto& b) { b.mass = -2; }, "mass", "-2"),
+        body(
+            "mass NaN", [](auto& b) { b.mass = nan; }, "mass", "nan"),
+        body(
+            "inertia zero", [](auto& b) { b.inertia.xx = 0; }, "inertia.xx", "0"),
+        body(
+            "inertia NaN", [](auto& b) { b.inertia.yz = nan; }, "inertia", "nan"),
+        body(
+            "inertia indefinite", [](auto& b) { b.inertia.xy = 2; }, "inertia", "positive definite"),
+        body(
+            "inertia against the triangle inequality", [](auto& b) { b.inertia = {1, 0, 0, 1, 0, 3}; },
+            "inertia", "triangle"),
+        body(
+            "planar out of plane",
+            [](auto& b) {
+                b.model = BodyModel::planar;
+                b.linear_velocity.z = 1;
+            },
+            "linear_velocity.z", "1"),
+        body(
+            "planar tilting",
+            [](auto& b) {
+                b.model = BodyModel::planar;
+                b.angular_velocity.x = 1;
+            },
+            "angular_velocity.x", "1"),
+        body(
+            "planar inertia",
+            [](auto& b) {
+                b.model = BodyModel::planar;
+                b.inertia.zz = -1;
+            },
+            "inertia.zz", "-1"),
+        body(
+            "particle spinning",
+            [](auto& b) {
+                b.model = BodyModel::particle;
+                b.angular_velocity.y = 2;
+            },
+            "angular_velocity.y", "2"),
+        body(
+            "static moving",
+            [](auto& b) {
+                b.motion = BodyMotion::static_body;
+                b.linear_velocity.x = 3;
+            },
+            "linear_velocity.x", "3"),
     };
     for (const Case& c : cases) expect_refused(c);
 }
 
-Case ball_socket(const char* what, std::function<void(BallSocketDefinition&, Fixture&)> spoil, const char* field, const char* value)
+Case ball_socket(const char* what, std::function<void(BallSocketDefinition&, Fixture&)> spoil,
+                 const char* field, const char* value)
 {
     return {what,
             [spoil](Fixture& f) {
@@ -125,7 +179,8 @@ Case ball_socket(const char* what, std::function<void(BallSocketDefinition&, Fix
             field, value};
 }
 
-Case distance(const char* what, std::function<void(DistanceDefinition&, Fixture&)> spoil, const char* field, const char* value)
+Case distance(const char* what, std::function<void(DistanceDefinition&, Fixture&)> spoil, const char* field,
+              const char* value)
 {
     return {what,
             [spoil](Fixture& f) {
@@ -141,24 +196,73 @@ Case distance(const char* what, std::function<void(DistanceDefinition&, Fixture&
 TEST(BadInput, EveryFieldOfAJointIsChecked)
 {
     const Case cases[] = {
-        ball_socket("null body", [](auto& j, Fixture&) { j.body_a = {}; }, "body_a", "null"),
-        ball_socket("removed body", [](auto& j, Fixture& f) { j.body_b = f.removed; }, "body_b", "not alive"),
-        ball_socket("unknown body", [](auto& j, Fixture&) { j.body_b = {12345, 1}; }, "body_b", "12345"),
-        ball_socket("one body twice", [](auto& j, Fixture&) { j.body_b = j.body_a; }, "body_b", "same"),
-        ball_socket("nothing to move", [](auto& j, Fixture& f) { j.body_a = f.kinematic; j.body_b = f.stationary; }, "body_b", "cannot move"),
-        ball_socket("anchor a", [](auto& j, Fixture&) { j.local_anchor_a.y = nan; }, "local_anchor_a.y", "nan"),
-        ball_socket("anchor b", [](auto& j, Fixture&) { j.local_anchor_b.x = infinity; }, "local_anchor_b.x", "inf"),
-        ball_socket("anchor far", [](auto& j, Fixture&) { j.local_anchor_b.z = 2e9F; }, "local_anchor_b.z", "2e+09"),
-        ball_socket("anchor of a particle", [](auto& j, Fixture& f) { j.body_b = f.particle; j.local_anchor_b.x = 1; }, "local_anchor_b.x", "1"),
-        distance("null body", [](auto& j, Fixture&) { j.body_a = {}; }, "body_a", "null"),
-        distance("anchor a", [](auto& j, Fixture&) { j.local_anchor_a.x = nan; }, "local_anchor_a.x", "nan"),
-        distance("anchor b", [](auto& j, Fixture&) { j.local_anchor_b.y = nan; }, "local_anchor_b.y", "nan"),
-        distance("length negative", [](auto& j, Fixture&) { j.length = -0.3F; }, "DistanceDefinition.length", "-0.3"),
-        distance("length NaN", [](auto& j, Fixture&) { j.length = nan; }, "DistanceDefinition.length", "nan"),
-        distance("mode", [](auto& j, Fixture&) { j.mode = static_cast<DistanceMode>(5); }, "DistanceDefinition.mode", "5"),
-        distance("hertz zero", [](auto& j, Fixture&) { j.mode = DistanceMode::spring; j.hertz = 0; }, "DistanceDefinition.hertz", "0"),
-        distance("hertz NaN", [](auto& j, Fixture&) { j.mode = DistanceMode::spring; j.hertz = nan; }, "DistanceDefinition.hertz", "nan"),
-        distance("damping", [](auto& j, Fixture&) { j.mode = DistanceMode::spring; j.damping_ratio = -1; }, "DistanceDefinition.damping_ratio", "-1"),
+        ball_socket(
+            "null body", [](auto& j, Fixture&) { j.body_a = {}; }, "body_a", "null"),
+        ball_socket(
+            "removed body", [](auto& j, Fixture& f) { j.body_b = f.removed; }, "body_b", "not alive"),
+        ball_socket(
+            "unknown body",
+            [](auto& j, Fixture&) {
+                j.body_b = {12345, 1};
+            },
+            "body_b", "12345"),
+        ball_socket(
+            "one body twice", [](auto& j, Fixture&) { j.body_b = j.body_a; }, "body_b", "same"),
+        ball_socket(
+            "nothing to move",
+            [](auto& j, Fixture& f) {
+                j.body_a = f.kinematic;
+                j.body_b = f.stationary;
+            },
+            "body_b", "cannot move"),
+        ball_socket(
+            "anchor a", [](auto& j, Fixture&) { j.local_anchor_a.y = nan; }, "local_anchor_a.y", "nan"),
+        ball_socket(
+            "anchor b", [](auto& j, Fixture&) { j.local_anchor_b.x = infinity; }, "local_anchor_b.x", "inf"),
+        ball_socket(
+            "anchor far", [](auto& j, Fixture&) { j.local_anchor_b.z = 2e9F; }, "local_anchor_b.z", "2e+09"),
+        ball_socket(
+            "anchor of a particle",
+            [](auto& j, Fixture& f) {
+                j.body_b = f.particle;
+                j.local_anchor_b.x = 1;
+            },
+            "local_anchor_b.x", "1"),
+        distance(
+            "null body", [](auto& j, Fixture&) { j.body_a = {}; }, "body_a", "null"),
+        distance(
+            "anchor a", [](auto& j, Fixture&) { j.local_anchor_a.x = nan; }, "local_anchor_a.x", "nan"),
+        distance(
+            "anchor b", [](auto& j, Fixture&) { j.local_anchor_b.y = nan; }, "local_anchor_b.y", "nan"),
+        distance(
+            "length negative", [](auto& j, Fixture&) { j.length = -0.3F; }, "DistanceDefinition.length",
+            "-0.3"),
+        distance(
+            "length NaN", [](auto& j, Fixture&) { j.length = nan; }, "DistanceDefinition.length", "nan"),
+        distance(
+            "mode", [](auto& j, Fixture&) { j.mode = static_cast<DistanceMode>(5); },
+            "DistanceDefinition.mode", "5"),
+        distance(
+            "hertz zero",
+            [](auto& j, Fixture&) {
+                j.mode = DistanceMode::spring;
+                j.hertz = 0;
+            },
+            "DistanceDefinition.hertz", "0"),
+        distance(
+            "hertz NaN",
+            [](auto& j, Fixture&) {
+                j.mode = DistanceMode::spring;
+                j.hertz = nan;
+            },
+            "DistanceDefinition.hertz", "nan"),
+        distance(
+            "damping",
+            [](auto& j, Fixture&) {
+                j.mode = DistanceMode::spring;
+                j.damping_ratio = -1;
+            },
+            "DistanceDefinition.damping_ratio", "-1"),
     };
     for (const Case& c : cases) expect_refused(c);
 }
@@ -174,26 +278,102 @@ TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
         {"model", [](Fixture& f) { (void)f.scene.model({}); }, "model.body", "null"},
         {"motion", [](Fixture& f) { (void)f.scene.motion({}); }, "motion.body", "null"},
         {"remove", [](Fixture& f) { f.scene.remove_body(f.removed); }, "remove_bodies", "not alive"},
-        {"remove the ground", [](Fixture& f) { f.scene.remove_body(f.scene.ground()); }, "remove_bodies", "ground"},
-        {"remove twice", [](Fixture& f) { const BodyId two[2] = {f.rigid, f.rigid}; f.scene.remove_bodies(two); }, "remove_bodies", "twice"},
-        {"remove a removed joint", [](Fixture& f) { f.scene.remove_joint(f.removed_joint); }, "remove_joint", "not alive"},
-        {"force of a removed joint", [](Fixture& f) { (void)f.scene.joint_force(f.removed_joint); }, "joint_force", "not alive"},
-        {"add_bodies sizes", [](Fixture& f) { const BodyDefinition d[2]; BodyId id[1]; f.scene.add_bodies(d, id); }, "ids.size()", "1"},
-        {"set_pose NaN", [](Fixture& f) { f.scene.set_pose(f.rigid, {std::nan(""), 0, 0}, {0, 0, 0, 1}, 0); }, "set_pose.position.x", "nan"},
-        {"set_pose quaternion", [](Fixture& f) { f.scene.set_pose(f.rigid, {}, {0, 0, 0, 0}, 0); }, "set_pose.orientation", "0"},
-        {"set_pose yaw", [](Fixture& f) { f.scene.set_pose(f.planar, {}, {0, 0, 0, 1}, std::nan("")); }, "set_pose.yaw", "nan"},
-        {"set_pose ground", [](Fixture& f) { f.scene.set_pose(f.scene.ground(), {}, {0, 0, 0, 1}, 0); }, "set_pose.body", "ground"},
-        {"velocity NaN", [](Fixture& f) { f.scene.set_velocity(f.rigid, {nan, 0, 0}, {}); }, "linear_velocity.x", "nan"},
-        {"velocity of a static body", [](Fixture& f) { f.scene.set_velocity(f.stationary, {1, 0, 0}, {}); }, "linear_velocity.x", "1"},
-        {"force on a kinematic body", [](Fixture& f) { f.scene.set_force(f.kinematic, {1, 0, 0}, {}); }, "set_forces.bodies", "kinematic"},
-        {"force NaN", [](Fixture& f) { f.scene.set_force(f.rigid, {0, nan, 0}, {}); }, "set_forces.forces.y", "nan"},
-        {"torque infinite", [](Fixture& f) { f.scene.set_force(f.rigid, {}, {0, 0, infinity}); }, "set_forces.torques.z", "inf"},
-        {"revive a body that moves", [](Fixture& f) { f.scene.revive(f.rigid, {}, {}); }, "revive.body", "moves"},
-        {"set_velocities sizes", [&](Fixture& f) { const BodyId one[1] = {f.rigid}; f.scene.set_velocities(one, v); }, "linear.size()", "2"},
-        {"set_velocities second is bad", [&](Fixture& f) { const BodyId two[2] = {f.rigid, f.planar}; f.scene.set_velocities(two, bad); }, "linear_velocity.x", "nan"},
-        {"set_forces sizes", [&](Fixture& f) { const BodyId one[1] = {f.rigid}; f.scene.set_forces(one, v); }, "forces.size()", "2"},
-        {"read_positions sizes", [&](Fixture& f) { const BodyId one[1] = {f.rigid}; f.scene.read_positions(one, p); }, "positions.size()", "2"},
-        {"read_yaws dead", [&](Fixture& f) { const BodyId one[1] = {f.removed}; f.scene.read_yaws(one, yaw); }, "read_yaws.bodies", "not alive"},
+        {"remove the ground", [](Fixture& f) { f.scene.remove_body(f.scene.ground()); }, "remove_bodies",
+         "ground"},
+        {"remove twice",
+         [](Fixture& f) {
+             const BodyId two[2] = {f.rigid, f.rigid};
+             f.scene.remove_bodies(two);
+         },
+         "remove_bodies", "twice"},
+        {"remove a removed joint", [](Fixture& f) { f.scene.remove_joint(f.removed_joint); }, "remove_joint",
+         "not alive"},
+        {"force of a removed joint", [](Fixture& f) { (void)f.scene.joint_force(f.removed_joint); },
+         "joint_force", "not alive"},
+        {"add_bodies sizes",
+         [](Fixture& f) {
+             const BodyDefinition d[2];
+             BodyId id[1];
+             f.scene.add_bodies(d, id);
+         },
+         "ids.size()", "1"},
+        {"set_pose NaN",
+         [](Fixture& f) {
+             f.scene.set_pose(f.rigid, {std::nan(""), 0, 0}, {0, 0, 0, 1}, 0);
+         },
+         "set_pose.position.x", "nan"},
+        {"set_pose quaternion",
+         [](Fixture& f) {
+             f.scene.set_pose(f.rigid, {}, {0, 0, 0, 0}, 0);
+         },
+         "set_pose.orientation", "0"},
+        {"set_pose yaw",
+         [](Fixture& f) {
+             f.scene.set_pose(f.planar, {}, {0, 0, 0, 1}, std::nan(""));
+         },
+         "set_pose.yaw", "nan"},
+        {"set_pose ground",
+         [](Fixture& f) {
+             f.scene.set_pose(f.scene.ground(), {}, {0, 0, 0, 1}, 0);
+         },
+         "set_pose.body", "ground"},
+        {"velocity NaN",
+         [](Fixture& f) {
+             f.scene.set_velocity(f.rigid, {nan, 0, 0}, {});
+         },
+         "linear_velocity.x", "nan"},
+        {"velocity of a static body",
+         [](Fixture& f) {
+             f.scene.set_velocity(f.stationary, {1, 0, 0}, {});
+         },
+         "linear_velocity.x", "1"},
+        {"force on a kinematic body",
+         [](Fixture& f) {
+             f.scene.set_force(f.kinematic, {1, 0, 0}, {});
+         },
+         "set_forces.bodies", "kinematic"},
+        {"force NaN",
+         [](Fixture& f) {
+             f.scene.set_force(f.rigid, {0, nan, 0}, {});
+         },
+         "set_forces.forces.y", "nan"},
+        {"torque infinite",
+         [](Fixture& f) {
+             f.scene.set_force(f.rigid, {}, {0, 0, infinity});
+         },
+         "set_forces.torques.z", "inf"},
+        {"revive a body that moves", [](Fixture& f) { f.scene.revive(f.rigid, {}, {}); }, "revive.body",
+         "moves"},
+        {"set_velocities sizes",
+         [&](Fixture& f) {
+             const BodyId one[1] = {f.rigid};
+             f.scene.set_velocities(one, v);
+         },
+         "linear.size()", "2"},
+        {"set_velocities second is bad",
+         [&](Fixture& f) {
+             const BodyId two[2] = {f.rigid, f.planar};
+             f.scene.set_velocities(two, bad);
+         },
+         "linear_velocity.x", "nan"},
+        {"set_forces sizes",
+         [&](Fixture& f) {
+             const BodyId one[1] = {f.rigid};
+             f.scene.set_forces(one, v);
+         },
+         "forces.size()", "2"},
+        {"read_positions sizes",
+         [&](Fixture& f) {
+             const BodyId one[1] = {f.rigid};
+             f.scene.read_positions(one, p);
+         },
+         "positions.size()", "2"},
+        {"read_yaws dead",
+         [&](Fixture& f) {
+             const BodyId one[1] = {f.removed};
+             f.scene.read_yaws(one, yaw);
+         },
+         "read_yaws.bodies", "not alive"},
     };
     for (const Case& c : cases) expect_refused(c);
 }
@@ -244,9 +424,19 @@ TEST(BadInput, EveryFieldOfAContactIsRefusedByTheStepWhichChangesNothing)
         {[](Contact& c, Fixture&) { c.body_a = {}; }, "contacts[1].body_a", "null"},
         {[](Contact& c, Fixture& f) { c.body_b = f.removed; }, "contacts[1].body_b", "not alive"},
         {[](Contact& c, Fixture&) { c.body_b = c.body_a; }, "contacts[1].body_b", "same"},
-        {[](Contact& c, Fixture& f) { c.body_a = f.kinematic; c.body_b = f.stationary; }, "contacts[1].body_b", "cannot move"},
-        {[](Contact& c, Fixture&) { c.normal = {0, 0, 0}; }, "contacts[1].normal", "0"},
-        {[](Contact& c, Fixture&) { c.normal = {2, 0, 0}; }, "contacts[1].normal", "2"},
+        {[](Contact& c, Fixture& f) {
+             c.body_a = f.kinematic;
+             c.body_b = f.stationary;
+         },
+         "contacts[1].body_b", "cannot move"},
+        {[](Contact& c, Fixture&) {
+             c.normal = {0, 0, 0};
+         },
+         "contacts[1].normal", "0"},
+        {[](Contact& c, Fixture&) {
+             c.normal = {2, 0, 0};
+         },
+         "contacts[1].normal", "2"},
         {[](Contact& c, Fixture&) { c.normal.x = nan; }, "contacts[1].normal", "nan"},
         {[](Contact& c, Fixture&) { c.separation = nan; }, "contacts[1].separation", "nan"},
         {[](Contact& c, Fixture&) { c.arm_a.y = infinity; }, "contacts[1].arm_a.y", "inf"},
@@ -256,7 +446,12 @@ TEST(BadInput, EveryFieldOfAContactIsRefusedByTheStepWhichChangesNothing)
         {[](Contact& c, Fixture&) { c.restitution = 1.5F; }, "contacts[1].restitution", "1.5"},
         {[](Contact& c, Fixture&) { c.restitution = nan; }, "contacts[1].restitution", "nan"},
         {[](Contact& c, Fixture&) { c.key = 1; }, "key", "twice"},
-        {[](Contact& c, Fixture& f) { c.body_a = f.planar; c.body_b = f.stationary; c.normal = {0.6F, 0, 0.8F}; }, "contacts[1].normal.z", "0.8"},
+        {[](Contact& c, Fixture& f) {
+             c.body_a = f.planar;
+             c.body_b = f.stationary;
+             c.normal = {0.6F, 0, 0.8F};
+         },
+         "contacts[1].normal.z", "0.8"},
     };
     for (const ContactCase& c : cases) {
         Fixture f;

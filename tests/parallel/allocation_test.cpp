@@ -21,12 +21,30 @@ void* counted(std::size_t size, std::size_t alignment)
 
 }  // namespace
 
-void* operator new(std::size_t size) { return counted(size, alignof(std::max_align_t)); }
-void* operator new(std::size_t size, std::align_val_t alignment) { return counted(size, static_cast<std::size_t>(alignment)); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void* operator new(std::size_t size)
+{
+    return counted(size, alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment)
+{
+    return counted(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept
+{
+    std::free(memory);
+}
 
 namespace motley {
 namespace {
@@ -52,8 +70,14 @@ TEST(Allocation, TheCounterCounts)
     ::operator delete(::operator new(16));  // a new-expression might be optimised away, a call is not
     EXPECT_GT(allocations, before);
 }
-TEST(Allocation, AWarmStepOnOneThreadAllocatesNothing) { EXPECT_EQ(allocations_of_warm_steps(1), 0); }
-TEST(Allocation, AWarmStepOnTwoThreadsAllocatesNothing) { EXPECT_EQ(allocations_of_warm_steps(2), 0); }
+TEST(Allocation, AWarmStepOnOneThreadAllocatesNothing)
+{
+    EXPECT_EQ(allocations_of_warm_steps(1), 0);
+}
+TEST(Allocation, AWarmStepOnTwoThreadsAllocatesNothing)
+{
+    EXPECT_EQ(allocations_of_warm_steps(2), 0);
+}
 
 }  // namespace
 }  // namespace motley

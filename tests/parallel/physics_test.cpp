@@ -75,7 +75,8 @@ TEST(Pendulum, PeriodMatchesClosedFormWithinOnePercent)
     // Small swings of a point mass on a rod: T = 2 pi sqrt(L / g), and 1 + theta^2/16 for amplitude theta.
     Scene scene;
     const double length = 2, amplitude = 0.2;
-    const BodyId bob = scene.add_body(ball(BodyModel::particle, {length * std::sin(amplitude), -length * std::cos(amplitude), 0}));
+    const BodyId bob = scene.add_body(
+        ball(BodyModel::particle, {length * std::sin(amplitude), -length * std::cos(amplitude), 0}));
     DistanceDefinition rod;
     rod.body_a = scene.ground();
     rod.body_b = bob;
@@ -130,8 +131,8 @@ TEST(Spring, FrequencyAndDecayMatchClosedForm)
             if (crossings++ == 0) first = t;
             last = t;
         }
-        if (step < 90 && step > 30) start_peak = std::max(start_peak, x);      // the peak near t = 1 s
-        if (step > 210 && step < 270) peak = std::max(peak, x);                // the peak near t = 4 s
+        if (step < 90 && step > 30) start_peak = std::max(start_peak, x);  // the peak near t = 1 s
+        if (step > 210 && step < 270) peak = std::max(peak, x);            // the peak near t = 4 s
         before = x;
     }
     const double w = 2 * pi * static_cast<double>(hertz);
@@ -164,7 +165,8 @@ TEST(Contact, AStandingBallIsHeldByItsWeight)
         for (const Method method : {Method::soft_step, Method::sequential_impulse}) {
             Scene scene;
             const BodyId body = scene.add_body(ball(model, {0, 0.5, 0}, 4));
-            SolverSettings settings = method == Method::soft_step ? soft({0, -10, 0}) : iterative({0, -10, 0});
+            SolverSettings settings =
+                method == Method::soft_step ? soft({0, -10, 0}) : iterative({0, -10, 0});
             Solver solver(settings);
             for (int step = 0; step < 120; ++step) {
                 const Contact contact = on_floor(scene, body, 0.5);
@@ -210,7 +212,8 @@ TEST(Friction, ASlidingBlockStopsWhereItsEnergyIsSpent)
         contact.friction = mu;
         solver.step(scene, 1.0F / 60, {&contact, 1});
         const ContactImpulse impulse = scene.contact_impulses()[0];
-        EXPECT_LE(std::sqrt(dot(impulse.friction, impulse.friction)), mu * impulse.normal * 1.0001F + 1e-7F) << step;
+        EXPECT_LE(std::sqrt(dot(impulse.friction, impulse.friction)), mu * impulse.normal * 1.0001F + 1e-7F)
+            << step;
     }
     const BodyState end = scene.state(body);
     const double stop = 5.0 / (2 * 0.3 * 10);
@@ -243,7 +246,8 @@ TEST(Friction, ARollingBallKeepsFiveSeventhsOfItsSpeed)
 struct Momentum {
     Vec3<double> linear{}, angular{};
 };
-Momentum momentum_of(const Scene& scene, const std::vector<BodyId>& bodies, const std::vector<BodyDefinition>& definitions)
+Momentum momentum_of(const Scene& scene, const std::vector<BodyId>& bodies,
+                     const std::vector<BodyDefinition>& definitions)
 {
     Momentum sum;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -255,7 +259,8 @@ Momentum momentum_of(const Scene& scene, const std::vector<BodyId>& bodies, cons
         const Sym3<double> inertia{f.xx, f.xy, f.xz, f.yy, f.yz, f.zz};
         const Vec3<double> w = convert<double>(s.angular_velocity);
         Vec3<double> spin{};
-        if (definitions[i].model == BodyModel::rigid) spin = rotate(s.orientation, inertia * rotate(conjugate(s.orientation), w));
+        if (definitions[i].model == BodyModel::rigid)
+            spin = rotate(s.orientation, inertia * rotate(conjugate(s.orientation), w));
         if (definitions[i].model == BodyModel::planar) spin = {0, 0, inertia.zz * w.z};
         sum.angular = sum.angular + cross(s.position, p) + spin;
     }
@@ -270,17 +275,20 @@ TEST(Conservation, JointsChangeNeitherMomentumNorAngularMomentumByMoreThanRoundi
         std::vector<BodyDefinition> definitions;
         std::vector<BodyId> bodies;
         for (int i = 0; i < 12; ++i) {
-            BodyDefinition body = ball(BodyModel::rigid, {0.5 * i, 0.2 * random.symmetric(), 0.2 * random.symmetric()},
-                                       static_cast<float>(1.5 + random.symmetric()), 0.3F);
+            BodyDefinition body =
+                ball(BodyModel::rigid, {0.5 * i, 0.2 * random.symmetric(), 0.2 * random.symmetric()},
+                     static_cast<float>(1.5 + random.symmetric()), 0.3F);
             const auto r = [&] { return static_cast<float>(random.symmetric()); };
             body.linear_velocity = {r(), r(), r()};
             body.angular_velocity = {2 * r(), 2 * r(), 2 * r()};
             definitions.push_back(body);
             bodies.push_back(scene.add_body(body));
             if (i == 0) continue;
-            const Vec3<double> gap = definitions[static_cast<std::size_t>(i)].position - definitions[static_cast<std::size_t>(i - 1)].position;
+            const Vec3<double> gap = definitions[static_cast<std::size_t>(i)].position -
+                                     definitions[static_cast<std::size_t>(i - 1)].position;
             const Vec3<float> half = convert<float>(0.5 * gap);
-            scene.add_joint(BallSocketDefinition{bodies[static_cast<std::size_t>(i - 1)], bodies.back(), half, -half});
+            scene.add_joint(
+                BallSocketDefinition{bodies[static_cast<std::size_t>(i - 1)], bodies.back(), half, -half});
         }
         const Momentum before = momentum_of(scene, bodies, definitions);
         Solver solver(settings);
@@ -320,7 +328,8 @@ TEST(Chain, APushedRowCarriesEachDriveToTheWall)
     Scene scene;
     std::vector<BodyId> discs;
     for (int i = 0; i < n; ++i) {
-        BodyDefinition disc = ball(BodyModel::planar, {radius * (2 * i + 1), 0, 0}, 80, static_cast<float>(radius));
+        BodyDefinition disc =
+            ball(BodyModel::planar, {radius * (2 * i + 1), 0, 0}, 80, static_cast<float>(radius));
         discs.push_back(scene.add_body(disc));
         scene.set_force(discs.back(), {-50, 0, 0}, {});
     }
@@ -332,7 +341,8 @@ TEST(Chain, APushedRowCarriesEachDriveToTheWall)
         for (int i = 0; i < n; ++i) {
             Contact& c = contacts[static_cast<std::size_t>(i)];
             const double x = scene.state(discs[static_cast<std::size_t>(i)]).position.x;
-            const double front = i == 0 ? 0 : scene.state(discs[static_cast<std::size_t>(i - 1)]).position.x + radius;
+            const double front =
+                i == 0 ? 0 : scene.state(discs[static_cast<std::size_t>(i - 1)]).position.x + radius;
             c.body_a = i == 0 ? scene.ground() : discs[static_cast<std::size_t>(i - 1)];
             c.body_b = discs[static_cast<std::size_t>(i)];
             c.key = static_cast<std::uint64_t>(i);
@@ -344,7 +354,9 @@ TEST(Chain, APushedRowCarriesEachDriveToTheWall)
         ASSERT_EQ(solver.step(scene, 1.0F / 60, contacts).status, StepStatus::done);
     }
     for (int i = 0; i < n; ++i) {
-        const double force = static_cast<double>(scene.contact_impulses()[static_cast<std::size_t>(i)].normal) / static_cast<double>(scene.last_substep);
+        const double force =
+            static_cast<double>(scene.contact_impulses()[static_cast<std::size_t>(i)].normal) /
+            static_cast<double>(scene.last_substep);
         EXPECT_NEAR(force, 50.0 * (n - i), 0.01 * 50 * n) << "contact " << i;
         EXPECT_GT(contacts[static_cast<std::size_t>(i)].separation, -0.01 * radius);
     }
@@ -443,7 +455,8 @@ TEST(Step, BodiesAndJointsComeAndGoWithoutDisturbingTheRest)
     // A row of falling pairs; some are removed and added in every step, the first pair never. It must fall as if alone.
     Scene scene, alone;
     const auto pair = [](Scene& s, double x) {
-        const BodyId a = s.add_body(ball(BodyModel::rigid, {x, 0, 0})), b = s.add_body(ball(BodyModel::rigid, {x, -1, 0}));
+        const BodyId a = s.add_body(ball(BodyModel::rigid, {x, 0, 0})),
+                     b = s.add_body(ball(BodyModel::rigid, {x, -1, 0}));
         s.add_joint(BallSocketDefinition{a, b, {0, -0.5F, 0}, {0, 0.5F, 0}});
         return std::pair{a, b};
     };

@@ -66,7 +66,8 @@ TEST(SameBits, ThreadCountDoesNotChangeAnyStep)
     for (const Way& way : ways()) {
         const auto one = run(way.settings, {.threads = 1});
         for (const int threads : {2, 3, 4}) {
-            EXPECT_EQ(run(way.settings, {.threads = threads}), one) << way.name << " on " << threads << " threads";
+            EXPECT_EQ(run(way.settings, {.threads = threads}), one)
+                << way.name << " on " << threads << " threads";
         }
     }
 }
@@ -114,7 +115,8 @@ Scene net(int side)
     for (int k = 0; k < side; ++k) {
         for (int i = 1; i < side; ++i) {
             scene.add_joint(BallSocketDefinition{at(k, i - 1), at(k, i), {0, -0.5F, 0}, {0, 0.5F, 0}});
-            if (k > 0) scene.add_joint(BallSocketDefinition{at(k - 1, i), at(k, i), {0.5F, 0, 0}, {-0.5F, 0, 0}});
+            if (k > 0)
+                scene.add_joint(BallSocketDefinition{at(k - 1, i), at(k, i), {0.5F, 0, 0}, {-0.5F, 0, 0}});
         }
     }
     return scene;
@@ -132,7 +134,8 @@ TEST(SameBits, AWideNetIsTheSameOnOneToFourThreads)
         for (int step = 0; step < steps; ++step) {
             solver.step(scene, dt);
             if (threads == 1) one.push_back(scene.state_hash());
-            ASSERT_EQ(scene.state_hash(), one[static_cast<std::size_t>(step)]) << threads << " threads, step " << step;
+            ASSERT_EQ(scene.state_hash(), one[static_cast<std::size_t>(step)])
+                << threads << " threads, step " << step;
         }
     }
 }

@@ -42,14 +42,16 @@ Edges usable(const std::vector<std::pair<unsigned, unsigned>>& raw)
     return edges;
 }
 
-RC_GTEST_PROP(Colouring, NeverSharesAMovingBodyWithinAColour, (const std::vector<std::pair<unsigned, unsigned>>& raw))
+RC_GTEST_PROP(Colouring, NeverSharesAMovingBodyWithinAColour,
+              (const std::vector<std::pair<unsigned, unsigned>>& raw))
 {
     Bodies bodies;
     ColourMasks masks;
     masks.reset(bodies.store);
     std::set<std::pair<int, int>> taken;  // (colour, body)
     for (const auto& [a, b] : usable(raw)) {
-        const int colour = masks.take_first(bodies.rows[static_cast<std::size_t>(a)], bodies.rows[static_cast<std::size_t>(b)]);
+        const int colour = masks.take_first(bodies.rows[static_cast<std::size_t>(a)],
+                                            bodies.rows[static_cast<std::size_t>(b)]);
         if (colour == overflow_colour) continue;
         for (const int body : {a, b}) {
             if (body < 120) RC_ASSERT(taken.insert({colour, body}).second);
@@ -57,7 +59,8 @@ RC_GTEST_PROP(Colouring, NeverSharesAMovingBodyWithinAColour, (const std::vector
     }
 }
 
-RC_GTEST_PROP(Colouring, FirstFitStaysBelowTwiceTheLargestDegree, (const std::vector<std::pair<unsigned, unsigned>>& raw))
+RC_GTEST_PROP(Colouring, FirstFitStaysBelowTwiceTheLargestDegree,
+              (const std::vector<std::pair<unsigned, unsigned>>& raw))
 {
     Bodies bodies;
     ColourMasks masks;
@@ -68,13 +71,15 @@ RC_GTEST_PROP(Colouring, FirstFitStaysBelowTwiceTheLargestDegree, (const std::ve
         for (const int body : {a, b}) {
             if (body < 120) largest = std::max(largest, ++degree[body]);
         }
-        const int colour = masks.take_first(bodies.rows[static_cast<std::size_t>(a)], bodies.rows[static_cast<std::size_t>(b)]);
+        const int colour = masks.take_first(bodies.rows[static_cast<std::size_t>(a)],
+                                            bodies.rows[static_cast<std::size_t>(b)]);
         if (colour != overflow_colour) most = std::max(most, colour);
     }
     RC_ASSERT(most + 1 <= std::max(1, 2 * largest - 1));
 }
 
-RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice, (const std::vector<std::pair<unsigned, unsigned>>& raw))
+RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice,
+              (const std::vector<std::pair<unsigned, unsigned>>& raw))
 {
     Bodies bodies;
     ColourMasks masks;
@@ -82,7 +87,8 @@ RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice, (const s
     BatchSet set;
     const Edges edges = usable(raw);
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        const BodyRow a = bodies.rows[static_cast<std::size_t>(edges[i].first)], b = bodies.rows[static_cast<std::size_t>(edges[i].second)];
+        const BodyRow a = bodies.rows[static_cast<std::size_t>(edges[i].first)],
+                      b = bodies.rows[static_cast<std::size_t>(edges[i].second)];
         // Every third goes straight to the overflow, as of a hub.
         const std::uint8_t colour = i % 3 == 0 ? overflow_colour : masks.take_first(a, b);
         set.place(0, a, b, static_cast<std::int32_t>(i), colour);
@@ -119,7 +125,8 @@ TEST(Colouring, AHubSendsItsRestToTheOverflowAndAStaticHubNeedsOneColour)
     ColourMasks masks;
     masks.reset(bodies.store);
     int overflow = 0;
-    for (std::size_t i = 1; i < 120; ++i) overflow += masks.take_first(bodies.rows[0], bodies.rows[i]) == overflow_colour;
+    for (std::size_t i = 1; i < 120; ++i)
+        overflow += masks.take_first(bodies.rows[0], bodies.rows[i]) == overflow_colour;
     EXPECT_EQ(overflow, 119 - parallel_colours);
     masks.reset(bodies.store);
     for (std::size_t i = 0; i < 120; ++i) EXPECT_EQ(masks.take_first(bodies.rows[130], bodies.rows[i]), 0);
