@@ -146,7 +146,8 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     clock.charge(Stage::prepare);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool replays = substep > 0 && layout.has_constant_jacobians();
-        integrate_velocities(replays ? &BodyKernels::integrate_and_replay : &BodyKernels::integrate_velocities);
+        integrate_velocities(replays ? &BodyKernels::integrate_and_replay
+                                     : &BodyKernels::integrate_velocities);
         clock.charge(Stage::integrate_velocities);
         if (!replays) sweep(&ConstraintKernels::warm_start);
         clock.charge(Stage::warm_start);

@@ -18,8 +18,7 @@ class InlineExecutor final : public Executor {
 
 class TbbExecutor final : public Executor {
   public:
-    explicit TbbExecutor(int threads)
-        : threads_(threads), arena_(threads, 1)
+    explicit TbbExecutor(int threads) : threads_(threads), arena_(threads, 1)
     {
         // More threads than cores are real threads only if oneTBB is told so, and it listens process-wide: left
         // alone unless the host asks for such a number.

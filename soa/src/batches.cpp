@@ -36,7 +36,10 @@ bool holds(const BlockIndex& block, BodyRow a, BodyRow b)
 
 }  // namespace
 
-BlockPool::BlockPool() { open_.fill(none); }
+BlockPool::BlockPool()
+{
+    open_.fill(none);
+}
 
 void BlockPool::clear()
 {
@@ -124,7 +127,8 @@ void BatchSet::cut(const KernelTable& table,
 
 bool BatchSet::is_empty() const
 {
-    return std::all_of(pools_.begin(), pools_.end(), [](const BlockPool& pool) { return pool.block_count() == 0; });
+    return std::all_of(pools_.begin(), pools_.end(),
+                       [](const BlockPool& pool) { return pool.block_count() == 0; });
 }
 
 BatchSet::Count BatchSet::count(const KernelTable& table) const

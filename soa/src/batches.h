@@ -57,7 +57,8 @@ class BlockPool {
     AlignedVector<BlockIndex> index_;
     AlignedVector<float> rows_, substep_rows_, impulses_;
     std::array<std::vector<std::int32_t>, parallel_colours + 1> orders_;
-    std::array<std::int32_t, parallel_colours> open_{};  ///< the block of each colour that still has lanes, or none
+    std::array<std::int32_t, parallel_colours>
+        open_{};  ///< the block of each colour that still has lanes, or none
     std::int32_t block_count_ = 0;
     std::int64_t constraint_count_ = 0;
 };

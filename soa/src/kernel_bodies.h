@@ -220,7 +220,8 @@ template <BodyKind kind, bool replay>
         accelerate(context, arrays, index.rows, body);
         // A body without inverse mass is a null, free or contained row: it must not even fall.
         const auto moves = body.inverse_mass > Lanes(0);
-        for_each_component(body, before, [&](Lanes& now, const Lanes& then) { now = select(moves, now, then); });
+        for_each_component(body, before,
+                           [&](Lanes& now, const Lanes& then) { now = select(moves, now, then); });
         const Body<kind> pushed_off = body;
         if constexpr (replay) {
             Body<kind> change = before;

@@ -288,8 +288,8 @@ struct Kernels {
     {
         for (std::int32_t block = begin; block < end; ++block) {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
-                const Memory memory = only_finite(Type::template remember<Lanes>(load_row<Row>(bundle.row),
-                                                                     load_row<Impulse>(bundle.impulse)));
+                const Memory memory = only_finite(Type::template remember<Lanes>(
+                    load_row<Row>(bundle.row), load_row<Impulse>(bundle.impulse)));
                 scatter_struct(memory, data.memory_out, data.memory_stride, bundle.constraint, bundle.count);
             });
         }
