@@ -8,7 +8,6 @@ namespace motley::bench {
 namespace {
 
 constexpr std::int64_t agents_per_chunk = 4096;
-constexpr std::int64_t contacts_per_chunk = 4096;
 
 }  // namespace
 

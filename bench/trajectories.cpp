@@ -62,7 +62,7 @@ TrajectoryWriter::TrajectoryWriter(const std::string& path, double frames_a_seco
     : path_(path), part_(path + ".part"), file_(std::fopen(part_.c_str(), "w"))
 {
     if (file_ == nullptr) throw std::runtime_error(fmt::format("{}: cannot be written", path));
-    fmt::print(file_, "# written by motley\n# framerate: {}\n# id frame x/m y/m z/m\n", frames_a_second);
+    fmt::print(file_, "# written by motley\n# framerate: {:.6g}\n# id frame x/m y/m z/m\n", frames_a_second);
 }
 
 TrajectoryWriter::~TrajectoryWriter()

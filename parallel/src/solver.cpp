@@ -145,7 +145,7 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     prepare();
     clock.charge(Stage::prepare);
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        const bool replays = substep > 0 && layout.has_constant_jacobians();
+        const bool replays = substep > 0 && layout.has_constant_responses();
         integrate_velocities(replays ? &BodyKernels::integrate_and_replay
                                      : &BodyKernels::integrate_velocities);
         clock.charge(Stage::integrate_velocities);

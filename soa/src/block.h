@@ -84,7 +84,7 @@ struct BodyKernels {
     using Move = void (*)(const KernelContext&, std::int32_t begin, std::int32_t end);
     Move integrate_velocities = nullptr;
     /// The same, and replays what the constraints of the last substep did to each body: a warm start without a
-    /// sweep, exact where J is constant through the step (contacts), since then M^-1 J^T lambda is that very change.
+    /// sweep, exact where M^-1 J^T is constant through the step (contacts of particles and planar bodies).
     Move integrate_and_replay = nullptr;
     Move integrate_positions = nullptr;
 };

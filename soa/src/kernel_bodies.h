@@ -107,6 +107,10 @@ using Body = LaneBody<Lanes, kind>;
     const Quat<Lanes>& q = body.delta_rotation;
     store_quads(arrays.delta, 8, rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)}, count);
     store_quads(arrays.delta + 4, 8, rows, {q.x, q.y, q.z, q.w}, count);
+    // A turned body has turned inertia.
+    const Sym3<Lanes> i = rotate_tensor(q, load_tensor(arrays.start_inverse_inertia, rows));
+    store_quads(arrays.world_inverse_inertia, 8, rows, {i.xx, i.xy, i.xz, i.yy}, count);
+    store_quads(arrays.world_inverse_inertia + 4, 8, rows, {i.yz, i.zz, Lanes(0), Lanes(0)}, count);
 }
 [[gnu::always_inline]] inline void store_delta(const BodyArrays&, const std::int32_t*,
                                                const Body<BodyKind::fixed>&, int)
@@ -237,15 +241,6 @@ template <BodyKind kind, bool replay>
 // ---- x += h v
 // -----------------------------------------------------------------------------------------------
 
-/// The rotation of the vector h w by the exponential map, at most half a turn a substep.
-inline Quat<Lanes> rotation_of(const Vec3<Lanes>& w, const Lanes& h)
-{
-    const Lanes speed = square_root(maximum(dot(w, w), Lanes(1e-30F)));
-    const SineCosine<Lanes> half = sine_cosine(minimum(Lanes(0.5F) * h * speed, Lanes(1.5707963F)));
-    const Lanes scale = half.sine / speed;
-    return {scale * w.x, scale * w.y, scale * w.z, half.cosine};
-}
-
 template <BodyKind kind>
 [[gnu::flatten]] void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
 {
@@ -257,7 +252,7 @@ template <BodyKind kind>
         body.delta = body.delta + h * body.linear;
         if constexpr (kind == BodyKind::planar) body.delta_yaw = body.delta_yaw + h * body.yaw_rate;
         if constexpr (kind == BodyKind::rigid || kind == BodyKind::fixed) {
-            body.delta_rotation = normalised(rotation_of(body.angular, h) * body.delta_rotation);
+            body.delta_rotation = normalised(rotation_by(h * body.angular) * body.delta_rotation);
         }
         if constexpr (kind == BodyKind::fixed) {
             const Quat<Lanes>& q = body.delta_rotation;
@@ -266,13 +261,6 @@ template <BodyKind kind>
             store_quads(arrays.delta + 4, 8, index.rows, {q.x, q.y, q.z, q.w}, index.count);
         } else {
             store_delta(arrays, index.rows, body, index.count);
-        }
-        if constexpr (kind == BodyKind::rigid) {
-            const Sym3<Lanes> i =
-                rotate_tensor(body.delta_rotation, load_tensor(arrays.start_inverse_inertia, index.rows));
-            store_quads(arrays.world_inverse_inertia, 8, index.rows, {i.xx, i.xy, i.xz, i.yy}, index.count);
-            store_quads(arrays.world_inverse_inertia + 4, 8, index.rows, {i.yz, i.zz, Lanes(0), Lanes(0)},
-                        index.count);
         }
     }
 }

@@ -36,8 +36,13 @@ class Layout {
     [[nodiscard]] const std::vector<TransferChunk>& transfers() const { return transfers_; }
     [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
     [[nodiscard]] const KernelTable& kernels() const { return kernels_; }
-    /// True when no constraint turns its rows within the step: contacts alone.
-    [[nodiscard]] bool has_constant_jacobians() const { return joints_.is_empty(); }
+    /// True when M^-1 J^T of no constraint turns within the step: contacts alone, and no rigid body, whose
+    /// inertia turns with it.
+    [[nodiscard]] bool has_constant_responses() const
+    {
+        return joints_.is_empty() &&
+               context.bodies[static_cast<int>(BodyKind::rigid)].size == 1;  // the null row
+    }
     /// Fills the counts of a report.
     void report(StepReport& report) const;
 

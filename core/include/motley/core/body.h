@@ -17,7 +17,8 @@ enum class BodyModel : std::uint8_t {
 /// What moves a body.
 enum class BodyMotion : std::uint8_t {
     dynamic_body,    ///< impulses, forces and gravity
-    kinematic_body,  ///< its own velocity only, set by the host; constraints never change it
+    kinematic_body,  ///< its own velocity only, set by the host; constraints never change it.
+                     ///< Planar bodies see of it what happens in their plane: x, y and the turn about z
     static_body,     ///< nothing
 };
 

@@ -158,6 +158,16 @@ void apply_impulse(LaneBody<Real, BodyKind::fixed>&, const Vector&, const Vector
 {
 }
 
+/// The rotation by a rotation vector, exactly (the exponential map), at most half a turn.
+template <class Real>
+Quat<Real> rotation_by(const Vec3<Real>& turn)
+{
+    const Real angle = square_root(maximum(dot(turn, turn), Real(1e-30F)));
+    const SineCosine<Real> half = sine_cosine(minimum(Real(0.5F) * angle, Real(1.5707963F)));
+    const Real scale = half.sine / angle;
+    return {scale * turn.x, scale * turn.y, scale * turn.z, half.cosine};
+}
+
 // ---- the same for positions: the displacement of an impulse of a position solve
 // -----------------------------
 
@@ -181,8 +191,8 @@ template <class Real>
 void apply_displacement(LaneBody<Real, BodyKind::rigid>& body, const Vec3<Real>& arm, const Vec3<Real>& push)
 {
     body.delta = body.delta + body.inverse_mass * push;
-    const Vec3<Real> turn = Real(0.5F) * (body.inverse_inertia * cross(arm, push));
-    body.delta_rotation = normalised(Quat<Real>{turn.x, turn.y, turn.z, Real(1)} * body.delta_rotation);
+    body.delta_rotation =
+        normalised(rotation_by(body.inverse_inertia * cross(arm, push)) * body.delta_rotation);
 }
 template <class Real, class Vector>
 void apply_displacement(LaneBody<Real, BodyKind::fixed>&, const Vector&, const Vector&)

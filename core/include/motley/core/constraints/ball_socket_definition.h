@@ -7,6 +7,7 @@
 namespace motley {
 
 /// Holds a point of a on a point of b: C = p_b - p_a = 0, one row an axis that the pair can move along.
+/// Between bodies that stay in the plane (planar with planar or fixed) only x and y count.
 struct BallSocketDefinition {
     BodyId body_a{};
     BodyId body_b{};

@@ -16,6 +16,7 @@ enum class DistanceMode : std::uint8_t {
 };
 
 /// Holds, limits or springs the distance between two anchors.
+/// Between bodies that stay in the plane (planar with planar or fixed) only x and y count.
 struct DistanceDefinition {
     BodyId body_a{};
     BodyId body_b{};

@@ -1,0 +1,84 @@
+// Bodies of the reference, moved.
+#include "motley/reference/body.h"
+
+namespace motley::reference {
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& u)
+{
+    Eigen::Matrix3d m;
+    m << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
+    return m;
+}
+
+Body Body::from(const BodyDefinition& d)
+{
+    Body body;
+    body.model = d.model;
+    body.motion = d.motion;
+    body.position = {d.position.x, d.position.y, d.position.z};
+    body.orientation =
+        Eigen::Quaterniond(d.orientation.w, d.orientation.x, d.orientation.y, d.orientation.z).normalized();
+    if (d.motion == BodyMotion::dynamic_body) {
+        if (d.model == BodyModel::planar) {
+            body.orientation = Eigen::AngleAxisd(d.yaw, Eigen::Vector3d::UnitZ());
+        } else if (d.model == BodyModel::particle) {
+            body.orientation.setIdentity();
+        }
+    }
+    body.velocity << d.linear_velocity.x, d.linear_velocity.y, d.linear_velocity.z, d.angular_velocity.x,
+        d.angular_velocity.y, d.angular_velocity.z;
+    body.mass = d.mass;
+    body.inertia << d.inertia.xx, d.inertia.xy, d.inertia.xz, d.inertia.xy, d.inertia.yy, d.inertia.yz,
+        d.inertia.xz, d.inertia.yz, d.inertia.zz;
+    return body;
+}
+
+Matrix6 Body::inverse_mass() const
+{
+    Matrix6 m = Matrix6::Zero();
+    if (motion != BodyMotion::dynamic_body) return m;
+    switch (model) {
+        case BodyModel::particle:
+            m.topLeftCorner<3, 3>().diagonal().setConstant(1 / mass);
+            break;
+        case BodyModel::planar:
+            m(0, 0) = m(1, 1) = 1 / mass;
+            m(5, 5) = 1 / inertia(2, 2);
+            break;
+        case BodyModel::rigid: {
+            const Eigen::Matrix3d r = orientation.toRotationMatrix();
+            m.topLeftCorner<3, 3>().diagonal().setConstant(1 / mass);
+            m.bottomRightCorner<3, 3>() = r * inertia.inverse() * r.transpose();
+            break;
+        }
+    }
+    return m;
+}
+
+void Body::advance(const Vector6& v, double seconds)
+{
+    position += seconds * v.head<3>();
+    const Eigen::Vector3d turn = seconds * v.tail<3>();
+    const double angle = turn.norm();
+    if (angle > 0)
+        orientation = (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * orientation).normalized();
+}
+
+void Body::accelerate(const Eigen::Vector3d& gravity, double h)
+{
+    if (motion != BodyMotion::dynamic_body) return;
+    Vector6 g = Vector6::Zero();
+    g.head<3>() = gravity;
+    if (model == BodyModel::planar) g(2) = 0;
+    velocity += h * (g + inverse_mass() * force);
+    if (model != BodyModel::rigid) return;
+    // I (w' - w) + h w' x I w' = 0 in the body frame, one Newton step from w; torque is added after it.
+    const Eigen::Vector3d torque_part = h * inverse_mass().bottomRightCorner<3, 3>() * force.tail<3>();
+    const Eigen::Vector3d w = orientation.conjugate() * Eigen::Vector3d(velocity.tail<3>() - torque_part);
+    const Eigen::Vector3d residual = h * w.cross(inertia * w);
+    const Eigen::Matrix3d derivative = inertia + h * (skew(w) * inertia - skew(inertia * w));
+    velocity.tail<3>() =
+        orientation * Eigen::Vector3d(w - derivative.partialPivLu().solve(residual)) + torque_part;
+}
+
+}  // namespace motley::reference

@@ -1,0 +1,38 @@
+// A body of the reference: state in double, inverse mass as an explicit 6 x 6 matrix in the world.
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+
+#include "motley/core/body.h"
+
+namespace motley::reference {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// A body in the world frame, SI units.
+struct Body {
+    BodyModel model = BodyModel::rigid;
+    BodyMotion motion = BodyMotion::dynamic_body;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+    Vector6 velocity = Vector6::Zero();  ///< (linear, angular)
+    Vector6 force = Vector6::Zero();     ///< (force, torque), constant through a step
+    double mass = 1;
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< body frame
+
+    /// Reads the host's words.
+    static Body from(const BodyDefinition& definition);
+    /// M^-1, (1/m I, I^-1) with the inertia turned into the world; zero for what the model holds.
+    [[nodiscard]] Matrix6 inverse_mass() const;
+    /// The pose after moving with a generalised velocity for a time, exactly for constant velocity.
+    void advance(const Vector6& generalised_velocity, double seconds);
+    /// v += h (g + M^-1 f), with the gyroscopic term by one implicit Newton step in the body frame.
+    void accelerate(const Eigen::Vector3d& gravity, double seconds);
+};
+
+/// [u]x: the matrix of the cross product, skew(u) v = u x v.
+Eigen::Matrix3d skew(const Eigen::Vector3d& u);
+
+}  // namespace motley::reference

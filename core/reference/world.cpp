@@ -1,0 +1,292 @@
+// The step of the reference, written for reading.
+#include "motley/reference/world.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace motley::reference {
+namespace {
+
+Eigen::Vector3d eigen(const Vec3<float>& v)
+{
+    return {v.x, v.y, v.z};
+}
+
+}  // namespace
+
+struct World::JointRow {
+    Joint* joint;
+    Jacobian jacobian;
+    Eigen::MatrixXd mass;
+    Eigen::VectorXd bias, relax_bias;
+    Soft soft, relax_soft;
+    double upper;  ///< largest impulse: 0 of a rope
+};
+
+struct World::ContactRow {
+    const ContactPoint* point;
+    Jacobian normal, tangents;
+    double normal_mass;
+    Eigen::MatrixXd tangent_mass;
+    double approach;
+    double impulse, peak = 0;
+    Eigen::VectorXd friction;
+};
+
+World::Soft World::softness(double hertz, double damping_ratio, double h)
+{
+    const double omega = 2 * EIGEN_PI * std::min(hertz, 0.25 / h);
+    const double a1 = 2 * damping_ratio + h * omega, a2 = h * omega * a1, a3 = 1 / (1 + a2);
+    return {omega / a1, a2 * a3, a3};
+}
+
+bool World::is_planar_pair(int a, int b) const
+{
+    const auto flat = [&](int i) {
+        const Body& body = bodies[static_cast<std::size_t>(i)];
+        return body.motion == BodyMotion::dynamic_body && body.model == BodyModel::planar;
+    };
+    const auto fixed = [&](int i) {
+        return bodies[static_cast<std::size_t>(i)].motion != BodyMotion::dynamic_body;
+    };
+    return (flat(a) && (flat(b) || fixed(b))) || (fixed(a) && flat(b));
+}
+
+void World::apply(int a, int b, const Jacobian& jacobian, const Eigen::VectorXd& impulse)
+{
+    Body& body_a = bodies[static_cast<std::size_t>(a)];
+    Body& body_b = bodies[static_cast<std::size_t>(b)];
+    const Eigen::Matrix<double, 12, 1> change =
+        pair_inverse_mass(body_a, body_b) * jacobian.transpose() * impulse;
+    body_a.velocity += change.head<6>();
+    body_b.velocity += change.tail<6>();
+}
+
+Eigen::VectorXd World::speed(int a, int b, const Jacobian& jacobian) const
+{
+    Eigen::Matrix<double, 12, 1> v;
+    v << bodies[static_cast<std::size_t>(a)].velocity, bodies[static_cast<std::size_t>(b)].velocity;
+    return jacobian * v;
+}
+
+World::JointRow World::begin_joint(Joint& joint, double h, const SolverSettings& settings)
+{
+    const Body& a = bodies[static_cast<std::size_t>(joint.a)];
+    const Body& b = bodies[static_cast<std::size_t>(joint.b)];
+    const bool substeps = settings.method == Method::soft_step;
+    const double beta =
+        settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
+    const Soft usual =
+        substeps ? softness(settings.joint_hertz, settings.joint_damping_ratio, h) : Soft{beta / h, 1, 0};
+    const Soft rigid{0, 1, 0};
+    JointRow row{&joint, Jacobian(3, 12), {}, {}, {}, usual, rigid, std::numeric_limits<double>::max()};
+    if (joint.kind == Joint::Kind::ball_socket) {
+        const int rows = is_planar_pair(joint.a, joint.b) ? 2 : 3;
+        row.jacobian = point_jacobian(a, b, joint.local_a, joint.local_b).topRows(rows);
+        row.bias = usual.rate * point_error(a, b, joint.local_a, joint.local_b).head(rows);
+        row.relax_bias = Eigen::VectorXd::Zero(rows);
+    } else {
+        const double error = distance_error(a, b, joint.local_a, joint.local_b, joint.length);
+        row.jacobian = distance_jacobian(a, b, joint.local_a, joint.local_b);
+        const bool rope = joint.mode == DistanceMode::rope, spring = joint.mode == DistanceMode::spring;
+        if (spring) row.soft = row.relax_soft = softness(joint.hertz, joint.damping_ratio, h);
+        row.bias = Eigen::VectorXd::Constant(1, row.soft.rate * error);
+        row.relax_bias = Eigen::VectorXd::Constant(1, spring ? row.soft.rate * error : 0);
+        if (rope) row.upper = 0;
+        if (rope && error < 0) {  // slack: it may tighten within the substep and no further
+            row.soft = rigid;
+            row.bias(0) = row.relax_bias(0) = error / h;
+        }
+    }
+    row.mass = effective_mass(row.jacobian, a, b);
+    if (joint.impulse.size() != row.jacobian.rows())
+        joint.impulse = Eigen::VectorXd::Zero(row.jacobian.rows());
+    apply(joint.a, joint.b, row.jacobian, joint.impulse);
+    return row;
+}
+
+void World::solve_joint(JointRow& row, bool relax)
+{
+    Joint& joint = *row.joint;
+    const Soft& soft = relax ? row.relax_soft : row.soft;
+    const Eigen::VectorXd bias = relax ? row.relax_bias : row.bias;
+    Eigen::VectorXd impulse = joint.impulse -
+                              soft.mass_scale * row.mass * (speed(joint.a, joint.b, row.jacobian) + bias) -
+                              soft.impulse_scale * joint.impulse;
+    if (impulse.size() == 1) impulse(0) = std::min(impulse(0), row.upper);
+    apply(joint.a, joint.b, row.jacobian, impulse - joint.impulse);
+    joint.impulse = impulse;
+}
+
+World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
+{
+    const Contact& c = point.contact;
+    const Body& a = bodies[static_cast<std::size_t>(point.a)];
+    const Body& b = bodies[static_cast<std::size_t>(point.b)];
+    const Eigen::Vector3d n = eigen(c.normal), arm_a = eigen(c.arm_a), arm_b = eigen(c.arm_b);
+    ContactRow row;
+    row.point = &point;
+    row.normal = direction_jacobian(n, arm_a, arm_b);
+    row.normal_mass = effective_mass(row.normal, a, b)(0, 0);
+    row.approach = speed(point.a, point.b, row.normal)(0);
+    const Remembered before = memory_.contains(c.key) ? memory_.at(c.key) : Remembered{};
+    row.impulse = warm * before.normal;
+    // Any two directions across n will do: the cone is round.
+    const Eigen::Vector3d t1 =
+        is_planar_pair(point.a, point.b) ? Eigen::Vector3d(-n.y(), n.x(), 0) : n.unitOrthogonal();
+    if (is_planar_pair(point.a, point.b)) {
+        row.tangents = direction_jacobian(t1, arm_a, arm_b);
+        row.friction = Eigen::VectorXd::Constant(1, warm * t1.dot(before.friction));
+    } else {
+        const Eigen::Vector3d t2 = n.cross(t1);
+        row.tangents.resize(2, 12);
+        row.tangents << direction_jacobian(t1, arm_a, arm_b), direction_jacobian(t2, arm_a, arm_b);
+        row.friction = warm * Eigen::Vector2d(t1.dot(before.friction), t2.dot(before.friction));
+    }
+    row.tangent_mass = effective_mass(row.tangents, a, b);
+    return row;
+}
+
+double World::separation(const ContactRow& row) const
+{
+    Eigen::Matrix<double, 12, 1> moved;
+    const int ends[2] = {row.point->a, row.point->b};
+    for (int end = 0; end < 2; ++end) {
+        const Body& now = bodies[static_cast<std::size_t>(ends[end])];
+        const Body& then = start_[static_cast<std::size_t>(ends[end])];
+        Eigen::Quaterniond turn = now.orientation * then.orientation.conjugate();
+        if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
+        Eigen::Vector3d angle = 2 * turn.vec();
+        // A planar body's turn is known exactly, an angle and not its sine.
+        if (now.motion == BodyMotion::dynamic_body && now.model == BodyModel::planar) {
+            angle = {0, 0, 2 * std::atan2(turn.z(), turn.w())};
+        }
+        moved.segment<3>(6 * end) = now.position - then.position;
+        moved.segment<3>(6 * end + 3) = angle;
+    }
+    return static_cast<double>(row.point->contact.separation) + (row.normal * moved)(0);
+}
+
+void World::solve_contact(ContactRow& row, double h, const SolverSettings& settings, bool relax)
+{
+    const ContactPoint& point = *row.point;
+    const double mu = static_cast<double>(point.contact.friction);
+    if (mu > 0 || point.contact.restitution > 0) {
+        Eigen::VectorXd free = row.friction - row.tangent_mass * speed(point.a, point.b, row.tangents);
+        if (free.norm() > mu * row.impulse) free *= mu * row.impulse / free.norm();
+        apply(point.a, point.b, row.tangents, free - row.friction);
+        row.friction = free;
+    }
+    const bool soft_step = settings.method == Method::soft_step;
+    const bool on_fixed = bodies[static_cast<std::size_t>(point.a)].motion != BodyMotion::dynamic_body ||
+                          bodies[static_cast<std::size_t>(point.b)].motion != BodyMotion::dynamic_body;
+    const double beta =
+        settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
+    Soft soft = soft_step ? softness((on_fixed ? 2 : 1) * static_cast<double>(settings.contact_hertz),
+                                     settings.contact_damping_ratio, h)
+                          : Soft{beta / h, 1, 0};
+    const double slop = soft_step ? 0 : static_cast<double>(settings.penetration_slop);
+    const double s = separation(row);
+    double bias =
+        std::max(soft.rate * std::min(s + slop, 0.0), -static_cast<double>(settings.push_out_speed));
+    if (s > 0) {
+        soft = {0, 1, 0};
+        bias = s / h;
+    } else if (relax) {
+        soft = {0, 1, 0};
+        bias = 0;
+    }
+    const double wanted =
+        row.impulse - row.normal_mass * soft.mass_scale * (speed(point.a, point.b, row.normal)(0) + bias) -
+        soft.impulse_scale * row.impulse;
+    const double impulse = std::max(wanted, 0.0);
+    apply(point.a, point.b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
+    row.impulse = impulse;
+    row.peak = std::max(row.peak, impulse);
+}
+
+void World::project(std::vector<ContactRow>& contacts, const SolverSettings& settings)
+{
+    const auto move = [&](int a, int b, const Jacobian& jacobian, const Eigen::VectorXd& push) {
+        Body& body_a = bodies[static_cast<std::size_t>(a)];
+        Body& body_b = bodies[static_cast<std::size_t>(b)];
+        const Eigen::Matrix<double, 12, 1> change =
+            pair_inverse_mass(body_a, body_b) * jacobian.transpose() * push;
+        body_a.advance(change.head<6>(), 1);
+        body_b.advance(change.tail<6>(), 1);
+    };
+    for (Joint& joint : joints) {
+        const Body& a = bodies[static_cast<std::size_t>(joint.a)];
+        const Body& b = bodies[static_cast<std::size_t>(joint.b)];
+        if (joint.kind == Joint::Kind::ball_socket) {
+            const int rows = is_planar_pair(joint.a, joint.b) ? 2 : 3;
+            const Jacobian j = point_jacobian(a, b, joint.local_a, joint.local_b).topRows(rows);
+            move(joint.a, joint.b, j,
+                 -effective_mass(j, a, b) * point_error(a, b, joint.local_a, joint.local_b).head(rows));
+        } else if (joint.mode != DistanceMode::spring) {
+            double error = distance_error(a, b, joint.local_a, joint.local_b, joint.length);
+            if (joint.mode == DistanceMode::rope) error = std::max(error, 0.0);
+            const Jacobian j = distance_jacobian(a, b, joint.local_a, joint.local_b);
+            move(joint.a, joint.b, j, -effective_mass(j, a, b) * Eigen::VectorXd::Constant(1, error));
+        }
+    }
+    for (ContactRow& row : contacts) {
+        const double deep = std::min(separation(row) + static_cast<double>(settings.penetration_slop), 0.0);
+        const double push = -row.normal_mass * static_cast<double>(settings.baumgarte) * std::max(deep, -0.2);
+        move(row.point->a, row.point->b, row.normal, Eigen::VectorXd::Constant(1, push));
+    }
+}
+
+void World::step(double dt, const SolverSettings& settings, const std::vector<ContactPoint>& points)
+{
+    const double h = dt / settings.substeps;
+    const double warm = settings.warm_start && last_substep_ > 0 ? h / last_substep_ : 0;
+    const bool soft_step = settings.method == Method::soft_step;
+    start_ = bodies;
+    for (Joint& joint : joints) joint.impulse *= warm;
+    std::vector<ContactRow> contacts;
+    for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, warm));
+
+    for (int substep = 0; substep < settings.substeps; ++substep) {
+        for (Body& body : bodies) body.accelerate(eigen(settings.gravity), h);
+        std::vector<JointRow> rows;
+        for (Joint& joint : joints) rows.push_back(begin_joint(joint, h, settings));
+        for (ContactRow& row : contacts) {
+            apply(row.point->a, row.point->b, row.normal, Eigen::VectorXd::Constant(1, row.impulse));
+            apply(row.point->a, row.point->b, row.tangents, row.friction);
+        }
+        for (int i = 0; i < settings.iterations; ++i) {
+            for (JointRow& row : rows) solve_joint(row, false);
+            for (ContactRow& row : contacts) solve_contact(row, h, settings, false);
+        }
+        for (Body& body : bodies) {
+            if (body.motion != BodyMotion::static_body) body.advance(body.velocity, h);
+        }
+        if (!soft_step && settings.drift_correction == DriftCorrection::projection) {
+            for (int i = 0; i < settings.projections; ++i) project(contacts, settings);
+        }
+        for (int i = 0; soft_step && i < settings.relaxations; ++i) {
+            for (JointRow& row : rows) solve_joint(row, true);
+            for (ContactRow& row : contacts) solve_contact(row, h, settings, true);
+        }
+    }
+    memory_.clear();
+    for (ContactRow& row : contacts) {
+        const double e = static_cast<double>(row.point->contact.restitution);
+        if (e > 0 && row.approach < -static_cast<double>(settings.restitution_threshold) && row.peak > 0) {
+            const double leaving = speed(row.point->a, row.point->b, row.normal)(0) + e * row.approach;
+            const double impulse = std::max(row.impulse - row.normal_mass * leaving, 0.0);
+            apply(row.point->a, row.point->b, row.normal,
+                  Eigen::VectorXd::Constant(1, impulse - row.impulse));
+            row.impulse = impulse;
+        }
+        Remembered kept;
+        kept.normal = row.impulse;
+        // The tangents' linear part on b is the direction itself.
+        kept.friction = row.tangents.middleCols<3>(6).transpose() * row.friction;
+        memory_[row.point->contact.key] = kept;
+    }
+    last_substep_ = h;
+}
+
+}  // namespace motley::reference

@@ -1,0 +1,158 @@
+// The reference itself: its Jacobians against finite differences of C along random motions, for every pair of
+// body models that makes sense; its effective masses and its conservation of momentum.
+#include <gtest/gtest.h>
+
+#include "mixed_scene.h"
+#include "motley/reference/world.h"
+
+namespace motley::reference {
+namespace {
+
+using motley::testing::Random;
+
+Body random_body(BodyModel model, BodyMotion motion, Random& random)
+{
+    const auto vector = [&] {
+        return Eigen::Vector3d(random.symmetric(), random.symmetric(), random.symmetric());
+    };
+    Body body;
+    body.model = model;
+    body.motion = motion;
+    body.position = 2 * vector();
+    body.mass = 1.5 + random.symmetric();
+    const Eigen::Vector3d spread = vector();
+    body.inertia = Eigen::Matrix3d::Identity() + 0.3 * spread * spread.transpose();
+    body.velocity << vector(), vector();
+    if (motion == BodyMotion::static_body) body.velocity.setZero();
+    if (motion == BodyMotion::dynamic_body && model == BodyModel::particle) body.velocity.tail<3>().setZero();
+    if (motion == BodyMotion::dynamic_body && model == BodyModel::planar) {
+        body.velocity(2) = body.velocity(3) = body.velocity(4) = 0;
+        body.orientation = Eigen::AngleAxisd(3 * random.symmetric(), Eigen::Vector3d::UnitZ());
+    } else if (model != BodyModel::particle) {
+        body.orientation =
+            Eigen::Quaterniond(random.symmetric(), random.symmetric(), random.symmetric(), random.symmetric())
+                .normalized();
+    }
+    return body;
+}
+
+struct Pair {
+    Body a, b;
+    Eigen::Vector3d local_a, local_b;
+    [[nodiscard]] Eigen::Matrix<double, 12, 1> velocity() const
+    {
+        Eigen::Matrix<double, 12, 1> v;
+        v << a.velocity, b.velocity;
+        return v;
+    }
+    /// The pair after `seconds` of its own motion.
+    [[nodiscard]] Pair moved(double seconds) const
+    {
+        Pair p = *this;
+        p.a.advance(a.velocity, seconds);
+        p.b.advance(b.velocity, seconds);
+        return p;
+    }
+};
+
+/// Calls claim(pair) for random pairs of every combination of models, with one of them static or kinematic too.
+template <class Claim>
+void for_every_pair(const Claim& claim)
+{
+    Random random(5);
+    for (int model_a = 0; model_a < 5; ++model_a) {
+        for (int model_b = 0; model_b < 5; ++model_b) {
+            if (model_a > 2 && model_b > 2) continue;
+            for (int trial = 0; trial < 20; ++trial) {
+                const auto make = [&](int kind) {
+                    const BodyMotion motion = kind == 3   ? BodyMotion::static_body
+                                              : kind == 4 ? BodyMotion::kinematic_body
+                                                          : BodyMotion::dynamic_body;
+                    return random_body(kind > 2 ? BodyModel::rigid : static_cast<BodyModel>(kind), motion,
+                                       random);
+                };
+                Pair pair{make(model_a), make(model_b), {}, {}};
+                const auto anchor = [&](int kind) {
+                    return kind == 0
+                               ? Eigen::Vector3d(0, 0, 0)
+                               : Eigen::Vector3d(random.symmetric(), random.symmetric(), random.symmetric());
+                };
+                pair.local_a = anchor(model_a);
+                pair.local_b = anchor(model_b);
+                claim(pair);
+            }
+        }
+    }
+}
+
+constexpr double epsilon = 1e-5;
+constexpr double tolerance = 1e-7;  // relative: central differences leave epsilon^2 and 1e-16 / epsilon
+
+TEST(Reference, PointJacobianMatchesFiniteDifferences)
+{
+    for_every_pair([](const Pair& p) {
+        const auto error = [&](const Pair& q) { return point_error(q.a, q.b, p.local_a, p.local_b); };
+        const Eigen::Vector3d difference =
+            (error(p.moved(epsilon)) - error(p.moved(-epsilon))) / (2 * epsilon);
+        const Eigen::Vector3d analytic = point_jacobian(p.a, p.b, p.local_a, p.local_b) * p.velocity();
+        EXPECT_LT((difference - analytic).norm(), tolerance * (1 + analytic.norm()));
+    });
+}
+
+TEST(Reference, DistanceJacobianMatchesFiniteDifferences)
+{
+    for_every_pair([](const Pair& p) {
+        const auto error = [&](const Pair& q) { return distance_error(q.a, q.b, p.local_a, p.local_b, 0.7); };
+        const double difference = (error(p.moved(epsilon)) - error(p.moved(-epsilon))) / (2 * epsilon);
+        const double analytic = (distance_jacobian(p.a, p.b, p.local_a, p.local_b) * p.velocity())(0);
+        EXPECT_NEAR(difference, analytic, tolerance * (1 + std::abs(analytic)));
+    });
+}
+
+TEST(Reference, ContactRowsMatchFiniteDifferencesOfTheGapBetweenMaterialPoints)
+{
+    for_every_pair([](const Pair& p) {
+        const Eigen::Vector3d n = Eigen::Vector3d(0.6, -0.48, 0.64).normalized();
+        const Eigen::Vector3d arm_a = p.a.orientation * p.local_a, arm_b = p.b.orientation * p.local_b;
+        for (const Eigen::Vector3d& direction :
+             {n, Eigen::Vector3d(n.unitOrthogonal()), Eigen::Vector3d(n.cross(n.unitOrthogonal()))}) {
+            const auto gap = [&](const Pair& q) {
+                return direction.dot(point_error(q.a, q.b, p.local_a, p.local_b));
+            };
+            const double difference = (gap(p.moved(epsilon)) - gap(p.moved(-epsilon))) / (2 * epsilon);
+            EXPECT_NEAR(difference, (direction_jacobian(direction, arm_a, arm_b) * p.velocity())(0),
+                        tolerance * 10);
+        }
+    });
+}
+
+TEST(Reference, EffectiveMassIsSymmetricPositiveAndInvertsWhatCanMove)
+{
+    for_every_pair([](const Pair& p) {
+        const Jacobian j = point_jacobian(p.a, p.b, p.local_a, p.local_b);
+        const Eigen::MatrixXd mass = effective_mass(j, p.a, p.b);
+        const Eigen::MatrixXd k = j * pair_inverse_mass(p.a, p.b) * j.transpose();
+        EXPECT_LT((mass - mass.transpose()).norm(), 1e-9 * (1 + mass.norm()));
+        EXPECT_LT((k * mass * k - k).norm(), 1e-9 * (1 + k.norm()));
+        EXPECT_GT(mass.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-9);
+    });
+}
+
+TEST(Reference, APairOfImpulsesConservesMomentumAboutTheCommonPoint)
+{
+    // J^T lambda of a satisfied joint has no resultant force, and no resultant torque about any point.
+    for_every_pair([](Pair p) {
+        p.b.position -= point_error(p.a, p.b, p.local_a, p.local_b);
+        const Eigen::Matrix<double, 12, 1> f =
+            point_jacobian(p.a, p.b, p.local_a, p.local_b).transpose() * Eigen::Vector3d(1, 2, -3);
+        const Eigen::Vector3d force = f.segment<3>(0) + f.segment<3>(6);
+        const Eigen::Vector3d torque = f.segment<3>(3) + f.segment<3>(9) +
+                                       p.a.position.cross(f.segment<3>(0)) +
+                                       p.b.position.cross(f.segment<3>(6));
+        EXPECT_LT(force.norm(), 1e-12);
+        EXPECT_LT(torque.norm(), 1e-12);
+    });
+}
+
+}  // namespace
+}  // namespace motley::reference
