@@ -69,11 +69,11 @@ struct Solver::Impl {
 
     // The stages. Each runs over chunks that do not depend on the number of threads.
     std::string take_in(Scene& scene, std::span<const Contact> contacts);
-    void prepare();
+    void lay_out(Scene& scene, std::span<const Contact> contacts);
+    void transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel);
     void integrate_velocities(BodyKernels::Move BodyKernels::*kernel);
     void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel);
     void integrate_positions();
-    void store_impulses();
     void move_bodies(Scene& scene, StepReport& report);
     void solve_substeps(Scene& scene, StepReport& report);
 };
@@ -122,8 +122,13 @@ StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contact
         impl_->runner.with_workers([&] {
             StageClock clock(report);
             report.error = impl_->take_in(scene, contacts);
-            if (!report.error.empty() || dt == 0) return;
-            impl_->layout.build(scene, contacts);
+            if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);
+            if (dt == 0 || !report.error.empty()) return;
+            impl_->lay_out(scene, contacts);
+            if (!scene.contact_cache().admit()) {
+                report.error = ContactIntake::repeated_key(contacts);
+                return;
+            }
             impl_->layout.point_at(scene, step_constants(impl_->settings, dt, scene.last_substep));
             clock.charge(Stage::colour);
             impl_->solve_substeps(scene, report);
@@ -142,7 +147,7 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     const bool projects = !soft && settings.drift_correction == DriftCorrection::projection;
     StageClock clock(report);
 
-    prepare();
+    transfer(&ConstraintKernels::prepare);
     clock.charge(Stage::prepare);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool replays = substep > 0 && layout.has_constant_responses();
@@ -161,7 +166,7 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     }
     sweep(&ConstraintKernels::restitute);
     clock.charge(Stage::restitution);
-    store_impulses();
+    transfer(&ConstraintKernels::store);
     move_bodies(scene, report);
     scene.contact_cache().accept_staged();
     scene.last_substep = layout.context.step.substep;
@@ -184,22 +189,25 @@ std::string Solver::Impl::take_in(Scene& scene, std::span<const Contact> contact
     return layout.intake.error(scene, contacts);
 }
 
-void Solver::Impl::prepare()
+void Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contacts)
 {
-    const auto& transfers = layout.transfers();
-    runner.run(static_cast<std::int64_t>(transfers.size()), [&](std::int64_t i) {
-        const TransferChunk& chunk = transfers[static_cast<std::size_t>(i)];
-        chunk.kernels->prepare(layout.context, chunk.streams, layout.data(chunk.type), chunk.begin,
-                               chunk.end);
-    });
+    layout.colour(scene, contacts.size());
+    runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.count(chunk); });
+    layout.contacts.open(layout.kernels());
+    runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
+    layout.cut(scene, contacts);
 }
 
-void Solver::Impl::store_impulses()
+void Solver::Impl::transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel)
 {
-    const auto& transfers = layout.transfers();
-    runner.run(static_cast<std::int64_t>(transfers.size()), [&](std::int64_t i) {
-        const TransferChunk& chunk = transfers[static_cast<std::size_t>(i)];
-        chunk.kernels->store(layout.context, chunk.streams, layout.data(chunk.type), chunk.begin, chunk.end);
+    const TransferList& transfers = layout.transfers();
+    runner.run(static_cast<std::int64_t>(transfers.tiles.size()), [&](std::int64_t i) {
+        const TransferTile& tile = transfers.tiles[static_cast<std::size_t>(i)];
+        for (std::int32_t p = tile.first_part; p < tile.last_part; ++p) {
+            const TransferTile::Part& part = transfers.parts[static_cast<std::size_t>(p)];
+            (part.kernels->*kernel)(layout.context, part.streams, layout.data(part.type), part.begin,
+                                    part.end);
+        }
     });
 }
 
@@ -207,7 +215,7 @@ void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel)
 {
     const auto run_chunk = [&](const SweepChunk& chunk) {
         const ConstraintKernels::Sweep run = chunk.kernels->*kernel;
-        if (run != nullptr) run(layout.context, chunk.streams, chunk.order, chunk.begin, chunk.end);
+        if (run != nullptr) run(layout.context, chunk.streams, chunk.begin, chunk.end);
     };
     // The overflow first and in order, so that the colours have the last word.
     for (const SweepChunk& chunk : layout.sweeps(overflow_colour)) run_chunk(chunk);

@@ -19,10 +19,16 @@ constexpr int spins_before_yield = 4000;
 
 }  // namespace
 
+StageRunner::StageRunner(Executor* executor)
+    : executor_(executor),
+      workers_(executor->concurrency()),
+      shares_(std::make_unique<Share[]>(static_cast<std::size_t>(workers_)))
+{
+}
+
 void StageRunner::open()
 {
     closed_.store(false, std::memory_order_relaxed);
-    tickets_.store(0, std::memory_order_relaxed);
     open_ = true;
 }
 
@@ -30,8 +36,14 @@ void StageRunner::publish(Job job, std::uint32_t count)
 {
     job_ = job;
     done_.store(0, std::memory_order_relaxed);
-    tickets_.store(std::uint64_t{count} << 32, std::memory_order_release);
-    while (claim_and_run()) {
+    std::uint64_t first = 0;
+    for (int worker = 0; worker < workers_; ++worker) {
+        const std::uint64_t last = std::uint64_t{count} * static_cast<std::uint64_t>(worker + 1) /
+                                   static_cast<std::uint64_t>(workers_);
+        shares_[static_cast<std::size_t>(worker)].word.store(last << 32 | first, std::memory_order_release);
+        first = last;
+    }
+    while (claim_and_run(0)) {
     }
     for (int spins = 0; done_.load(std::memory_order_acquire) != count;) {
         if (++spins < spins_before_yield) {
@@ -42,14 +54,24 @@ void StageRunner::publish(Job job, std::uint32_t count)
     }
 }
 
-bool StageRunner::claim_and_run()
+/// One chunk of the worker's own share, or else of the next one that has any left.
+bool StageRunner::claim_and_run(int worker)
 {
-    std::uint64_t tickets = tickets_.load(std::memory_order_acquire);
+    for (int i = 0; i < workers_; ++i) {
+        const int whose = worker + i < workers_ ? worker + i : worker + i - workers_;
+        if (claim_and_run(shares_[static_cast<std::size_t>(whose)])) return true;
+    }
+    return false;
+}
+
+bool StageRunner::claim_and_run(Share& share)
+{
+    std::uint64_t word = share.word.load(std::memory_order_acquire);
     for (;;) {
-        const auto next = static_cast<std::uint32_t>(tickets);
-        if (next >= static_cast<std::uint32_t>(tickets >> 32)) return false;
-        if (tickets_.compare_exchange_weak(tickets, tickets + 1, std::memory_order_acq_rel,
-                                           std::memory_order_acquire)) {
+        const auto next = static_cast<std::uint32_t>(word);
+        if (next >= static_cast<std::uint32_t>(word >> 32)) return false;
+        if (share.word.compare_exchange_weak(word, word + 1, std::memory_order_acq_rel,
+                                             std::memory_order_acquire)) {
             job_.call(job_.self, next);
             done_.fetch_add(1, std::memory_order_release);
             return true;
@@ -57,11 +79,11 @@ bool StageRunner::claim_and_run()
     }
 }
 
-void StageRunner::work()
+void StageRunner::work(int worker)
 {
     int spins = 0;
     while (!closed_.load(std::memory_order_acquire)) {
-        if (claim_and_run()) {
+        if (claim_and_run(worker)) {
             spins = 0;
         } else if (++spins < spins_before_yield) {
             pause();

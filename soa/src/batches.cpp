@@ -1,4 +1,4 @@
-// Blocks opened, filled and cut into chunks.
+// Constraints counted, blocks opened and filled, and cut into chunks.
 #include "batches.h"
 
 #include <algorithm>
@@ -8,15 +8,34 @@ namespace {
 
 /// Blocks a chunk: about two microseconds of work, twenty times what claiming it costs.
 constexpr std::int32_t blocks_per_chunk = 32;
+/// Blocks of each class and colour in a tile: the contacts of a tile then fit a first or second level cache.
+constexpr std::int32_t blocks_per_tile = 8;
 /// Overflow blocks that stay open to newcomers: enough to fill lanes from a few hubs, few enough to search.
-constexpr std::size_t open_overflow_blocks = 8;
-
-constexpr std::int32_t none = -1;
+constexpr std::int32_t open_overflow_blocks = 8;
+/// Constraints a chunk when they are sorted.
+constexpr std::size_t placements_per_chunk = 4096;
 
 template <class T>
 void grow(AlignedVector<T>& stream, std::size_t size)
 {
     if (stream.size() < size) stream.resize(size + size / 2);
+}
+
+void set_lane(BlockIndex& block, int lane, const Placement& placement)
+{
+    block.a[lane] = static_cast<std::int32_t>(placement.a.row());
+    block.b[lane] = static_cast<std::int32_t>(placement.b.row());
+    block.constraint[lane] = placement.constraint;
+}
+
+/// Makes lanes [first, 16) padding: the null bodies, and the parameters of a real constraint, so that no lane ever
+/// computes with a zero normal.
+void pad(BlockIndex& block, int first, std::int32_t constraint)
+{
+    std::fill(block.a + first, block.a + block_lanes, 0);
+    std::fill(block.b + first, block.b + block_lanes, 0);
+    std::fill(block.constraint + first, block.constraint + block_lanes, constraint);
+    block.count = first;
 }
 
 bool holds(const BlockIndex& block, BodyRow a, BodyRow b)
@@ -36,115 +55,187 @@ bool holds(const BlockIndex& block, BodyRow a, BodyRow b)
 
 }  // namespace
 
-BlockPool::BlockPool()
+BatchSet::BatchSet(int first_type, int last_type)
+    : first_class_(first_type * body_kind_count * body_kind_count),
+      pools_(static_cast<std::size_t>((last_type - first_type) * body_kind_count * body_kind_count))
 {
-    open_.fill(none);
 }
 
-void BlockPool::clear()
+std::size_t BatchSet::key_of(const Placement& placement) const
 {
-    block_count_ = 0;
-    constraint_count_ = 0;
-    for (auto& order : orders_) order.clear();
-    open_.fill(none);
+    const int pool = class_of(placement.type, placement.a.kind(), placement.b.kind()) - first_class_;
+    return static_cast<std::size_t>(pool * colours + placement.colour);
 }
 
-BlockIndex& BlockPool::open_block(std::uint8_t colour, std::int32_t constraint)
+std::span<std::int32_t> BatchSet::places_of(std::int64_t chunk)
 {
-    if (static_cast<std::size_t>(block_count_) == index_.size()) grow(index_, index_.size() + 16);
-    orders_[colour].push_back(block_count_);
-    if (colour != overflow_colour) open_[colour] = block_count_;
-    BlockIndex& block = index_[static_cast<std::size_t>(block_count_++)];
-    std::fill_n(block.a, block_lanes, 0);
-    std::fill_n(block.b, block_lanes, 0);
-    // Padding reads the parameters of a real constraint, so that no lane ever computes with a zero normal.
-    std::fill_n(block.constraint, block_lanes, constraint);
-    block.count = 0;
-    return block;
+    const std::size_t keys = pools_.size() * colours;
+    return std::span(places_).subspan(static_cast<std::size_t>(chunk) * keys, keys);
 }
 
-BlockIndex& BlockPool::open_overflow_block(BodyRow a, BodyRow b, std::int32_t constraint)
+std::span<const Placement> BatchSet::placements_of(std::int64_t chunk) const
 {
-    const auto& order = orders_[overflow_colour];
-    const std::size_t first = order.size() > open_overflow_blocks ? order.size() - open_overflow_blocks : 0;
-    for (std::size_t i = first; i < order.size(); ++i) {
-        BlockIndex& block = index_[static_cast<std::size_t>(order[i])];
-        if (block.count < block_lanes && !holds(block, a, b)) return block;
-    }
-    return open_block(overflow_colour, constraint);
+    const std::size_t first = static_cast<std::size_t>(chunk) * placements_per_chunk;
+    return placements_.subspan(first, std::min(placements_per_chunk, placements_.size() - first));
 }
 
-void BlockPool::place(BodyRow a, BodyRow b, std::int32_t constraint, std::uint8_t colour)
+std::int64_t BatchSet::chunk_count() const
 {
-    BlockIndex& block = colour == overflow_colour ? open_overflow_block(a, b, constraint)
-                        : open_[colour] != none   ? index_[static_cast<std::size_t>(open_[colour])]
-                                                  : open_block(colour, constraint);
-    block.a[block.count] = static_cast<std::int32_t>(a.row());
-    block.b[block.count] = static_cast<std::int32_t>(b.row());
-    block.constraint[block.count] = constraint;
-    if (++block.count == block_lanes && colour != overflow_colour) open_[colour] = none;
-    ++constraint_count_;
+    return static_cast<std::int64_t>((placements_.size() + placements_per_chunk - 1) / placements_per_chunk);
 }
 
-BlockStreams BlockPool::streams(const ConstraintKernels& kernels)
+void BatchSet::begin(std::span<const Placement> placements)
 {
-    const std::size_t lanes = static_cast<std::size_t>(block_count_) * block_lanes;
-    grow(rows_, lanes * static_cast<std::size_t>(kernels.row_floats));
-    grow(substep_rows_, lanes * static_cast<std::size_t>(kernels.substep_floats));
-    grow(impulses_, lanes * static_cast<std::size_t>(kernels.impulse_floats));
-    return {index_.data(), rows_.data(), substep_rows_.data(), impulses_.data()};
+    placements_ = placements;
+    const std::size_t wanted = static_cast<std::size_t>(chunk_count()) * pools_.size() * colours;
+    if (places_.size() < wanted) places_.resize(wanted + wanted / 2);
 }
 
-void BatchSet::clear()
+void BatchSet::count(std::int64_t chunk)
 {
-    for (BlockPool& pool : pools_) pool.clear();
+    const std::span<std::int32_t> counts = places_of(chunk);
+    std::fill(counts.begin(), counts.end(), 0);
+    for (const Placement& placement : placements_of(chunk)) ++counts[key_of(placement)];
 }
 
-void BatchSet::cut(const KernelTable& table,
-                   std::array<std::vector<SweepChunk>, parallel_colours + 1>& sweeps,
-                   std::vector<TransferChunk>& transfers)
+void BatchSet::open(const KernelTable& kernels)
 {
-    for (int c = 0; c < class_count; ++c) {
-        BlockPool& pool = pools_[static_cast<std::size_t>(c)];
-        if (pool.block_count() == 0) continue;
-        const ConstraintKernels& kernels = table.constraints[c];
-        const BlockStreams streams = pool.streams(kernels);
-        for (int colour = 0; colour <= parallel_colours; ++colour) {
-            const auto& order = pool.order(colour);
-            const auto size = static_cast<std::int32_t>(order.size());
-            for (std::int32_t begin = 0; begin < size; begin += blocks_per_chunk) {
-                sweeps[static_cast<std::size_t>(colour)].push_back(
-                    {&kernels, streams, order.data(), begin, std::min(begin + blocks_per_chunk, size)});
+    bool has_overflow = false;
+    for (std::size_t p = 0; p < pools_.size(); ++p) {
+        Pool& pool = pools_[p];
+        std::int32_t blocks = 0;
+        for (std::size_t colour = 0; colour < colours; ++colour) {
+            std::int32_t total = 0;
+            for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
+                std::int32_t& place = places_of(chunk)[p * colours + colour];
+                const std::int32_t here = place;
+                place = total;
+                total += here;
+            }
+            pool.first_block[colour] = blocks;
+            if (colour == overflow_colour) {
+                pool.overflow = total;
+            } else {
+                pool.constraints[colour] = total;
+                blocks += (total + block_lanes - 1) / block_lanes;
             }
         }
-        const int type = c / (body_kind_count * body_kind_count);
-        for (std::int32_t begin = 0; begin < pool.block_count(); begin += blocks_per_chunk) {
-            transfers.push_back(
-                {&kernels, streams, type, begin, std::min(begin + blocks_per_chunk, pool.block_count())});
+        pool.first_block[colours] = blocks;
+        has_overflow = has_overflow || pool.overflow > 0;
+        grow(pool.index, static_cast<std::size_t>(blocks));
+    }
+    if (has_overflow) place_overflow();
+    for (std::size_t p = 0; p < pools_.size(); ++p) {
+        const ConstraintKernels& own = kernels.constraints[static_cast<std::size_t>(first_class_) + p];
+        const std::size_t lanes = static_cast<std::size_t>(pools_[p].block_count()) * block_lanes;
+        grow(pools_[p].rows, lanes * static_cast<std::size_t>(own.row_floats));
+        grow(pools_[p].substep_rows, lanes * static_cast<std::size_t>(own.substep_floats));
+        grow(pools_[p].impulses, lanes * static_cast<std::size_t>(own.impulse_floats));
+    }
+}
+
+/// The overflow of a class behind its colours: first fit among the last few blocks, so that no block has a body
+/// twice.
+void BatchSet::place_overflow()
+{
+    for (const Placement& placement : placements_) {
+        if (placement.colour != overflow_colour) continue;
+        Pool& pool = pools_[key_of(placement) / colours];
+        std::int32_t& end = pool.first_block[colours];
+        std::int32_t block = std::max(pool.first_block[overflow_colour], end - open_overflow_blocks);
+        const auto at = [&](std::int32_t i) -> BlockIndex& {
+            return pool.index[static_cast<std::size_t>(i)];
+        };
+        while (block < end && (at(block).count == block_lanes || holds(at(block), placement.a, placement.b)))
+            ++block;
+        if (block == end) {
+            grow(pool.index, static_cast<std::size_t>(++end));
+            pad(at(block), 0, placement.constraint);
+        }
+        set_lane(at(block), at(block).count++, placement);
+    }
+}
+
+void BatchSet::fill(std::int64_t chunk)
+{
+    const std::span<std::int32_t> places = places_of(chunk);
+    for (const Placement& placement : placements_of(chunk)) {
+        if (placement.colour == overflow_colour) continue;
+        const std::size_t key = key_of(placement);
+        Pool& pool = pools_[key / colours];
+        const std::int32_t place = places[key]++;
+        const int lane = place % block_lanes;
+        BlockIndex& block =
+            pool.index[static_cast<std::size_t>(pool.first_block[placement.colour] + place / block_lanes)];
+        set_lane(block, lane, placement);
+        // Whoever has the first lane sees to the padding, which no other writes.
+        if (lane == 0) {
+            pad(block, std::min(pool.constraints[placement.colour] - place, block_lanes),
+                placement.constraint);
         }
     }
 }
 
-bool BatchSet::is_empty() const
+BlockStreams BatchSet::Pool::streams()
 {
-    return std::all_of(pools_.begin(), pools_.end(),
-                       [](const BlockPool& pool) { return pool.block_count() == 0; });
+    return {index.data(), rows.data(), substep_rows.data(), impulses.data()};
+}
+
+void BatchSet::cut(const KernelTable& table, SweepLists& sweeps, TransferList& transfers)
+{
+    std::int32_t tiles = 1;
+    for (std::size_t p = 0; p < pools_.size(); ++p) {
+        Pool& pool = pools_[p];
+        if (pool.block_count() == 0) continue;
+        const ConstraintKernels& kernels = table.constraints[static_cast<std::size_t>(first_class_) + p];
+        for (std::size_t colour = 0; colour < colours; ++colour) {
+            const std::int32_t end = pool.first_block[colour + 1];
+            tiles = std::max(tiles, (end - pool.first_block[colour]) / blocks_per_tile);
+            for (std::int32_t begin = pool.first_block[colour]; begin < end; begin += blocks_per_chunk) {
+                sweeps[colour].push_back(
+                    {&kernels, pool.streams(), begin, std::min(begin + blocks_per_chunk, end)});
+            }
+        }
+    }
+    for (std::int32_t tile = 0; tile < tiles; ++tile) {
+        const auto first_part = static_cast<std::int32_t>(transfers.parts.size());
+        for (std::size_t p = 0; p < pools_.size(); ++p) {
+            Pool& pool = pools_[p];
+            if (pool.block_count() == 0) continue;
+            const int constraint_class = first_class_ + static_cast<int>(p);
+            for (std::size_t colour = 0; colour < colours; ++colour) {
+                const std::int32_t first = pool.first_block[colour],
+                                   blocks = pool.first_block[colour + 1] - first;
+                const auto share = [&](std::int64_t t) {
+                    return first + static_cast<std::int32_t>(blocks * t / tiles);
+                };
+                if (share(tile) == share(tile + 1)) continue;
+                transfers.parts.push_back({&table.constraints[constraint_class], pool.streams(),
+                                           constraint_class / (body_kind_count * body_kind_count),
+                                           share(tile), share(tile + 1)});
+            }
+        }
+        const auto last_part = static_cast<std::int32_t>(transfers.parts.size());
+        if (last_part > first_part) transfers.tiles.push_back({first_part, last_part});
+    }
 }
 
 BatchSet::Count BatchSet::count(const KernelTable& table) const
 {
     Count total;
-    for (int c = 0; c < class_count; ++c) {
-        const BlockPool& pool = pools_[static_cast<std::size_t>(c)];
+    for (std::size_t p = 0; p < pools_.size(); ++p) {
+        const Pool& pool = pools_[p];
         if (pool.block_count() == 0) continue;
-        const ConstraintKernels& kernels = table.constraints[c];
-        total.blocks += pool.block_count();
-        total.constraints += pool.constraint_count();
+        std::int64_t constraints = pool.overflow;
+        for (const std::int32_t some : pool.constraints) constraints += some;
+        const ConstraintKernels& kernels = table.constraints[static_cast<std::size_t>(first_class_) + p];
         // Types that rebuild their row each substep sweep over that one; the others over the step's row.
         const int row = kernels.substep_floats > 0 ? kernels.substep_floats : kernels.row_floats;
         const double floats = row + kernels.impulse_floats + 2;  // two body indices
-        total.streamed_bytes += 4.0 * floats * static_cast<double>(pool.constraint_count());
-        for (const std::int32_t block : pool.order(overflow_colour)) total.overflow += pool.lanes_used(block);
+        total.blocks += pool.block_count();
+        total.constraints += constraints;
+        total.overflow += pool.overflow;
+        total.streamed_bytes += 4.0 * floats * static_cast<double>(constraints);
     }
     return total;
 }

@@ -1,9 +1,13 @@
-// Batches: coloured constraints sorted into blocks of sixteen lanes, and cut into chunks for whoever runs
-// them.
+// Batches: coloured constraints sorted into blocks of sixteen lanes, and cut into chunks for whoever runs them.
+//
+// A counting sort in two passes over chunks of constraints, so that any number of threads may share them: how many
+// of each class and colour a chunk has, then, when every chunk knows where its own begin, each constraint into its
+// lane. Blocks of one colour lie in line, and so do their streams: a sweep reads memory from front to back.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "block.h"
@@ -12,68 +16,56 @@
 
 namespace motley {
 
-/// Some blocks of one class and colour: the unit of work of a sweep.
+/// Where a constraint belongs.
+struct Placement {
+    BodyRow a, b;
+    std::int32_t constraint = 0;  ///< index in the list or store of its type
+    std::uint8_t type = 0;
+    std::uint8_t colour = no_colour;
+};
+
+/// Blocks begin ... end - 1 of one class and colour: the unit of work of a sweep.
 struct SweepChunk {
     const ConstraintKernels* kernels;
     BlockStreams streams;
-    const std::int32_t* order;
     std::int32_t begin, end;
 };
 
-/// Some blocks of one class, of any colour: the unit of work of prepare and store.
-struct TransferChunk {
-    const ConstraintKernels* kernels;
-    BlockStreams streams;
-    int type;
-    std::int32_t begin, end;
+/// The unit of work of prepare and store: a few blocks of each class and colour, from about the same stretch of the
+/// host's list, so that its cache lines serve all colours.
+struct TransferTile {
+    struct Part {
+        const ConstraintKernels* kernels;
+        BlockStreams streams;
+        int type;
+        std::int32_t begin, end;
+    };
+    std::int32_t first_part, last_part;
 };
 
-/// The blocks of one class: a pool in order of opening, and for each colour the list of its blocks.
-class BlockPool {
-  public:
-    BlockPool();
-    void clear();
-    /// Puts a constraint into the open block of its colour. Constraints keep the order in which they come,
-    /// and so the locality that the host's order has.
-    void place(BodyRow a, BodyRow b, std::int32_t constraint, std::uint8_t colour);
-    /// Streams long enough for every block; pointers stay good until the pool next grows.
-    BlockStreams streams(const ConstraintKernels& kernels);
-
-    [[nodiscard]] std::int32_t block_count() const { return block_count_; }
-    [[nodiscard]] std::int64_t constraint_count() const { return constraint_count_; }
-    [[nodiscard]] std::int32_t lanes_used(std::int32_t block) const
-    {
-        return index_[static_cast<std::size_t>(block)].count;
-    }
-    [[nodiscard]] const std::vector<std::int32_t>& order(int colour) const
-    {
-        return orders_[static_cast<std::size_t>(colour)];
-    }
-
-  private:
-    BlockIndex& open_block(std::uint8_t colour, std::int32_t constraint);
-    BlockIndex& open_overflow_block(BodyRow a, BodyRow b, std::int32_t constraint);
-
-    AlignedVector<BlockIndex> index_;
-    AlignedVector<float> rows_, substep_rows_, impulses_;
-    std::array<std::vector<std::int32_t>, parallel_colours + 1> orders_;
-    std::array<std::int32_t, parallel_colours>
-        open_{};  ///< the block of each colour that still has lanes, or none
-    std::int32_t block_count_ = 0;
-    std::int64_t constraint_count_ = 0;
+using SweepLists = std::array<std::vector<SweepChunk>, parallel_colours + 1>;
+struct TransferList {
+    std::vector<TransferTile::Part> parts;
+    std::vector<TransferTile> tiles;
 };
 
-/// The blocks of a set of constraints, by class.
+/// The blocks of the types [first_type, last_type), by class and colour.
 class BatchSet {
   public:
-    void clear();
-    void place(int type, BodyRow a, BodyRow b, std::int32_t constraint, std::uint8_t colour)
-    {
-        pools_[static_cast<std::size_t>(class_of(type, a.kind(), b.kind()))].place(a, b, constraint, colour);
-    }
-    /// Appends this set's chunks to the lists, by colour.
-    void cut(const KernelTable& kernels, std::array<std::vector<SweepChunk>, parallel_colours + 1>& sweeps,
-             std::vector<TransferChunk>& transfers);
+    BatchSet(int first_type, int last_type);
+
+    /// Starts over with these constraints, which must stay where they are until fill() is done.
+    void begin(std::span<const Placement> placements);
+    [[nodiscard]] std::int64_t chunk_count() const;
+    /// Counts the constraints of a chunk. Chunks may run on different threads.
+    void count(std::int64_t chunk);
+    /// When all are counted: makes room, and puts the overflow into its blocks, in order.
+    void open(const KernelTable& kernels);
+    /// Puts the constraints of a chunk into their lanes. Chunks may run on different threads.
+    void fill(std::int64_t chunk);
+
+    /// Appends this set's chunks to the lists. Pointers in them stay good until the next begin().
+    void cut(const KernelTable& kernels, SweepLists& sweeps, TransferList& transfers);
 
     /// Blocks, constraints, overflow and streamed floats, for the report.
     struct Count {
@@ -81,10 +73,30 @@ class BatchSet {
         double streamed_bytes = 0;  ///< by one sweep of solve
     };
     [[nodiscard]] Count count(const KernelTable& kernels) const;
-    [[nodiscard]] bool is_empty() const;
+    [[nodiscard]] bool is_empty() const { return placements_.empty(); }
 
   private:
-    std::array<BlockPool, class_count> pools_;
+    static constexpr int colours = parallel_colours + 1;
+    struct Pool {
+        AlignedVector<BlockIndex> index;
+        AlignedVector<float> rows, substep_rows, impulses;
+        std::array<std::int32_t, colours + 1> first_block{};       ///< of each colour, and one past the last
+        std::array<std::int32_t, parallel_colours> constraints{};  ///< of each colour
+        std::int64_t overflow = 0;
+        [[nodiscard]] std::int32_t block_count() const { return first_block[colours]; }
+        [[nodiscard]] BlockStreams streams();
+    };
+
+    int first_class_;
+    std::vector<Pool> pools_;  ///< by class, from first_class_ on
+    std::span<const Placement> placements_;
+    /// For each chunk and then each class and colour: first how many, then which place of the colour comes next.
+    std::vector<std::int32_t> places_;
+
+    [[nodiscard]] std::size_t key_of(const Placement& placement) const;
+    [[nodiscard]] std::span<std::int32_t> places_of(std::int64_t chunk);
+    [[nodiscard]] std::span<const Placement> placements_of(std::int64_t chunk) const;
+    void place_overflow();
 };
 
 }  // namespace motley

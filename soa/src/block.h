@@ -63,10 +63,9 @@ struct KernelContext {
     BodyArrays bodies[body_kind_count];
 };
 
-/// The kernels of one type and pair: each runs over blocks order[begin] ... order[end - 1].
+/// The kernels of one type and pair: each runs over blocks begin ... end - 1.
 struct ConstraintKernels {
-    using Sweep = void (*)(const KernelContext&, const BlockStreams&, const std::int32_t* order,
-                           std::int32_t begin, std::int32_t end);
+    using Sweep = void (*)(const KernelContext&, const BlockStreams&, std::int32_t begin, std::int32_t end);
     using Transfer = void (*)(const KernelContext&, const BlockStreams&, const ConstraintData&,
                               std::int32_t begin, std::int32_t end);
     Transfer prepare = nullptr;  ///< definitions and memory -> rows and impulses

@@ -3,6 +3,7 @@
 #include "contact_intake.h"
 
 #include <cmath>
+#include <unordered_set>
 
 #include "motley/core/invalid_input.h"
 
@@ -51,15 +52,12 @@ bool is_planar(BodyRow a, BodyRow b)
 
 void ContactIntake::begin(Scene& scene, std::size_t count)
 {
-    if (a.size() < count) {
+    if (placements.size() < count) {
         const std::size_t room = count + count / 2;
-        a.resize(room);
-        b.resize(room);
-        types.resize(room);
-        kept_colours.resize(room);
+        placements.resize(room);
         memory_index.resize(room);
     }
-    scene.contact_cache().staged().reset(count);
+    scene.contact_cache().begin(count);
     first_bad_.store(none, std::memory_order_relaxed);
 }
 
@@ -73,39 +71,38 @@ void ContactIntake::mark_bad(std::size_t index)
 void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::size_t first, std::size_t last)
 {
     const BodyStore& bodies = scene.bodies();
-    const ContactList& past = scene.contact_cache().current();
-    ContactList& staged = scene.contact_cache().staged();
-    // Keys are looked up this far ahead, so that the table's cache lines are on their way.
-    constexpr std::size_t ahead = 16;
-    std::uint32_t hint = static_cast<std::uint32_t>(first);
+    ContactCache& cache = scene.contact_cache();
+    const ContactList& past = cache.current();
+    auto hint = static_cast<std::uint32_t>(first);
     for (std::size_t i = first; i < last; ++i) {
-        if (i + ahead < last) staged.prefetch(contacts[i + ahead].key);
         const Contact& contact = contacts[i];
         if (!bodies.is_alive(contact.body_a) || !bodies.is_alive(contact.body_b) ||
             !numbers_are_good(contact)) {
             mark_bad(i);
             continue;
         }
-        a[i] = bodies.row_of(contact.body_a);
-        b[i] = bodies.row_of(contact.body_b);
+        const BodyRow a = bodies.row_of(contact.body_a), b = bodies.row_of(contact.body_b);
         if (contact.body_a == contact.body_b ||
-            (a[i].kind() == BodyKind::fixed && b[i].kind() == BodyKind::fixed) ||
-            (is_planar(a[i], b[i]) && contact.normal.z != 0)) {
+            (a.kind() == BodyKind::fixed && b.kind() == BodyKind::fixed) ||
+            (is_planar(a, b) && contact.normal.z != 0)) {
             mark_bad(i);
             continue;
         }
+        ContactList::Entry& entry = cache.staged().entries[i];
+        entry.key = contact.key;
+        entry.body_a = fingerprint(contact.body_a);
+        entry.body_b = fingerprint(contact.body_b);
+        const std::uint32_t before = cache.find(contact.key, hint);
+        cache.claim(before, static_cast<std::uint32_t>(i));
         // The list of contact types: smooth first, then with friction and restitution.
-        types[i] = contact.friction == 0 && contact.restitution == 0 ? 0 : 1;
-        staged.entries[i] = {contact.key, fingerprint(contact.body_a), fingerprint(contact.body_b)};
-        if (!staged.insert(static_cast<std::uint32_t>(i))) mark_bad(i);
-        kept_colours[i] = no_colour;
+        const std::uint8_t type = contact.friction == 0 && contact.restitution == 0 ? 0 : 1;
+        placements[i] = {a, b, static_cast<std::int32_t>(i), type, no_colour};
         memory_index[i] = 0;
-        const std::uint32_t before = past.find(contact.key, hint);
-        if (before == ContactList::none) continue;
+        if (before == ContactCache::none) continue;
         hint = before + 1;
-        const ContactList::Entry& entry = past.entries[before];
-        if (entry.body_a == staged.entries[i].body_a && entry.body_b == staged.entries[i].body_b) {
-            kept_colours[i] = past.colours[before];
+        const ContactList::Entry& known = past.entries[before];
+        if (known.body_a == entry.body_a && known.body_b == entry.body_b) {
+            placements[i].colour = known.colour;
             memory_index[i] = static_cast<std::int32_t>(before) + 1;
         }
     }
@@ -173,11 +170,21 @@ std::string ContactIntake::error(const Scene& scene, std::span<const Contact> co
         if (is_planar(row_a, row_b) && c.normal.z != 0) {
             refuse_contact(bad, "normal.z", c.normal.z, "0 between planar bodies");
         }
-        refuse("contacts[" + std::to_string(bad) + "].key", std::to_string(c.key) + ", twice in the list",
-               "a key of its own");
     } catch (const InvalidInput& refusal) {
         return refusal.what();
     }
+    return {};
+}
+
+std::string ContactIntake::repeated_key(std::span<const Contact> contacts)
+{
+    std::unordered_set<std::uint64_t> keys;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        if (keys.insert(contacts[i].key).second) continue;
+        return "contacts[" + std::to_string(i) + "].key is " + std::to_string(contacts[i].key) +
+               ", twice in the list; expected a key of its own";
+    }
+    return {};
 }
 
 }  // namespace motley

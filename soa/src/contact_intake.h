@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "batches.h"
 #include "motley/core/scene.h"
 
 namespace motley {
@@ -16,14 +17,15 @@ class ContactIntake {
   public:
     /// Makes room for a list and clears the scene's staged list.
     void begin(Scene& scene, std::size_t count);
-    /// Checks contacts [first, last) and looks their keys up. Ranges may run on different threads.
+    /// Checks contacts [first, last) and looks their keys up in the last step's. Ranges may run on different threads.
     void take(Scene& scene, std::span<const Contact> contacts, std::size_t first, std::size_t last);
     /// Empty when every contact is good; else what is wrong with the first bad one. Serial.
     [[nodiscard]] std::string error(const Scene& scene, std::span<const Contact> contacts) const;
 
-    std::vector<BodyRow> a, b;
-    std::vector<std::uint8_t> types;         ///< index in ContactTypes
-    std::vector<std::uint8_t> kept_colours;  ///< of the step before, or no_colour
+    /// What is wrong when a key came twice. Serial.
+    [[nodiscard]] static std::string repeated_key(std::span<const Contact> contacts);
+
+    std::vector<Placement> placements;  ///< with the colour of the step before, or no_colour
     std::vector<std::int32_t>
         memory_index;  ///< entry in the last list's impulses; 0, the zero entry, when new
 

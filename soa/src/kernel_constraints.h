@@ -188,11 +188,11 @@ struct Kernels {
     }
 
     [[gnu::flatten]] static void warm_start(const KernelContext& context, const BlockStreams& streams,
-                                            const std::int32_t* order, std::int32_t begin, std::int32_t end)
+                                            std::int32_t begin, std::int32_t end)
     {
-        for (std::int32_t i = begin; i < end; ++i) {
-            prefetch(context, streams, order, i, end);
-            for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
+        for (std::int32_t block = begin; block < end; ++block) {
+            prefetch(context, streams, block, end);
+            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
                 Substep substep;
@@ -205,39 +205,24 @@ struct Kernels {
         }
     }
 
-    /// Asks for what a block of the near future will touch: its streams, which no hardware prefetcher follows
-    /// from block to block, and its bodies, which lie anywhere.
+    /// Asks for the bodies of the next block, which lie anywhere. Its streams lie in line: the hardware sees to
+    /// them.
     [[gnu::always_inline]] static void prefetch(const KernelContext& context, const BlockStreams& streams,
-                                                const std::int32_t* order, std::int32_t i, std::int32_t end)
+                                                std::int32_t block, std::int32_t end)
     {
-        if (i + 2 < end) {
-            const std::int64_t block = order[i + 2];
-            for (int line = 0; line < fields_of<Row>; ++line)
-                __builtin_prefetch(streams.rows + block * row_stride + line * 16);
-            for (int line = 0; line < fields_of<Substep>; ++line) {
-                __builtin_prefetch(streams.substep_rows + block * substep_stride + line * 16);
-            }
-            for (int line = 0; line < fields_of<Impulse>; ++line) {
-                __builtin_prefetch(streams.impulses + block * impulse_stride + line * 16);
-            }
-            __builtin_prefetch(streams.index[block].a);
-            __builtin_prefetch(streams.index[block].b);
-            __builtin_prefetch(&streams.index[block].count);
-        }
-        if (i + 1 < end) {
-            const BlockIndex& index = streams.index[order[i + 1]];
-            prefetch_bodies<kind_a>(context.bodies[static_cast<int>(kind_a)], index.a);
-            prefetch_bodies<kind_b>(context.bodies[static_cast<int>(kind_b)], index.b);
-        }
+        if (block + 1 >= end) return;
+        const BlockIndex& index = streams.index[block + 1];
+        prefetch_bodies<kind_a>(context.bodies[static_cast<int>(kind_a)], index.a);
+        prefetch_bodies<kind_b>(context.bodies[static_cast<int>(kind_b)], index.b);
     }
 
     template <bool relax>
     [[gnu::flatten]] static void sweep(const KernelContext& context, const BlockStreams& streams,
-                                       const std::int32_t* order, std::int32_t begin, std::int32_t end)
+                                       std::int32_t begin, std::int32_t end)
     {
-        for (std::int32_t i = begin; i < end; ++i) {
-            prefetch(context, streams, order, i, end);
-            for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
+        for (std::int32_t block = begin; block < end; ++block) {
+            prefetch(context, streams, block, end);
+            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
                 auto impulse = load_row<Impulse>(bundle.impulse);
@@ -251,11 +236,11 @@ struct Kernels {
     }
 
     [[gnu::flatten]] static void restitute(const KernelContext& context, const BlockStreams& streams,
-                                           const std::int32_t* order, std::int32_t begin, std::int32_t end)
+                                           std::int32_t begin, std::int32_t end)
     {
-        for (std::int32_t i = begin; i < end; ++i) {
-            prefetch(context, streams, order, i, end);
-            for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
+        for (std::int32_t block = begin; block < end; ++block) {
+            prefetch(context, streams, block, end);
+            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
                 auto impulse = load_row<Impulse>(bundle.impulse);
@@ -268,11 +253,11 @@ struct Kernels {
     }
 
     [[gnu::flatten]] static void project(const KernelContext& context, const BlockStreams& streams,
-                                         const std::int32_t* order, std::int32_t begin, std::int32_t end)
+                                         std::int32_t begin, std::int32_t end)
     {
-        for (std::int32_t i = begin; i < end; ++i) {
-            prefetch(context, streams, order, i, end);
-            for_each_bundle(context, streams, order[i], [&](const Bundle& bundle) {
+        for (std::int32_t block = begin; block < end; ++block) {
+            prefetch(context, streams, block, end);
+            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
                 Type::template project<Lanes>(context.step, load_row<Row>(bundle.row),

@@ -5,25 +5,19 @@
 
 namespace motley {
 
-void Layout::build(Scene& scene, std::span<const Contact> contacts)
+void Layout::colour(Scene& scene, std::size_t contact_count)
 {
     if (!scene.joints().version || scene.joints().version != joint_version_) {
         place_joints(scene);
         if (!scene.joints().version) scene.joints().version = std::make_shared<const char>('\0');
         joint_version_ = scene.joints().version;
     }
-    place_contacts(scene, contacts.size());
-    for (auto& chunks : sweeps_) chunks.clear();
-    transfers_.clear();
-    joints_.cut(kernels_, sweeps_, transfers_);
-    contacts_.cut(kernels_, sweeps_, transfers_);
-    point_at_data(scene, contacts);
+    colour_contacts(scene, contact_count);
 }
 
 void Layout::place_joints(Scene& scene)
 {
     const BodyStore& bodies = scene.bodies();
-    joints_.clear();
     joint_masks_.reset(bodies);
     scene.joints().for_each([&](auto& store, int) {
         for (std::size_t i = 0; i < store.size(); ++i) {
@@ -32,43 +26,64 @@ void Layout::place_joints(Scene& scene)
                                   bodies.row_of(store.definitions[i].body_b), store.colours[i]);
         }
     });
+    joint_placements_.clear();
     scene.joints().for_each([&](auto& store, int type) {
         for (std::size_t i = 0; i < store.size(); ++i) {
             const BodyRow a = bodies.row_of(store.definitions[i].body_a);
             const BodyRow b = bodies.row_of(store.definitions[i].body_b);
             if (store.colours[i] == no_colour) store.colours[i] = joint_masks_.take_first(a, b);
-            joints_.place(contact_type_count + type, a, b, static_cast<std::int32_t>(i), store.colours[i]);
+            joint_placements_.push_back({a, b, static_cast<std::int32_t>(i),
+                                         static_cast<std::uint8_t>(contact_type_count + type),
+                                         store.colours[i]});
         }
     });
+    joints_.begin(joint_placements_);
+    for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.count(chunk);
+    joints_.open(kernels_);
+    for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.fill(chunk);
 }
 
-void Layout::place_contacts(Scene& scene, std::size_t count)
+void Layout::colour_contacts(Scene& scene, std::size_t count)
 {
     masks_.copy(joint_masks_, scene.bodies());
-    ContactList& list = scene.contact_cache().staged();
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::uint8_t kept = intake.kept_colours[i];
+    const std::span<Placement> placements(intake.placements.data(), count);
+    if (uncoloured_.capacity() < count) uncoloured_.reserve(count + count / 2);
+    uncoloured_.clear();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Placement& placement = placements[i];
         // A joint added since may have taken the colour; then the contact looks for another below. One in the
         // overflow looks again too: the crowd around its hub may have thinned.
-        const bool keeps = kept < overflow_colour && masks_.try_take(intake.a[i], intake.b[i], kept);
-        list.colours[i] = keeps ? kept : no_colour;
+        if (placement.colour >= overflow_colour ||
+            !masks_.try_take(placement.a, placement.b, placement.colour)) {
+            uncoloured_.push_back(i);
+        }
     }
-    contacts_.clear();
-    for (std::size_t i = 0; i < count; ++i) {
-        if (list.colours[i] == no_colour) list.colours[i] = masks_.take_first(intake.a[i], intake.b[i]);
-        contacts_.place(intake.types[i], intake.a[i], intake.b[i], static_cast<std::int32_t>(i),
-                        list.colours[i]);
+    for (const std::uint32_t i : uncoloured_) {
+        placements[i].colour = masks_.take_first(placements[i].a, placements[i].b);
     }
+    std::vector<ContactList::Entry>& entries = scene.contact_cache().staged().entries;
+    for (std::size_t i = 0; i < count; ++i) entries[i].colour = placements[i].colour;
+    contacts.begin(placements);
 }
 
-void Layout::point_at_data(Scene& scene, std::span<const Contact> contacts)
+void Layout::cut(Scene& scene, std::span<const Contact> list)
+{
+    for (auto& chunks : sweeps_) chunks.clear();
+    transfers_.parts.clear();
+    transfers_.tiles.clear();
+    joints_.cut(kernels_, sweeps_, transfers_);
+    contacts.cut(kernels_, sweeps_, transfers_);
+    point_at_data(scene, list);
+}
+
+void Layout::point_at_data(Scene& scene, std::span<const Contact> list)
 {
     static_assert(sizeof(Contact) % sizeof(float) == 0);
     static_assert(offsetof(Contact, restitution) - offsetof(Contact, normal) == 11 * sizeof(float),
                   "the numbers of a contact are three quads in line");
     ConstraintData contact;
-    if (!contacts.empty()) {
-        contact.parameters = &contacts[0].normal.x;
+    if (!list.empty()) {
+        contact.parameters = &list[0].normal.x;
         contact.parameter_stride = sizeof(Contact) / sizeof(float);
         contact.memory_in = &scene.contact_cache().current().impulses[0].normal;
         contact.memory_index = intake.memory_index.data();
@@ -106,15 +121,15 @@ void Layout::point_at(Scene& scene, const StepConstants& step)
 
 void Layout::report(StepReport& report) const
 {
-    const BatchSet::Count joints = joints_.count(kernels_), contacts = contacts_.count(kernels_);
+    const BatchSet::Count joints = joints_.count(kernels_), touches = contacts.count(kernels_);
     report.joints = joints.constraints;
-    report.contacts = contacts.constraints;
-    report.blocks = joints.blocks + contacts.blocks;
-    report.overflow = joints.overflow + contacts.overflow;
-    const auto constraints = static_cast<double>(joints.constraints + contacts.constraints);
+    report.contacts = touches.constraints;
+    report.blocks = joints.blocks + touches.blocks;
+    report.overflow = joints.overflow + touches.overflow;
+    const auto constraints = static_cast<double>(joints.constraints + touches.constraints);
     if (constraints > 0) {
         report.lane_occupancy = constraints / (block_lanes * static_cast<double>(report.blocks));
-        report.bytes_per_constraint = (joints.streamed_bytes + contacts.streamed_bytes) / constraints;
+        report.bytes_per_constraint = (joints.streamed_bytes + touches.streamed_bytes) / constraints;
     }
     report.colours = 0;
     for (int colour = 0; colour < parallel_colours; ++colour) {

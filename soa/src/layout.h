@@ -20,10 +20,14 @@ class Layout {
   public:
     explicit Layout(const KernelTable& kernels) : kernels_(kernels) {}
 
-    /// First the host's contacts are taken in, in ranges and perhaps on several threads...
+    /// First the host's contacts are taken in...
     ContactIntake intake;
-    /// ...then everything is coloured and placed, in order, by one thread.
-    void build(Scene& scene, std::span<const Contact> contacts);
+    /// ...then everything gets a colour, in order, by one thread...
+    void colour(Scene& scene, std::size_t contact_count);
+    /// ...then the contacts are sorted into blocks (count, open, fill)...
+    BatchSet contacts{0, contact_type_count};
+    /// ...and the blocks are cut into work.
+    void cut(Scene& scene, std::span<const Contact> list);
 
     /// The step's numbers and the rows of the bodies.
     KernelContext context;
@@ -33,7 +37,7 @@ class Layout {
     {
         return sweeps_[static_cast<std::size_t>(colour)];
     }
-    [[nodiscard]] const std::vector<TransferChunk>& transfers() const { return transfers_; }
+    [[nodiscard]] const TransferList& transfers() const { return transfers_; }
     [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
     [[nodiscard]] const KernelTable& kernels() const { return kernels_; }
     /// True when M^-1 J^T of no constraint turns within the step: contacts alone, and no rigid body, whose
@@ -48,15 +52,17 @@ class Layout {
 
   private:
     const KernelTable& kernels_;
-    BatchSet joints_, contacts_;
+    BatchSet joints_{contact_type_count, constraint_type_count};
+    std::vector<Placement> joint_placements_;
+    std::vector<std::uint32_t> uncoloured_;
     std::shared_ptr<const char> joint_version_;
     ColourMasks joint_masks_, masks_;
-    std::array<std::vector<SweepChunk>, parallel_colours + 1> sweeps_;
-    std::vector<TransferChunk> transfers_;
+    SweepLists sweeps_;
+    TransferList transfers_;
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(Scene& scene);
-    void place_contacts(Scene& scene, std::size_t count);
+    void colour_contacts(Scene& scene, std::size_t count);
     void point_at_data(Scene& scene, std::span<const Contact> contacts);
 };
 

@@ -84,23 +84,29 @@ RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice,
     Bodies bodies;
     ColourMasks masks;
     masks.reset(bodies.store);
-    BatchSet set;
+    BatchSet set(0, contact_type_count);
+    std::vector<Placement> placements;
     const Edges edges = usable(raw);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const BodyRow a = bodies.rows[static_cast<std::size_t>(edges[i].first)],
                       b = bodies.rows[static_cast<std::size_t>(edges[i].second)];
         // Every third goes straight to the overflow, as of a hub.
         const std::uint8_t colour = i % 3 == 0 ? overflow_colour : masks.take_first(a, b);
-        set.place(0, a, b, static_cast<std::int32_t>(i), colour);
+        placements.push_back({a, b, static_cast<std::int32_t>(i), 0, colour});
     }
-    std::array<std::vector<SweepChunk>, parallel_colours + 1> sweeps;
-    std::vector<TransferChunk> transfers;
-    set.cut(kernel_table(Isa::scalar), sweeps, transfers);
+    const KernelTable& kernels = kernel_table(Isa::scalar);
+    set.begin(placements);
+    for (std::int64_t chunk = 0; chunk < set.chunk_count(); ++chunk) set.count(chunk);
+    set.open(kernels);
+    for (std::int64_t chunk = set.chunk_count(); chunk-- > 0;) set.fill(chunk);  // any order will do
+    SweepLists sweeps;
+    TransferList transfers;
+    set.cut(kernels, sweeps, transfers);
     std::set<std::int32_t> seen;
     for (const auto& chunks : sweeps) {
         for (const SweepChunk& chunk : chunks) {
             for (std::int32_t k = chunk.begin; k < chunk.end; ++k) {
-                const BlockIndex& block = chunk.streams.index[chunk.order[k]];
+                const BlockIndex& block = chunk.streams.index[k];
                 std::set<int> movers;
                 for (int lane = 0; lane < block.count; ++lane) {
                     RC_ASSERT(seen.insert(block.constraint[lane]).second);

@@ -1,7 +1,6 @@
 // What is remembered of contacts from one step to the next: by key, the bodies, the colour and the impulses.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,69 +12,94 @@ namespace motley {
 
 inline constexpr std::uint8_t no_colour = 255;
 
-/// The contacts of one list: what persists, in list order, and an open-addressing table from key to index.
-class ContactList {
-  public:
-    static constexpr std::uint32_t none = 0xFFFFFFFFU;
-
-    /// Forgets the old list and makes room for `count` contacts. Allocates only when the list outgrows every
-    /// earlier one.
-    void reset(std::size_t count);
-    [[nodiscard]] std::size_t size() const { return count_; }
-
-    /// Puts contact `index`, whose entry is already written, into the table. Safe from several threads at
-    /// once, as the final table answers the same whoever comes first. False when another index already has
-    /// the key.
-    bool insert(std::uint32_t index);
-    /// The index of a key, or none. `hint` is looked at first: lists mostly come in the order of the step
-    /// before, where the contact after the last one found is the next one wanted.
-    [[nodiscard]] std::uint32_t find(std::uint64_t key, std::uint32_t hint) const
-    {
-        if (hint < count_ && entries[hint].key == key) return hint;
-        return count_ == 0 ? none : find_in_table(key);
-    }
-    /// Asks for the cache line where `key` will be inserted.
-    void prefetch(std::uint64_t key) const { __builtin_prefetch(&table_[bucket(mix(key))], 1); }
-
-    /// What tells a contact of the next step that it is the same one.
+/// The contacts of one step, in the order of the host's list.
+struct ContactList {
+    /// What tells a contact of the next step that it is the same one, and what it keeps.
     struct Entry {
         std::uint64_t key = 0;
         std::uint32_t body_a = 0, body_b = 0;  ///< fingerprints of the handles
+        std::uint32_t ticket = 0;              ///< of the key in the cache's table
+        std::uint8_t colour = no_colour;
     };
-    std::vector<Entry> entries;
-    std::vector<std::uint8_t> colours;
+    std::vector<Entry> entries;  ///< `count` of them are in use
     /// Of contact i at i + 1; the first stays zero, where a contact without a past looks for it.
-    AlignedVector<ContactImpulse> impulses;
-    ContactList() : impulses(1) {}
-
-  private:
-    static std::uint64_t mix(std::uint64_t key) { return (key ^ key >> 32) * 0x9E3779B97F4A7C15ULL; }
-    [[nodiscard]] std::size_t bucket(std::uint64_t hash) const { return hash >> shift_; }
-    [[nodiscard]] std::uint32_t find_in_table(std::uint64_t key) const;
-    // A bucket holds the low half of the hash above index + 1: zero is empty, and a probe that passes
-    // strangers seldom has to fetch their keys.
-    std::vector<std::uint64_t> table_;
-    int shift_ = 58;
-    std::size_t count_ = 0;
+    AlignedVector<ContactImpulse> impulses{1};
+    std::size_t count = 0;
 };
 
-/// The list of the last step and the one in the making; accepting swaps them.
+/// Numbers for keys: a key gets a ticket, a small number of its own, for as long as it is known. Open addressing,
+/// linear probing, at most half full.
+class KeyTable {
+  public:
+    static constexpr std::uint32_t none = 0xFFFFFFFFU;
+
+    /// Room for `count` keys: until then insert() allocates nothing.
+    void reserve(std::size_t count);
+    /// The ticket of a key, or none.
+    [[nodiscard]] std::uint32_t find(std::uint64_t key) const;
+    /// A new ticket, or none when the key has one already.
+    std::uint32_t insert(std::uint64_t key);
+    /// Takes a known key's ticket back.
+    void remove(std::uint64_t key);
+    [[nodiscard]] std::size_t size() const { return keys_.size() - free_.size(); }
+    /// Tickets are below this.
+    [[nodiscard]] std::size_t ticket_limit() const { return keys_.size(); }
+
+  private:
+    // A bucket holds 32 bits of the key's hash above ticket + 1: zero is empty, and a probe that passes strangers
+    // seldom has to fetch their keys. Its place follows from those bits alone, so that moving fetches none.
+    static std::uint64_t hash_of(std::uint64_t key)
+    {
+        return (key ^ key >> 32) * 0x9E3779B97F4A7C15ULL >> 32;
+    }
+    [[nodiscard]] std::size_t place_of(std::uint64_t hash) const { return hash >> shift_; }
+    [[nodiscard]] std::size_t bucket_of(std::uint64_t key) const;
+
+    std::vector<std::uint64_t> buckets_ = std::vector<std::uint64_t>(64);
+    int shift_ = 32 - 6;
+    std::vector<std::uint64_t> keys_;  ///< by ticket
+    std::vector<std::uint32_t> free_;  ///< tickets, last taken back first
+};
+
+/// The list of the last step and the one in the making.
 class ContactCache {
   public:
+    static constexpr std::uint32_t none = KeyTable::none;
+
+    /// Makes room for a list of `count`. Allocates only when the list outgrows every earlier one.
+    void begin(std::size_t count);
     [[nodiscard]] const ContactList& current() const { return lists_[current_]; }
-    [[nodiscard]] ContactList& current() { return lists_[current_]; }
     [[nodiscard]] ContactList& staged() { return lists_[1 - current_]; }
+
+    /// Where the last step's list has a key, or none. `hint` is looked at first: lists mostly come in the order of
+    /// the step before, where the contact after the last one found is the next one wanted.
+    [[nodiscard]] std::uint32_t find(std::uint64_t key, std::uint32_t hint) const
+    {
+        if (hint < current().count && current().entries[hint].key == key) return hint;
+        const std::uint32_t ticket = keys_.find(key);
+        return ticket == none ? none : positions_[ticket];
+    }
+    /// Says that staged contact `index` has the key of contact `before` of the last step, or of none. Safe from
+    /// several threads.
+    void claim(std::uint32_t before, std::uint32_t index);
+    /// Once every contact is staged and has claimed its past: gives new keys their tickets and forgets those that
+    /// are gone. False, and nothing changed, when a key came twice.
+    bool admit();
+    /// The staged list becomes the current one.
     void accept_staged() { current_ = 1 - current_; }
     [[nodiscard]] std::span<const ContactImpulse> impulses() const
     {
-        return current().size() == 0
-                   ? std::span<const ContactImpulse>{}
-                   : std::span<const ContactImpulse>{current().impulses.data() + 1, current().size()};
+        return {current().impulses.data() + 1, current().count};
     }
 
   private:
     ContactList lists_[2];
     int current_ = 0;
+    KeyTable keys_;
+    std::vector<std::uint32_t> positions_;  ///< in the current list, by ticket
+    std::vector<std::uint32_t>
+        claims_;  ///< 1 + the staged contact that has claimed each current one; 0: none
+    std::vector<std::uint32_t> newcomers_;  ///< staged contacts without a past
 };
 
 }  // namespace motley
