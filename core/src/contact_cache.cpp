@@ -15,7 +15,7 @@ void KeyTable::reserve(std::size_t count)
     free_.reserve(count);
     const std::size_t wanted = 2 * count;
     if (buckets_.size() >= wanted) return;
-    std::vector<std::uint64_t> wider(wanted);
+    AlignedVector<std::uint64_t> wider(wanted);
     const int shift = 32 - std::countr_zero(wanted);
     for (const std::uint64_t held : buckets_) {
         if (held == 0) continue;
@@ -85,47 +85,71 @@ void ContactCache::begin(std::size_t count)
         // Room to grow into, so that a crowd that keeps pressing together does not allocate at each new contact.
         const std::size_t room = std::max<std::size_t>(64, count + count / 2);
         list.entries.resize(room);
+        list.colours.resize(room);
         list.impulses.resize(room + 1);
-        keys_.reserve(2 * room);  // all gone and as many come, at most
-        positions_.resize(2 * room);
         newcomers_.reserve(room);
+        leavers_.reserve(room);
+        const std::size_t tickets = 2 * room;  // all gone and as many come, at most
+        keys_.reserve(tickets);
+        for (ContactList& either : lists_) either.positions.resize(tickets, none);
     }
-    if (claims_.size() < current().entries.size()) claims_.resize(current().entries.size());
-    std::fill_n(claims_.begin(), current().count, 0U);
+    std::fill_n(list.positions.begin(), keys_.ticket_limit(), none);
 }
 
-void ContactCache::claim(std::uint32_t before, std::uint32_t index)
+std::uint32_t ContactCache::find_near(std::uint64_t key, std::uint32_t& cursor) const
 {
-    staged().entries[index].ticket = before;
-    if (before == none) return;
-    // Of two that claim one contact only one is found here by admit(): no need to see the other in time.
-    std::atomic_ref(claims_[before]).store(index + 1, std::memory_order_relaxed);
+    constexpr std::size_t ahead = 6;
+    const ContactList& list = current();
+    const auto end = static_cast<std::uint32_t>(std::min(list.count, cursor + ahead));
+    for (std::uint32_t i = cursor; i < end; ++i) {
+        if (list.entries[i].key != key) continue;
+        cursor = i + 1;
+        return i;
+    }
+    return none;
+}
+
+void ContactCache::claim(std::uint32_t index, std::uint32_t before)
+{
+    ContactList& list = staged();
+    const std::uint32_t ticket = before == none ? none : current().entries[before].ticket;
+    list.entries[index].ticket = ticket;
+    // Of two that claim one ticket only one is found here by admit(): no need to see the other in time.
+    if (ticket != none) std::atomic_ref(list.positions[ticket]).store(index, std::memory_order_relaxed);
 }
 
 bool ContactCache::admit()
 {
+    // Keys come and go in numbers that make a table's cache misses count; asked for this far ahead, they overlap.
+    constexpr std::size_t ahead = 12;
     ContactList& list = staged();
     newcomers_.clear();
-    bool twice = false;
-    for (std::uint32_t i = 0; i < list.count && !twice; ++i) {
-        std::uint32_t& ticket = list.entries[i].ticket;
+    leavers_.clear();
+    for (std::uint32_t i = 0; i < list.count; ++i) {
+        const std::uint32_t ticket = list.entries[i].ticket;
         if (ticket == none) {
-            ticket = keys_.insert(list.entries[i].key);
-            twice = ticket == none;
-            if (!twice) newcomers_.push_back(i);
-        } else {
-            twice = claims_[ticket] != i + 1;  // ticket is the place in the current list until here
-            ticket = current().entries[ticket].ticket;
+            newcomers_.push_back(i);
+        } else if (list.positions[ticket] != i) {
+            return false;
         }
     }
-    if (twice) {
-        for (const std::uint32_t i : newcomers_) keys_.remove(list.entries[i].key);
-        return false;
+    for (std::uint32_t i = 0; i < current().count; ++i) {
+        if (list.positions[current().entries[i].ticket] == none) leavers_.push_back(i);
     }
-    for (std::size_t i = 0; i < current().count; ++i) {
-        if (claims_[i] == 0) keys_.remove(current().entries[i].key);
+    for (std::size_t k = 0; k < newcomers_.size(); ++k) {
+        if (k + ahead < newcomers_.size()) keys_.prefetch(list.entries[newcomers_[k + ahead]].key);
+        ContactList::Entry& entry = list.entries[newcomers_[k]];
+        entry.ticket = keys_.insert(entry.key);
+        if (entry.ticket == none) {
+            while (k-- > 0) keys_.remove(list.entries[newcomers_[k]].key);
+            return false;
+        }
+        list.positions[entry.ticket] = newcomers_[k];
     }
-    for (std::uint32_t i = 0; i < list.count; ++i) positions_[list.entries[i].ticket] = i;
+    for (std::size_t k = 0; k < leavers_.size(); ++k) {
+        if (k + ahead < leavers_.size()) keys_.prefetch(current().entries[leavers_[k + ahead]].key);
+        keys_.remove(current().entries[leavers_[k]].key);
+    }
     return true;
 }
 

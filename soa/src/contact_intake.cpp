@@ -2,6 +2,7 @@
 // that fails it is looked at again, to say which field, which value and what was expected.
 #include "contact_intake.h"
 
+#include <array>
 #include <cmath>
 #include <unordered_set>
 
@@ -68,23 +69,52 @@ void ContactIntake::mark_bad(std::size_t index)
     }
 }
 
+/// The row of both bodies, if a contact between them is good.
+bool ContactIntake::place(const BodyStore& bodies, const Contact& contact, Placement& placement)
+{
+    if (!bodies.is_alive(contact.body_a) || !bodies.is_alive(contact.body_b)) return false;
+    const BodyRow a = bodies.row_of(contact.body_a), b = bodies.row_of(contact.body_b);
+    // Field by field: a struct made first and copied waits for its own stores.
+    placement.a = a;
+    placement.b = b;
+    // The list of contact types: smooth first, then with friction and restitution.
+    placement.type = contact.friction == 0 && contact.restitution == 0 ? 0 : 1;
+    return numbers_are_good(contact) && contact.body_a != contact.body_b &&
+           !(a.kind() == BodyKind::fixed && b.kind() == BodyKind::fixed) &&
+           !(is_planar(a, b) && contact.normal.z != 0);
+}
+
+/// Tells contact i what it was in the last step: contact `before`, or none.
+void ContactIntake::remember(ContactCache& cache, std::uint32_t i, std::uint32_t before)
+{
+    cache.claim(i, before);
+    const ContactList& past = cache.current();
+    const ContactList::Entry& entry = cache.staged().entries[i];
+    const bool same_bodies = before != ContactCache::none && past.entries[before].body_a == entry.body_a &&
+                             past.entries[before].body_b == entry.body_b;
+    placements[i].colour = same_bodies ? past.colours[before] : no_colour;
+    memory_index[i] = same_bodies ? static_cast<std::int32_t>(before) + 1 : 0;
+}
+
 void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::size_t first, std::size_t last)
 {
-    const BodyStore& bodies = scene.bodies();
     ContactCache& cache = scene.contact_cache();
-    const ContactList& past = cache.current();
-    auto hint = static_cast<std::uint32_t>(first);
-    for (std::size_t i = first; i < last; ++i) {
-        const Contact& contact = contacts[i];
-        if (!bodies.is_alive(contact.body_a) || !bodies.is_alive(contact.body_b) ||
-            !numbers_are_good(contact)) {
-            mark_bad(i);
-            continue;
+    // Those that are not where they were expected: looked up together, so that the table's cache misses overlap.
+    std::array<std::uint32_t, 32> missed;
+    std::size_t missed_count = 0;
+    const auto look_up = [&](std::uint32_t& cursor) {
+        for (std::size_t k = 0; k < missed_count; ++k) {
+            const std::uint32_t before = cache.find(contacts[missed[k]].key);
+            if (before != ContactCache::none) cursor = before + 1;
+            remember(cache, missed[k], before);
         }
-        const BodyRow a = bodies.row_of(contact.body_a), b = bodies.row_of(contact.body_b);
-        if (contact.body_a == contact.body_b ||
-            (a.kind() == BodyKind::fixed && b.kind() == BodyKind::fixed) ||
-            (is_planar(a, b) && contact.normal.z != 0)) {
+        missed_count = 0;
+    };
+    std::uint32_t cursor = static_cast<std::uint32_t>(first);
+    for (auto i = static_cast<std::uint32_t>(first); i < last; ++i) {
+        const Contact& contact = contacts[i];
+        placements[i].constraint = static_cast<std::int32_t>(i);
+        if (!place(scene.bodies(), contact, placements[i])) {
             mark_bad(i);
             continue;
         }
@@ -92,20 +122,16 @@ void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::s
         entry.key = contact.key;
         entry.body_a = fingerprint(contact.body_a);
         entry.body_b = fingerprint(contact.body_b);
-        const std::uint32_t before = cache.find(contact.key, hint);
-        cache.claim(before, static_cast<std::uint32_t>(i));
-        // The list of contact types: smooth first, then with friction and restitution.
-        const std::uint8_t type = contact.friction == 0 && contact.restitution == 0 ? 0 : 1;
-        placements[i] = {a, b, static_cast<std::int32_t>(i), type, no_colour};
-        memory_index[i] = 0;
-        if (before == ContactCache::none) continue;
-        hint = before + 1;
-        const ContactList::Entry& known = past.entries[before];
-        if (known.body_a == entry.body_a && known.body_b == entry.body_b) {
-            placements[i].colour = known.colour;
-            memory_index[i] = static_cast<std::int32_t>(before) + 1;
+        const std::uint32_t before = cache.find_near(contact.key, cursor);
+        if (before != ContactCache::none) {
+            remember(cache, i, before);
+            continue;
         }
+        cache.prefetch(contact.key);
+        missed[missed_count++] = i;
+        if (missed_count == missed.size() || i == first) look_up(cursor);
     }
+    look_up(cursor);
 }
 
 namespace {

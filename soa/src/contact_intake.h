@@ -25,7 +25,7 @@ class ContactIntake {
     /// What is wrong when a key came twice. Serial.
     [[nodiscard]] static std::string repeated_key(std::span<const Contact> contacts);
 
-    std::vector<Placement> placements;  ///< with the colour of the step before, or no_colour
+    AlignedVector<Placement> placements;  ///< with the colour of the step before, or no_colour
     std::vector<std::int32_t>
         memory_index;  ///< entry in the last list's impulses; 0, the zero entry, when new
 
@@ -34,6 +34,8 @@ class ContactIntake {
     std::atomic<std::size_t> first_bad_{none};
 
     void mark_bad(std::size_t index);
+    static bool place(const BodyStore& bodies, const Contact& contact, Placement& placement);
+    void remember(ContactCache& cache, std::uint32_t i, std::uint32_t before);
 };
 
 }  // namespace motley

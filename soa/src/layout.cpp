@@ -61,8 +61,8 @@ void Layout::colour_contacts(Scene& scene, std::size_t count)
     for (const std::uint32_t i : uncoloured_) {
         placements[i].colour = masks_.take_first(placements[i].a, placements[i].b);
     }
-    std::vector<ContactList::Entry>& entries = scene.contact_cache().staged().entries;
-    for (std::size_t i = 0; i < count; ++i) entries[i].colour = placements[i].colour;
+    auto& colours = scene.contact_cache().staged().colours;
+    for (std::size_t i = 0; i < count; ++i) colours[i] = placements[i].colour;
     contacts.begin(placements);
 }
 

@@ -1,4 +1,5 @@
-// A vector whose elements start on a cache line, so that rows and blocks never straddle one needlessly.
+// A vector whose elements start on a cache line, so that rows and blocks never straddle one needlessly, and on huge
+// pages when it is long, so that scattered reads of it do not miss the translation buffers too.
 #pragma once
 
 #include <cstddef>
@@ -7,10 +8,14 @@
 
 namespace motley {
 
+/// Asks the system for huge pages under memory that nothing was written to yet; a hint, without effect where there
+/// are none.
+void advise_huge_pages(void* memory, std::size_t bytes);
+
 template <class T>
 struct CacheLineAllocator {
     using value_type = T;
-    static constexpr std::align_val_t alignment{64};
+    static constexpr std::size_t huge_page = std::size_t{2} << 20;
 
     CacheLineAllocator() = default;
     template <class U>
@@ -18,9 +23,21 @@ struct CacheLineAllocator {
         const CacheLineAllocator<U>&)  // NOLINT(google-explicit-constructor): allocators rebind
     {
     }
-    T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), alignment)); }
-    void deallocate(T* elements, std::size_t) { ::operator delete(elements, alignment); }
+    T* allocate(std::size_t count)
+    {
+        const std::size_t bytes = count * sizeof(T);
+        void* memory = ::operator new(bytes, alignment_of(count));
+        if (bytes >= huge_page) advise_huge_pages(memory, bytes);
+        return static_cast<T*>(memory);
+    }
+    void deallocate(T* elements, std::size_t count) { ::operator delete(elements, alignment_of(count)); }
     friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) { return true; }
+
+  private:
+    static std::align_val_t alignment_of(std::size_t count)
+    {
+        return std::align_val_t{count * sizeof(T) >= huge_page ? huge_page : 64};
+    }
 };
 
 template <class T>

@@ -14,17 +14,18 @@ inline constexpr std::uint8_t no_colour = 255;
 
 /// The contacts of one step, in the order of the host's list.
 struct ContactList {
-    /// What tells a contact of the next step that it is the same one, and what it keeps.
+    /// What tells a contact of the next step that it is the same one.
     struct Entry {
         std::uint64_t key = 0;
         std::uint32_t body_a = 0, body_b = 0;  ///< fingerprints of the handles
         std::uint32_t ticket = 0;              ///< of the key in the cache's table
-        std::uint8_t colour = no_colour;
     };
-    std::vector<Entry> entries;  ///< `count` of them are in use
-    /// Of contact i at i + 1; the first stays zero, where a contact without a past looks for it.
-    AlignedVector<ContactImpulse> impulses{1};
     std::size_t count = 0;
+    AlignedVector<Entry> entries;  ///< `count` of them are in use
+    AlignedVector<std::uint8_t> colours;
+    /// Of contact i at i + 1; the first stays zero, where a contact without a past looks for it.
+    AlignedVector<ContactImpulse> impulses = AlignedVector<ContactImpulse>(1);
+    AlignedVector<std::uint32_t> positions;  ///< by ticket: the index of its contact, or KeyTable::none
 };
 
 /// Numbers for keys: a key gets a ticket, a small number of its own, for as long as it is known. Open addressing,
@@ -41,6 +42,8 @@ class KeyTable {
     std::uint32_t insert(std::uint64_t key);
     /// Takes a known key's ticket back.
     void remove(std::uint64_t key);
+    /// Asks for the cache line that any of the three will look at first.
+    void prefetch(std::uint64_t key) const { __builtin_prefetch(&buckets_[place_of(hash_of(key))]); }
     [[nodiscard]] std::size_t size() const { return keys_.size() - free_.size(); }
     /// Tickets are below this.
     [[nodiscard]] std::size_t ticket_limit() const { return keys_.size(); }
@@ -55,9 +58,9 @@ class KeyTable {
     [[nodiscard]] std::size_t place_of(std::uint64_t hash) const { return hash >> shift_; }
     [[nodiscard]] std::size_t bucket_of(std::uint64_t key) const;
 
-    std::vector<std::uint64_t> buckets_ = std::vector<std::uint64_t>(64);
+    AlignedVector<std::uint64_t> buckets_ = AlignedVector<std::uint64_t>(64);
     int shift_ = 32 - 6;
-    std::vector<std::uint64_t> keys_;  ///< by ticket
+    AlignedVector<std::uint64_t> keys_;  ///< by ticket
     std::vector<std::uint32_t> free_;  ///< tickets, last taken back first
 };
 
@@ -71,17 +74,19 @@ class ContactCache {
     [[nodiscard]] const ContactList& current() const { return lists_[current_]; }
     [[nodiscard]] ContactList& staged() { return lists_[1 - current_]; }
 
-    /// Where the last step's list has a key, or none. `hint` is looked at first: lists mostly come in the order of
-    /// the step before, where the contact after the last one found is the next one wanted.
-    [[nodiscard]] std::uint32_t find(std::uint64_t key, std::uint32_t hint) const
+    /// Where the last step's list has a key, or none.
+    [[nodiscard]] std::uint32_t find(std::uint64_t key) const
     {
-        if (hint < current().count && current().entries[hint].key == key) return hint;
         const std::uint32_t ticket = keys_.find(key);
-        return ticket == none ? none : positions_[ticket];
+        return ticket == none ? none : current().positions[ticket];
     }
+    /// Likewise, but looks only at `cursor` and the few entries behind it, and moves it behind the one found: lists
+    /// mostly come in the order of the step before, with a few contacts gone.
+    [[nodiscard]] std::uint32_t find_near(std::uint64_t key, std::uint32_t& cursor) const;
+    void prefetch(std::uint64_t key) const { keys_.prefetch(key); }
     /// Says that staged contact `index` has the key of contact `before` of the last step, or of none. Safe from
     /// several threads.
-    void claim(std::uint32_t before, std::uint32_t index);
+    void claim(std::uint32_t index, std::uint32_t before);
     /// Once every contact is staged and has claimed its past: gives new keys their tickets and forgets those that
     /// are gone. False, and nothing changed, when a key came twice.
     bool admit();
@@ -96,10 +101,8 @@ class ContactCache {
     ContactList lists_[2];
     int current_ = 0;
     KeyTable keys_;
-    std::vector<std::uint32_t> positions_;  ///< in the current list, by ticket
-    std::vector<std::uint32_t>
-        claims_;  ///< 1 + the staged contact that has claimed each current one; 0: none
-    std::vector<std::uint32_t> newcomers_;  ///< staged contacts without a past
+    AlignedVector<std::uint32_t> newcomers_;  ///< staged contacts without a past
+    AlignedVector<std::uint32_t> leavers_;    ///< current contacts without a future
 };
 
 }  // namespace motley
