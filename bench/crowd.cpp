@@ -52,76 +52,80 @@ void Crowd::observe(const Scene& scene, Executor& executor)
 void Crowd::steer(Scene& scene, Executor& executor)
 {
     forces_.resize(agents.size());
-    parallel_for(executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk,
-                 [&](std::int64_t begin, std::int64_t end) {
-                     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-                         const Agent& agent = agents[i];
-                         const double dx = agent.goal.x - positions[i].x, dy = agent.goal.y - positions[i].y;
-                         const double distance = std::sqrt(dx * dx + dy * dy);
-                         const double speed = agent.desired_speed / std::max(distance, 1e-3);
-                         const double gain = agent.mass / relaxation_time;
-                         forces_[i] = {static_cast<float>(gain * (speed * dx - velocities[i].x)),
-                                       static_cast<float>(gain * (speed * dy - velocities[i].y)), 0};
-                     }
-                     const auto first = static_cast<std::size_t>(begin),
-                                count = static_cast<std::size_t>(end - begin);
-                     scene.set_forces(std::span<const BodyId>(bodies_).subspan(first, count),
-                                      std::span<const Vec3<float>>(forces_).subspan(first, count));
-                 });
+    parallel_for(
+        executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk,
+        [&](std::int64_t begin, std::int64_t end) {
+            for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                const Agent& agent = agents[i];
+                const auto dx = static_cast<float>(agent.goal.x - positions[i].x),
+                           dy = static_cast<float>(agent.goal.y - positions[i].y);
+                const float speed = agent.desired_speed / std::max(std::sqrt(dx * dx + dy * dy), 1e-3F);
+                const float gain = agent.mass / relaxation_time;
+                forces_[i] = {gain * (speed * dx - velocities[i].x), gain * (speed * dy - velocities[i].y),
+                              0};
+            }
+            const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+            scene.set_forces(std::span<const BodyId>(bodies_).subspan(first, count),
+                             std::span<const Vec3<float>>(forces_).subspan(first, count));
+        });
 }
 
 std::span<const Contact> Crowd::find_contacts(const Scene& scene, Executor& executor)
 {
-    float largest = 0;
-    for (const Agent& agent : agents) largest = std::max(largest, agent.radius);
-    const float reach = 2 * largest + contact_margin;
-    grid_.sort(positions, reach, executor);
+    radii_.resize(agents.size());
+    for (std::size_t i = 0; i < agents.size(); ++i) radii_[i] = agents[i].radius;
+    grid_.sort(positions, radii_, contact_margin, executor);
 
     // Pairs first, a list a chunk; then every chunk knows where its contacts go and writes them there.
-    const auto chunks = static_cast<std::size_t>(grid_.chunk_count());
-    if (chunk_pairs_.size() < chunks) chunk_pairs_.resize(chunks);
-    for (auto& pairs : chunk_pairs_) pairs.clear();
-    grid_.for_each_pair(reach, executor, [&](std::int64_t chunk, std::int32_t i, std::int32_t j) {
-        const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-        const double dx = positions[b].x - positions[a].x, dy = positions[b].y - positions[a].y;
-        const double near = static_cast<double>(agents[a].radius + agents[b].radius + contact_margin);
-        if (dx * dx + dy * dy >= near * near) return;
-        // The elder is `a`, so that a pair keeps its roles whoever is sorted first.
-        chunk_pairs_[static_cast<std::size_t>(chunk)].push_back(serial_[a] < serial_[b] ? Pair{i, j}
-                                                                                        : Pair{j, i});
-    });
-    for (std::size_t w = 0; w < walls.size(); ++w) {
-        parallel_for(executor, static_cast<std::int64_t>(chunks), 1, [&](std::int64_t chunk, std::int64_t) {
-            grid_.for_each_disc(chunk, [&](std::int32_t i) {
-                if (is_near(walls[w], static_cast<std::size_t>(i))) {
-                    chunk_pairs_[static_cast<std::size_t>(chunk)].push_back(
-                        {i, -1 - static_cast<std::int32_t>(w)});
-                }
-            });
-        });
-    }
-    if (period_y > 0) add_pairs_across_the_seam();
-    std::size_t total = 0;
-    chunk_starts_.resize(chunks);
-    for (std::size_t c = 0; c < chunks; ++c) {
-        chunk_starts_[c] = total;
-        total += chunk_pairs_[c].size();
-    }
-    contacts_.resize(total);
-    pairs_.resize(total);
-    parallel_for(executor, static_cast<std::int64_t>(chunks), 1, [&](std::int64_t chunk, std::int64_t) {
-        std::size_t at = chunk_starts_[static_cast<std::size_t>(chunk)];
-        for (const Pair& pair : chunk_pairs_[static_cast<std::size_t>(chunk)]) {
-            pairs_[at] = {pair.a, std::max(pair.b, -1)};
-            contacts_[at] = pair.b >= 0 ? between(pair.a, pair.b) : with_wall(scene, pair.a, -1 - pair.b);
-            ++at;
+    const std::int64_t chunks = grid_.chunk_count();
+    if (findings_.size() < static_cast<std::size_t>(chunks))
+        findings_.resize(static_cast<std::size_t>(chunks));
+    parallel_for(executor, chunks, 1, [&](std::int64_t chunk, std::int64_t) {
+        Findings& found = findings_[static_cast<std::size_t>(chunk)];
+        found.pair_count = grid_.find_pairs(chunk, found.pairs);
+        found.touches.clear();
+        for (std::size_t w = 0; w < walls.size(); ++w) {
+            const Wall& wall = walls[w];
+            const double reach = grid_.longest_reach();
+            grid_.for_each_disc_in(
+                chunk, {std::min(wall.from.x, wall.to.x) - reach, std::min(wall.from.y, wall.to.y) - reach},
+                {std::max(wall.from.x, wall.to.x) + reach, std::max(wall.from.y, wall.to.y) + reach},
+                [&](std::int32_t i) {
+                    if (is_near(wall, static_cast<std::size_t>(i)))
+                        found.touches.push_back({i, static_cast<std::int32_t>(w)});
+                });
         }
     });
-    return contacts_;
+    if (period_y > 0) add_pairs_across_the_seam();
+    std::size_t total = 0;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(chunks); ++c) {
+        findings_[c].first_contact = total;
+        total += findings_[c].pair_count + findings_[c].touches.size();
+    }
+    if (contacts_.size() < total) {
+        contacts_.resize(total + total / 4);
+        pairs_.resize(total + total / 4);
+    }
+    contact_count_ = total;
+    parallel_for(executor, chunks, 1, [&](std::int64_t chunk, std::int64_t) {
+        const Findings& found = findings_[static_cast<std::size_t>(chunk)];
+        std::size_t at = found.first_contact;
+        for (std::size_t k = 0; k < found.pair_count; ++k, ++at) {
+            pairs_[at] = found.pairs[k];
+            write_contact(contacts_[at], pairs_[at]);
+        }
+        for (const Pair& touch : found.touches) {
+            pairs_[at] = {touch.a, -1};
+            write_wall_contact(contacts_[at++], touch, scene.ground());
+        }
+    });
+    return contacts();
 }
 
 void Crowd::add_pairs_across_the_seam()
 {
+    Findings& found = findings_.front();
+    found.pairs.resize(found.pair_count);
     const auto near = [&](double y, double edge) { return std::abs(y - edge) < 1; };
     for (std::size_t i = 0; i < positions.size(); ++i) {
         if (!near(positions[i].y, 0)) continue;
@@ -129,35 +133,42 @@ void Crowd::add_pairs_across_the_seam()
             if (!near(positions[j].y, period_y)) continue;
             const double dx = positions[j].x - positions[i].x,
                          dy = positions[j].y - period_y - positions[i].y;
-            const double reach = static_cast<double>(agents[i].radius + agents[j].radius + contact_margin);
-            if (dx * dx + dy * dy >= reach * reach) continue;
-            const auto a = static_cast<std::int32_t>(i), b = static_cast<std::int32_t>(j);
-            chunk_pairs_.front().push_back(serial_[i] < serial_[j] ? Pair{a, b} : Pair{b, a});
+            const auto reach = static_cast<double>(radii_[i] + radii_[j] + contact_margin);
+            if (dx * dx + dy * dy < reach * reach)
+                found.pairs.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)});
         }
     }
+    found.pair_count = found.pairs.size();
 }
 
-Contact Crowd::between(std::int32_t i, std::int32_t j) const
+/// Field by field, where it stays: a contact made first and copied would wait for its own stores.
+void Crowd::write_contact(Contact& contact, Pair& pair) const
 {
-    const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-    const double dx = positions[b].x - positions[a].x;
-    double dy = positions[b].y - positions[a].y;
-    if (period_y > 0 && std::abs(dy) > period_y / 2) dy -= dy > 0 ? period_y : -period_y;
-    const double distance = std::sqrt(dx * dx + dy * dy);
-    Contact contact;
+    // The elder is `a`, so that a pair keeps its roles whoever is sorted first.
+    if (serial_[static_cast<std::size_t>(pair.a)] > serial_[static_cast<std::size_t>(pair.b)])
+        std::swap(pair.a, pair.b);
+    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+    double y = positions[b].y - positions[a].y;
+    if (period_y > 0 && std::abs(y) > period_y / 2) y -= y > 0 ? period_y : -period_y;
+    // Subtracted in double: people near each other may be far from the origin.
+    const auto dx = static_cast<float>(positions[b].x - positions[a].x), dy = static_cast<float>(y);
+    const float distance = std::sqrt(dx * dx + dy * dy);
+    // People in one point part along x.
+    const bool apart = distance > 1e-9F;
+    const float inverse = apart ? 1 / distance : 0;
+    const float radius_a = radii_[a], radius_b = radii_[b];
+    const float separation = distance - radius_a - radius_b;
     contact.body_a = bodies_[a];
     contact.body_b = bodies_[b];
     contact.key = std::uint64_t{serial_[a]} << 32 | serial_[b];
-    // People in one point part along x.
-    contact.normal =
-        distance > 1e-9 ? Vec3<float>{static_cast<float>(dx / distance), static_cast<float>(dy / distance), 0}
-                        : Vec3<float>{1, 0, 0};
-    contact.separation = static_cast<float>(distance - static_cast<double>(agents[a].radius) -
-                                            static_cast<double>(agents[b].radius));
-    contact.arm_a = (agents[a].radius + contact.separation / 2) * contact.normal;
-    contact.arm_b = -(agents[b].radius + contact.separation / 2) * contact.normal;
+    contact.normal.x = apart ? dx * inverse : 1;
+    contact.normal.y = dy * inverse;
+    contact.normal.z = 0;
+    contact.separation = separation;
+    contact.arm_a = (radius_a + separation / 2) * contact.normal;
     contact.friction = friction;
-    return contact;
+    contact.arm_b = -(radius_b + separation / 2) * contact.normal;
+    contact.restitution = 0;
 }
 
 Vec2<double> Crowd::nearest_point(const Wall& wall, std::size_t agent) const
@@ -181,26 +192,25 @@ bool Crowd::is_near(const Wall& wall, std::size_t agent) const
     return dot(d, d) < near * near;
 }
 
-Contact Crowd::with_wall(const Scene& scene, std::int32_t i, std::int32_t wall) const
+void Crowd::write_wall_contact(Contact& contact, Pair touch, BodyId ground) const
 {
-    const auto a = static_cast<std::size_t>(i);
-    const Vec2<double> point = nearest_point(walls[static_cast<std::size_t>(wall)], a);
-    const Vec2<double> d{positions[a].x - point.x, positions[a].y - point.y};
-    const double distance = std::sqrt(dot(d, d));
-    Contact contact;
-    contact.body_a = scene.ground();
+    const auto a = static_cast<std::size_t>(touch.a);
+    const Vec2<double> point = nearest_point(walls[static_cast<std::size_t>(touch.b)], a);
+    const auto dx = static_cast<float>(positions[a].x - point.x),
+               dy = static_cast<float>(positions[a].y - point.y);
+    const float distance = std::sqrt(dx * dx + dy * dy);
+    contact = {};
+    contact.body_a = ground;
     contact.body_b = bodies_[a];
     // Arrivals number less than 2^31, so the top bit tells walls from people.
-    contact.key = std::uint64_t{1} << 63 | std::uint64_t{serial_[a]} << 16 | static_cast<std::uint64_t>(wall);
-    contact.normal = distance > 1e-9 ? Vec3<float>{static_cast<float>(d.x / distance),
-                                                   static_cast<float>(d.y / distance), 0}
-                                     : Vec3<float>{1, 0, 0};
-    contact.separation = static_cast<float>(distance - static_cast<double>(agents[a].radius));
+    contact.key =
+        std::uint64_t{1} << 63 | std::uint64_t{serial_[a]} << 16 | static_cast<std::uint64_t>(touch.b);
+    contact.normal = distance > 1e-9F ? Vec3<float>{dx / distance, dy / distance, 0} : Vec3<float>{1, 0, 0};
+    contact.separation = distance - agents[a].radius;
     // The ground stands at the origin and never turns: its arm is the point.
     contact.arm_a = {static_cast<float>(point.x), static_cast<float>(point.y), 0};
-    contact.arm_b = -static_cast<float>(distance) * contact.normal;
+    contact.arm_b = -distance * contact.normal;
     contact.friction = friction;
-    return contact;
 }
 
 }  // namespace motley::bench

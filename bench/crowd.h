@@ -57,30 +57,35 @@ class Crowd {
     /// The bodies in the order of `agents`.
     [[nodiscard]] std::span<const BodyId> bodies() const { return bodies_; }
     /// The last list that find_contacts() made.
-    [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
+    [[nodiscard]] std::span<const Contact> contacts() const { return {contacts_.data(), contact_count_}; }
     /// Index in `agents` of each contact's people; the second is -1 for a wall.
-    struct Pair {
-        std::int32_t a, b;
-    };
-    [[nodiscard]] std::span<const Pair> pairs() const { return pairs_; }
+    using Pair = NeighbourGrid::Pair;
+    [[nodiscard]] std::span<const Pair> pairs() const { return {pairs_.data(), contact_count_}; }
 
   private:
     std::vector<BodyId> bodies_;
     std::vector<Vec3<float>> forces_;
     NeighbourGrid grid_;
-    std::vector<Contact> contacts_;
-    std::vector<Pair> pairs_;
+    AlignedVector<Contact> contacts_;  // the first contact_count_ of them
+    AlignedVector<Pair> pairs_;
+    std::size_t contact_count_ = 0;
     std::vector<std::uint32_t> serial_;  ///< number of each agent's arrival: names it in contact keys
     std::uint32_t next_serial_ = 0;
 
-    std::vector<std::vector<Pair>> chunk_pairs_;
-    std::vector<std::size_t> chunk_starts_;
+    /// What a chunk of the grid found: people near each other, and people near walls (b is the wall).
+    struct Findings {
+        std::vector<Pair> pairs, touches;
+        std::size_t pair_count = 0;
+        std::size_t first_contact = 0;
+    };
+    std::vector<Findings> findings_;
+    std::vector<float> radii_;  ///< of the agents, in line
 
     [[nodiscard]] Vec2<double> nearest_point(const Wall& wall, std::size_t agent) const;
     [[nodiscard]] bool is_near(const Wall& wall, std::size_t agent) const;
     void add_pairs_across_the_seam();
-    Contact between(std::int32_t a, std::int32_t b) const;
-    Contact with_wall(const Scene& scene, std::int32_t a, std::int32_t wall) const;
+    void write_contact(Contact& contact, Pair& pair) const;
+    void write_wall_contact(Contact& contact, Pair touch, BodyId ground) const;
 };
 
 }  // namespace motley::bench

@@ -2,6 +2,7 @@
 // neighbourhood that lies after it. The order of pairs depends on positions alone, never on threads.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,39 +13,61 @@ namespace motley::bench {
 
 class NeighbourGrid {
   public:
-    /// Sorts the discs into cells of `cell` metres; a disc reaches at most half a cell.
-    void sort(std::span<const Vec3<double>> positions, double cell, Executor& executor);
+    /// Two discs that are near each other.
+    struct Pair {
+        std::int32_t a, b;
+    };
 
-    /// Calls emit(chunk, i, j) for each pair closer than `reach`, chunks in parallel, pairs of a chunk in order.
-    template <class Emit>
-    void for_each_pair(float reach, Executor& executor, const Emit& emit) const
-    {
-        parallel_for(executor, chunk_count(), 1, [&](std::int64_t chunk, std::int64_t) {
-            for (std::int32_t y = first_row(chunk); y < first_row(chunk + 1); ++y)
-                pairs_of_row(y, reach, chunk, emit);
-        });
-    }
-    /// Calls visit(chunk, i) for every disc, chunk by chunk in the order of cells.
+    /// Sorts the discs into cells. Discs are near each other when the gap between them is below `margin`, m.
+    void sort(std::span<const Vec3<double>> positions, std::span<const float> radii, float margin,
+              Executor& executor);
+
+    /// Puts the pairs of a chunk at the front of `pairs`, which grows as needed, and returns how many. Chunks may
+    /// run on different threads.
+    std::size_t find_pairs(std::int64_t chunk, std::vector<Pair>& pairs) const;
+    /// Calls visit(i) for every disc of a chunk whose cell overlaps the box, in the order of cells.
     template <class Visit>
-    void for_each_disc(std::int64_t chunk, const Visit& visit) const
+    void for_each_disc_in(std::int64_t chunk, Vec2<double> low, Vec2<double> high, const Visit& visit) const
     {
-        const std::int32_t begin = starts_[index_of(0, first_row(chunk))];
-        const std::int32_t end = starts_[index_of(0, first_row(chunk + 1))];
-        for (std::int32_t i = begin; i < end; ++i) visit(sorted_[static_cast<std::size_t>(i)].disc);
+        const std::int32_t first_column = column_of(low.x), last_column = column_of(high.x);
+        const std::int32_t last_row = std::min(first_row(chunk + 1) - 1, row_of(high.y));
+        for (std::int32_t y = std::max(first_row(chunk), row_of(low.y)); y <= last_row; ++y) {
+            const std::int32_t begin = starts_[index_of(first_column, y)];
+            const std::int32_t end = starts_[index_of(last_column, y) + 1];
+            for (std::int32_t i = begin; i < end; ++i) visit(sorted_[static_cast<std::size_t>(i)].disc);
+        }
     }
+    /// How far from its centre a disc of the last sort can be near something, m.
+    [[nodiscard]] double longest_reach() const { return longest_reach_; }
     /// Chunks of rows; depends on the crowd only.
     [[nodiscard]] std::int64_t chunk_count() const { return (height_ + rows_per_chunk - 1) / rows_per_chunk; }
 
   private:
     static constexpr std::int32_t rows_per_chunk = 4;
     struct Sorted {
-        float x, y;  ///< from the grid's corner, m
+        float x, y;   ///< from the grid's corner, m
+        float reach;  ///< m
         std::int32_t disc;
     };
-    std::vector<std::int32_t> cells_;   ///< of each disc
+    std::vector<std::int32_t> cells_;   ///< of each disc, and then its place in sorted_
     std::vector<std::int32_t> starts_;  ///< of each cell in sorted_, and one past the last
     std::vector<Sorted> sorted_;
     std::int32_t width_ = 1, height_ = 1;
+    Vec2<double> low_{};
+    double cells_per_metre_ = 1, longest_reach_ = 0;
+    struct Bounds {
+        double min_x = 1e300, min_y = 1e300, max_x = -1e300, max_y = -1e300;
+        float largest_radius = 0;
+    };
+    std::vector<Bounds> bounds_;  ///< of each chunk of discs
+
+    [[nodiscard]] std::int32_t column_of(double x) const { return cell_along(x - low_.x, width_); }
+    [[nodiscard]] std::int32_t row_of(double y) const { return cell_along(y - low_.y, height_); }
+    [[nodiscard]] std::int32_t cell_along(double offset, std::int32_t cells) const
+    {
+        return static_cast<std::int32_t>(
+            std::clamp(offset * cells_per_metre_, 0.0, static_cast<double>(cells - 1)));
+    }
 
     [[nodiscard]] std::size_t index_of(std::int32_t x, std::int32_t y) const
     {
@@ -54,35 +77,6 @@ class NeighbourGrid {
     {
         const auto row = static_cast<std::int32_t>(chunk) * rows_per_chunk;
         return row < height_ ? row : height_;
-    }
-
-    template <class Emit>
-    void pairs_of_row(std::int32_t y, float reach, std::int64_t chunk, const Emit& emit) const
-    {
-        const float reach2 = reach * reach;
-        for (std::int32_t x = 0; x < width_; ++x) {
-            const std::int32_t begin = starts_[index_of(x, y)], end = starts_[index_of(x, y) + 1];
-            if (begin == end) continue;
-            // Cells in line are discs in line: the rest of this cell and the one to the right, then three above.
-            const std::int32_t right_end = x + 1 < width_ ? starts_[index_of(x + 1, y) + 1] : end;
-            std::int32_t above_begin = 0, above_end = 0;
-            if (y + 1 < height_) {
-                above_begin = starts_[index_of(x > 0 ? x - 1 : 0, y + 1)];
-                above_end = starts_[index_of(x + 1 < width_ ? x + 1 : x, y + 1) + 1];
-            }
-            for (std::int32_t i = begin; i < end; ++i) {
-                const Sorted& me = sorted_[static_cast<std::size_t>(i)];
-                const auto look = [&](std::int32_t from, std::int32_t to) {
-                    for (std::int32_t j = from; j < to; ++j) {
-                        const Sorted& other = sorted_[static_cast<std::size_t>(j)];
-                        const float dx = other.x - me.x, dy = other.y - me.y;
-                        if (dx * dx + dy * dy < reach2) emit(chunk, me.disc, other.disc);
-                    }
-                };
-                look(i + 1, right_end);
-                look(above_begin, above_end);
-            }
-        }
     }
 };
 

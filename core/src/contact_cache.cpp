@@ -87,13 +87,15 @@ void ContactCache::begin(std::size_t count)
         list.entries.resize(room);
         list.colours.resize(room);
         list.impulses.resize(room + 1);
-        newcomers_.reserve(room);
-        leavers_.reserve(room);
+        newcomers_.resize(room);
+        leavers_.resize(room);
         const std::size_t tickets = 2 * room;  // all gone and as many come, at most
         keys_.reserve(tickets);
         for (ContactList& either : lists_) either.positions.resize(tickets, none);
     }
     std::fill_n(list.positions.begin(), keys_.ticket_limit(), none);
+    constexpr std::size_t contacts_per_part = 4096;
+    surveys_.resize(std::max(count, current().count) / contacts_per_part + 1);
 }
 
 std::uint32_t ContactCache::find_near(std::uint64_t key, std::uint32_t& cursor) const
@@ -118,26 +120,44 @@ void ContactCache::claim(std::uint32_t index, std::uint32_t before)
     if (ticket != none) std::atomic_ref(list.positions[ticket]).store(index, std::memory_order_relaxed);
 }
 
+void ContactCache::survey(std::int64_t part)
+{
+    const ContactList& list = staged();
+    const auto share = [&](std::size_t count, std::int64_t p) {
+        return static_cast<std::uint32_t>(static_cast<std::int64_t>(count) * p / survey_parts());
+    };
+    Survey& found = surveys_[static_cast<std::size_t>(part)];
+    found.has_repeated_key = false;
+    found.first_newcomer = found.last_newcomer = share(list.count, part);
+    for (std::uint32_t i = found.first_newcomer; i < share(list.count, part + 1); ++i) {
+        const std::uint32_t ticket = list.entries[i].ticket;
+        if (ticket == none) {
+            newcomers_[found.last_newcomer++] = i;
+        } else {
+            found.has_repeated_key = found.has_repeated_key || list.positions[ticket] != i;
+        }
+    }
+    found.first_leaver = found.last_leaver = share(current().count, part);
+    for (std::uint32_t i = found.first_leaver; i < share(current().count, part + 1); ++i) {
+        if (list.positions[current().entries[i].ticket] == none) leavers_[found.last_leaver++] = i;
+    }
+}
+
 bool ContactCache::admit()
 {
     // Keys come and go in numbers that make a table's cache misses count; asked for this far ahead, they overlap.
     constexpr std::size_t ahead = 12;
     ContactList& list = staged();
-    newcomers_.clear();
-    leavers_.clear();
-    for (std::uint32_t i = 0; i < list.count; ++i) {
-        const std::uint32_t ticket = list.entries[i].ticket;
-        if (ticket == none) {
-            newcomers_.push_back(i);
-        } else if (list.positions[ticket] != i) {
-            return false;
-        }
+    std::size_t new_count = 0, gone_count = 0;
+    for (const Survey& survey : surveys_) {
+        if (survey.has_repeated_key) return false;
+        for (std::uint32_t k = survey.first_newcomer; k < survey.last_newcomer; ++k)
+            newcomers_[new_count++] = newcomers_[k];
+        for (std::uint32_t k = survey.first_leaver; k < survey.last_leaver; ++k)
+            leavers_[gone_count++] = leavers_[k];
     }
-    for (std::uint32_t i = 0; i < current().count; ++i) {
-        if (list.positions[current().entries[i].ticket] == none) leavers_.push_back(i);
-    }
-    for (std::size_t k = 0; k < newcomers_.size(); ++k) {
-        if (k + ahead < newcomers_.size()) keys_.prefetch(list.entries[newcomers_[k + ahead]].key);
+    for (std::size_t k = 0; k < new_count; ++k) {
+        if (k + ahead < new_count) keys_.prefetch(list.entries[newcomers_[k + ahead]].key);
         ContactList::Entry& entry = list.entries[newcomers_[k]];
         entry.ticket = keys_.insert(entry.key);
         if (entry.ticket == none) {
@@ -146,8 +166,8 @@ bool ContactCache::admit()
         }
         list.positions[entry.ticket] = newcomers_[k];
     }
-    for (std::size_t k = 0; k < leavers_.size(); ++k) {
-        if (k + ahead < leavers_.size()) keys_.prefetch(current().entries[leavers_[k + ahead]].key);
+    for (std::size_t k = 0; k < gone_count; ++k) {
+        if (k + ahead < gone_count) keys_.prefetch(current().entries[leavers_[k + ahead]].key);
         keys_.remove(current().entries[leavers_[k]].key);
     }
     return true;

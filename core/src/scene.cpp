@@ -195,9 +195,8 @@ bool Scene::is_alive(BodyId body) const
     return bodies_.is_alive(body);
 }
 
-void Scene::require_alive(BodyId body, const char* what) const
+void Scene::refuse_dead(BodyId body, const char* what)
 {
-    if (bodies_.is_alive(body)) return;
     const std::string value = body == BodyId{} ? std::string("the null handle")
                                                : "slot " + std::to_string(body.slot) + " generation " +
                                                      std::to_string(body.generation) + ", not alive";

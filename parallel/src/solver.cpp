@@ -70,6 +70,7 @@ struct Solver::Impl {
     // The stages. Each runs over chunks that do not depend on the number of threads.
     std::string take_in(Scene& scene, std::span<const Contact> contacts);
     void lay_out(Scene& scene, std::span<const Contact> contacts);
+    std::string admit(ContactCache& cache, std::span<const Contact> contacts);
     void transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel);
     void integrate_velocities(BodyKernels::Move BodyKernels::*kernel);
     void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel);
@@ -125,10 +126,8 @@ StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contact
             if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);
             if (dt == 0 || !report.error.empty()) return;
             impl_->lay_out(scene, contacts);
-            if (!scene.contact_cache().admit()) {
-                report.error = ContactIntake::repeated_key(contacts);
-                return;
-            }
+            report.error = impl_->admit(scene.contact_cache(), contacts);
+            if (!report.error.empty()) return;
             impl_->layout.point_at(scene, step_constants(impl_->settings, dt, scene.last_substep));
             clock.charge(Stage::colour);
             impl_->solve_substeps(scene, report);
@@ -196,6 +195,12 @@ void Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contacts)
     layout.contacts.open(layout.kernels());
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
     layout.cut(scene, contacts);
+}
+
+std::string Solver::Impl::admit(ContactCache& cache, std::span<const Contact> contacts)
+{
+    runner.run(cache.survey_parts(), [&](std::int64_t part) { cache.survey(part); });
+    return cache.admit() ? std::string() : ContactIntake::repeated_key(contacts);
 }
 
 void Solver::Impl::transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel)

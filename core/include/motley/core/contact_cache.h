@@ -61,7 +61,7 @@ class KeyTable {
     AlignedVector<std::uint64_t> buckets_ = AlignedVector<std::uint64_t>(64);
     int shift_ = 32 - 6;
     AlignedVector<std::uint64_t> keys_;  ///< by ticket
-    std::vector<std::uint32_t> free_;  ///< tickets, last taken back first
+    std::vector<std::uint32_t> free_;    ///< tickets, last taken back first
 };
 
 /// The list of the last step and the one in the making.
@@ -87,8 +87,12 @@ class ContactCache {
     /// Says that staged contact `index` has the key of contact `before` of the last step, or of none. Safe from
     /// several threads.
     void claim(std::uint32_t index, std::uint32_t before);
-    /// Once every contact is staged and has claimed its past: gives new keys their tickets and forgets those that
-    /// are gone. False, and nothing changed, when a key came twice.
+    /// Once every contact is staged and has claimed its past: finds the keys that come and go, in parts that may run
+    /// on different threads...
+    [[nodiscard]] std::int64_t survey_parts() const { return static_cast<std::int64_t>(surveys_.size()); }
+    void survey(std::int64_t part);
+    /// ...then gives new keys their tickets and forgets those that are gone. False, and nothing changed, when a key
+    /// came twice.
     bool admit();
     /// The staged list becomes the current one.
     void accept_staged() { current_ = 1 - current_; }
@@ -101,8 +105,14 @@ class ContactCache {
     ContactList lists_[2];
     int current_ = 0;
     KeyTable keys_;
-    AlignedVector<std::uint32_t> newcomers_;  ///< staged contacts without a past
-    AlignedVector<std::uint32_t> leavers_;    ///< current contacts without a future
+    AlignedVector<std::uint32_t>
+        newcomers_;  ///< staged contacts without a past, each part's where the part begins
+    AlignedVector<std::uint32_t> leavers_;  ///< current contacts without a future, likewise
+    struct Survey {
+        std::uint32_t first_newcomer = 0, last_newcomer = 0, first_leaver = 0, last_leaver = 0;
+        bool has_repeated_key = false;
+    };
+    std::vector<Survey> surveys_;
 };
 
 }  // namespace motley

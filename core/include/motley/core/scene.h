@@ -105,7 +105,11 @@ class Scene {
     BodyId ground_{};
     std::size_t body_count_ = 0;
 
-    void require_alive(BodyId body, const char* what) const;
+    void require_alive(BodyId body, const char* what) const
+    {
+        if (!bodies_.is_alive(body)) refuse_dead(body, what);
+    }
+    [[noreturn]] static void refuse_dead(BodyId body, const char* what);
     void require_alive(std::span<const BodyId> bodies, const char* what) const;
     JointBodies check_joint_bodies(BodyId a, BodyId b) const;
     ConstraintId take_joint_slot(int type, std::size_t index);

@@ -23,7 +23,7 @@ void parallel_for(Executor& executor, std::int64_t count, std::int64_t grain, co
     if (executor.concurrency() == 1 || count <= grain) {
         work(0);
     } else {
-        executor.run(executor.concurrency(), work);
+        executor.run(executor.concurrency(), std::ref(work));  // a reference: std::function need not allocate
     }
 }
 
