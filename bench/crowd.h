@@ -34,11 +34,11 @@ class Crowd {
 
     double period_y = 0;  ///< m: above 0, people at y near 0 touch those near this: a strip without ends
 
-    std::vector<Agent> agents;
+    AlignedVector<Agent> agents;
     std::vector<Wall> walls;
     /// As of the last observe().
-    std::vector<Vec3<double>> positions;
-    std::vector<Vec3<float>> velocities;
+    AlignedVector<Vec3<double>> positions;
+    AlignedVector<Vec3<float>> velocities;
 
     /// Adds a person as a planar body: a uniform disc.
     void add(Scene& scene, Agent agent, Vec2<double> position);
@@ -63,13 +63,13 @@ class Crowd {
     [[nodiscard]] std::span<const Pair> pairs() const { return {pairs_.data(), contact_count_}; }
 
   private:
-    std::vector<BodyId> bodies_;
-    std::vector<Vec3<float>> forces_;
+    AlignedVector<BodyId> bodies_;
+    AlignedVector<Vec3<float>> forces_;
     NeighbourGrid grid_;
     AlignedVector<Contact> contacts_;  // the first contact_count_ of them
     AlignedVector<Pair> pairs_;
     std::size_t contact_count_ = 0;
-    std::vector<std::uint32_t> serial_;  ///< number of each agent's arrival: names it in contact keys
+    AlignedVector<std::uint32_t> serial_;  ///< number of each agent's arrival: names it in contact keys
     std::uint32_t next_serial_ = 0;
 
     /// What a chunk of the grid found: people near each other, and people near walls (b is the wall).
@@ -79,7 +79,7 @@ class Crowd {
         std::size_t first_contact = 0;
     };
     std::vector<Findings> findings_;
-    std::vector<float> radii_;  ///< of the agents, in line
+    AlignedVector<float> radii_;  ///< of the agents, in line
 
     [[nodiscard]] Vec2<double> nearest_point(const Wall& wall, std::size_t agent) const;
     [[nodiscard]] bool is_near(const Wall& wall, std::size_t agent) const;

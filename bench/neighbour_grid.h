@@ -49,9 +49,9 @@ class NeighbourGrid {
         float reach;  ///< m
         std::int32_t disc;
     };
-    std::vector<std::int32_t> cells_;   ///< of each disc, and then its place in sorted_
-    std::vector<std::int32_t> starts_;  ///< of each cell in sorted_, and one past the last
-    std::vector<Sorted> sorted_;
+    AlignedVector<std::int32_t> cells_;   ///< of each disc, and then its place in sorted_
+    AlignedVector<std::int32_t> starts_;  ///< of each cell in sorted_, and one past the last
+    AlignedVector<Sorted> sorted_;
     std::int32_t width_ = 1, height_ = 1;
     Vec2<double> low_{};
     double cells_per_metre_ = 1, longest_reach_ = 0;

@@ -85,39 +85,19 @@ void ContactCache::begin(std::size_t count)
         // Room to grow into, so that a crowd that keeps pressing together does not allocate at each new contact.
         const std::size_t room = std::max<std::size_t>(64, count + count / 2);
         list.entries.resize(room);
+        list.tickets.resize(room);
         list.colours.resize(room);
         list.impulses.resize(room + 1);
-        newcomers_.resize(room);
-        leavers_.resize(room);
-        const std::size_t tickets = 2 * room;  // all gone and as many come, at most
+        newcomers_.resize(std::max(room, newcomers_.size()));
+        leavers_.resize(std::max(room, leavers_.size()));
+        // All gone and as many come, at most.
+        const std::size_t tickets = lists_[0].entries.size() + lists_[1].entries.size();
         keys_.reserve(tickets);
         for (ContactList& either : lists_) either.positions.resize(tickets, none);
     }
     std::fill_n(list.positions.begin(), keys_.ticket_limit(), none);
     constexpr std::size_t contacts_per_part = 4096;
     surveys_.resize(std::max(count, current().count) / contacts_per_part + 1);
-}
-
-std::uint32_t ContactCache::find_near(std::uint64_t key, std::uint32_t& cursor) const
-{
-    constexpr std::size_t ahead = 6;
-    const ContactList& list = current();
-    const auto end = static_cast<std::uint32_t>(std::min(list.count, cursor + ahead));
-    for (std::uint32_t i = cursor; i < end; ++i) {
-        if (list.entries[i].key != key) continue;
-        cursor = i + 1;
-        return i;
-    }
-    return none;
-}
-
-void ContactCache::claim(std::uint32_t index, std::uint32_t before)
-{
-    ContactList& list = staged();
-    const std::uint32_t ticket = before == none ? none : current().entries[before].ticket;
-    list.entries[index].ticket = ticket;
-    // Of two that claim one ticket only one is found here by admit(): no need to see the other in time.
-    if (ticket != none) std::atomic_ref(list.positions[ticket]).store(index, std::memory_order_relaxed);
 }
 
 void ContactCache::survey(std::int64_t part)
@@ -130,7 +110,7 @@ void ContactCache::survey(std::int64_t part)
     found.has_repeated_key = false;
     found.first_newcomer = found.last_newcomer = share(list.count, part);
     for (std::uint32_t i = found.first_newcomer; i < share(list.count, part + 1); ++i) {
-        const std::uint32_t ticket = list.entries[i].ticket;
+        const std::uint32_t ticket = list.tickets[i];
         if (ticket == none) {
             newcomers_[found.last_newcomer++] = i;
         } else {
@@ -139,7 +119,7 @@ void ContactCache::survey(std::int64_t part)
     }
     found.first_leaver = found.last_leaver = share(current().count, part);
     for (std::uint32_t i = found.first_leaver; i < share(current().count, part + 1); ++i) {
-        if (list.positions[current().entries[i].ticket] == none) leavers_[found.last_leaver++] = i;
+        if (list.positions[current().tickets[i]] == none) leavers_[found.last_leaver++] = i;
     }
 }
 
@@ -158,13 +138,13 @@ bool ContactCache::admit()
     }
     for (std::size_t k = 0; k < new_count; ++k) {
         if (k + ahead < new_count) keys_.prefetch(list.entries[newcomers_[k + ahead]].key);
-        ContactList::Entry& entry = list.entries[newcomers_[k]];
-        entry.ticket = keys_.insert(entry.key);
-        if (entry.ticket == none) {
+        const std::uint32_t ticket = keys_.insert(list.entries[newcomers_[k]].key);
+        if (ticket == none) {
             while (k-- > 0) keys_.remove(list.entries[newcomers_[k]].key);
             return false;
         }
-        list.positions[entry.ticket] = newcomers_[k];
+        list.tickets[newcomers_[k]] = ticket;
+        list.positions[ticket] = newcomers_[k];
     }
     for (std::size_t k = 0; k < gone_count; ++k) {
         if (k + ahead < gone_count) keys_.prefetch(current().entries[leavers_[k + ahead]].key);

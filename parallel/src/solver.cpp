@@ -69,8 +69,7 @@ struct Solver::Impl {
 
     // The stages. Each runs over chunks that do not depend on the number of threads.
     std::string take_in(Scene& scene, std::span<const Contact> contacts);
-    void lay_out(Scene& scene, std::span<const Contact> contacts);
-    std::string admit(ContactCache& cache, std::span<const Contact> contacts);
+    std::string lay_out(Scene& scene, std::span<const Contact> contacts);
     void transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel);
     void integrate_velocities(BodyKernels::Move BodyKernels::*kernel);
     void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel);
@@ -125,8 +124,7 @@ StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contact
             report.error = impl_->take_in(scene, contacts);
             if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);
             if (dt == 0 || !report.error.empty()) return;
-            impl_->lay_out(scene, contacts);
-            report.error = impl_->admit(scene.contact_cache(), contacts);
+            report.error = impl_->lay_out(scene, contacts);
             if (!report.error.empty()) return;
             impl_->layout.point_at(scene, step_constants(impl_->settings, dt, scene.last_substep));
             clock.charge(Stage::colour);
@@ -188,19 +186,31 @@ std::string Solver::Impl::take_in(Scene& scene, std::span<const Contact> contact
     return layout.intake.error(scene, contacts);
 }
 
-void Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contacts)
+std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contacts)
 {
-    layout.colour(scene, contacts.size());
-    runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.count(chunk); });
+    ContactCache& cache = scene.contact_cache();
+    layout.begin(scene, contacts.size());
+    // What only one thread can do is one chunk among those of whatever else is ready.
+    runner.run(1 + cache.survey_parts(), [&](std::int64_t chunk) {
+        if (chunk == 0) {
+            layout.colour_contacts(cache.staged());
+        } else {
+            cache.survey(chunk - 1);
+        }
+    });
+    bool admitted = false;
+    runner.run(1 + layout.contacts.chunk_count(), [&](std::int64_t chunk) {
+        if (chunk == 0) {
+            admitted = cache.admit();
+        } else {
+            layout.contacts.count(chunk - 1);
+        }
+    });
+    if (!admitted) return ContactIntake::repeated_key(contacts);
     layout.contacts.open(layout.kernels());
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
     layout.cut(scene, contacts);
-}
-
-std::string Solver::Impl::admit(ContactCache& cache, std::span<const Contact> contacts)
-{
-    runner.run(cache.survey_parts(), [&](std::int64_t part) { cache.survey(part); });
-    return cache.admit() ? std::string() : ContactIntake::repeated_key(contacts);
+    return {};
 }
 
 void Solver::Impl::transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel)

@@ -21,50 +21,45 @@ void grow(AlignedVector<T>& stream, std::size_t size)
     if (stream.size() < size) stream.resize(size + size / 2);
 }
 
-void set_lane(BlockIndex& block, int lane, const Placement& placement)
+}  // namespace
+
+void BatchSet::Pool::make_room(std::int32_t blocks)
 {
-    block.a[lane] = static_cast<std::int32_t>(placement.a.row());
-    block.b[lane] = static_cast<std::int32_t>(placement.b.row());
-    block.constraint[lane] = placement.constraint;
+    grow(bodies, static_cast<std::size_t>(blocks));
+    grow(who, static_cast<std::size_t>(blocks));
+    grow(counts, static_cast<std::size_t>(blocks));
 }
 
 /// Makes lanes [first, 16) padding: the null bodies, and the parameters of a real constraint, so that no lane ever
 /// computes with a zero normal.
-void pad(BlockIndex& block, int first, std::int32_t constraint)
+void BatchSet::Pool::pad(std::size_t block, int first, std::int32_t constraint)
 {
-    std::fill(block.a + first, block.a + block_lanes, 0);
-    std::fill(block.b + first, block.b + block_lanes, 0);
-    std::fill(block.constraint + first, block.constraint + block_lanes, constraint);
-    block.count = first;
+    std::fill(bodies[block].a + first, bodies[block].a + block_lanes, 0);
+    std::fill(bodies[block].b + first, bodies[block].b + block_lanes, 0);
+    std::fill(who[block].lane + first, who[block].lane + block_lanes, constraint);
+    counts[block] = static_cast<std::uint8_t>(first);
 }
 
-bool holds(const BlockIndex& block, BodyRow a, BodyRow b)
+bool BatchSet::Pool::holds(std::size_t block, BodyRow a, BodyRow b) const
 {
     const auto row_a = static_cast<std::int32_t>(a.row());
     const auto row_b = static_cast<std::int32_t>(b.row());
+    const BlockBodies& held = bodies[block];
     const bool same_kind = a.kind() == b.kind();
-    for (int lane = 0; lane < block.count; ++lane) {
+    for (int lane = 0; lane < counts[block]; ++lane) {
         // Fixed bodies are shared freely; one kind may stand on either side.
-        if (a.kind() != BodyKind::fixed && (block.a[lane] == row_a || (same_kind && block.b[lane] == row_a)))
+        if (a.kind() != BodyKind::fixed && (held.a[lane] == row_a || (same_kind && held.b[lane] == row_a)))
             return true;
-        if (b.kind() != BodyKind::fixed && (block.b[lane] == row_b || (same_kind && block.a[lane] == row_b)))
+        if (b.kind() != BodyKind::fixed && (held.b[lane] == row_b || (same_kind && held.a[lane] == row_b)))
             return true;
     }
     return false;
 }
 
-}  // namespace
-
 BatchSet::BatchSet(int first_type, int last_type)
     : first_class_(first_type * body_kind_count * body_kind_count),
       pools_(static_cast<std::size_t>((last_type - first_type) * body_kind_count * body_kind_count))
 {
-}
-
-std::size_t BatchSet::key_of(const Placement& placement) const
-{
-    const int pool = class_of(placement.type, placement.a.kind(), placement.b.kind()) - first_class_;
-    return static_cast<std::size_t>(pool * colours + placement.colour);
 }
 
 std::span<std::int32_t> BatchSet::places_of(std::int64_t chunk)
@@ -122,7 +117,7 @@ void BatchSet::open(const KernelTable& kernels)
         }
         pool.first_block[colours] = blocks;
         has_overflow = has_overflow || pool.overflow > 0;
-        grow(pool.index, static_cast<std::size_t>(blocks));
+        pool.make_room(blocks);
     }
     if (has_overflow) place_overflow();
     for (std::size_t p = 0; p < pools_.size(); ++p) {
@@ -142,17 +137,17 @@ void BatchSet::place_overflow()
         if (placement.colour != overflow_colour) continue;
         Pool& pool = pools_[key_of(placement) / colours];
         std::int32_t& end = pool.first_block[colours];
-        std::int32_t block = std::max(pool.first_block[overflow_colour], end - open_overflow_blocks);
-        const auto at = [&](std::int32_t i) -> BlockIndex& {
-            return pool.index[static_cast<std::size_t>(i)];
-        };
-        while (block < end && (at(block).count == block_lanes || holds(at(block), placement.a, placement.b)))
+        const auto blocks = static_cast<std::size_t>(end);
+        auto block =
+            static_cast<std::size_t>(std::max(pool.first_block[overflow_colour], end - open_overflow_blocks));
+        while (block < blocks &&
+               (pool.counts[block] == block_lanes || pool.holds(block, placement.a, placement.b)))
             ++block;
-        if (block == end) {
-            grow(pool.index, static_cast<std::size_t>(++end));
-            pad(at(block), 0, placement.constraint);
+        if (block == blocks) {
+            pool.make_room(++end);
+            pool.pad(block, 0, placement.constraint);
         }
-        set_lane(at(block), at(block).count++, placement);
+        pool.set_lane(block, pool.counts[block]++, placement);
     }
 }
 
@@ -165,20 +160,19 @@ void BatchSet::fill(std::int64_t chunk)
         Pool& pool = pools_[key / colours];
         const std::int32_t place = places[key]++;
         const int lane = place % block_lanes;
-        BlockIndex& block =
-            pool.index[static_cast<std::size_t>(pool.first_block[placement.colour] + place / block_lanes)];
-        set_lane(block, lane, placement);
+        const auto block = static_cast<std::size_t>(pool.first_block[placement.colour] + place / block_lanes);
+        pool.set_lane(block, lane, placement);
         // Whoever has the first lane sees to the padding, which no other writes.
         if (lane == 0) {
-            pad(block, std::min(pool.constraints[placement.colour] - place, block_lanes),
-                placement.constraint);
+            pool.pad(block, std::min(pool.constraints[placement.colour] - place, block_lanes),
+                     placement.constraint);
         }
     }
 }
 
 BlockStreams BatchSet::Pool::streams()
 {
-    return {index.data(), rows.data(), substep_rows.data(), impulses.data()};
+    return {bodies.data(), counts.data(), who.data(), rows.data(), substep_rows.data(), impulses.data()};
 }
 
 void BatchSet::cut(const KernelTable& table, SweepLists& sweeps, TransferList& transfers)

@@ -78,13 +78,24 @@ class BatchSet {
   private:
     static constexpr int colours = parallel_colours + 1;
     struct Pool {
-        AlignedVector<BlockIndex> index;
+        AlignedVector<BlockBodies> bodies;
+        AlignedVector<BlockConstraints> who;
+        AlignedVector<std::uint8_t> counts;
         AlignedVector<float> rows, substep_rows, impulses;
         std::array<std::int32_t, colours + 1> first_block{};       ///< of each colour, and one past the last
         std::array<std::int32_t, parallel_colours> constraints{};  ///< of each colour
         std::int64_t overflow = 0;
         [[nodiscard]] std::int32_t block_count() const { return first_block[colours]; }
         [[nodiscard]] BlockStreams streams();
+        void make_room(std::int32_t blocks);
+        void set_lane(std::size_t block, int lane, const Placement& placement)
+        {
+            bodies[block].a[lane] = static_cast<std::int32_t>(placement.a.row());
+            bodies[block].b[lane] = static_cast<std::int32_t>(placement.b.row());
+            who[block].lane[lane] = placement.constraint;
+        }
+        void pad(std::size_t block, int first, std::int32_t constraint);
+        [[nodiscard]] bool holds(std::size_t block, BodyRow a, BodyRow b) const;
     };
 
     int first_class_;
@@ -93,7 +104,11 @@ class BatchSet {
     /// For each chunk and then each class and colour: first how many, then which place of the colour comes next.
     std::vector<std::int32_t> places_;
 
-    [[nodiscard]] std::size_t key_of(const Placement& placement) const;
+    [[nodiscard]] std::size_t key_of(const Placement& placement) const
+    {
+        const int pool = class_of(placement.type, placement.a.kind(), placement.b.kind()) - first_class_;
+        return static_cast<std::size_t>(pool * colours + placement.colour);
+    }
     [[nodiscard]] std::span<std::int32_t> places_of(std::int64_t chunk);
     [[nodiscard]] std::span<const Placement> placements_of(std::int64_t chunk) const;
     void place_overflow();

@@ -16,21 +16,25 @@ namespace motley {
 
 inline constexpr int block_lanes = 16;
 
-/// Who is in a block. Lanes from `count` on are padding: their bodies are the null rows, and they are never
-/// stored.
-struct alignas(64) BlockIndex {
+/// The bodies of a block. Lanes from the block's count on are padding: their bodies are the null rows, and they are
+/// never stored.
+struct alignas(64) BlockBodies {
     std::int32_t a[block_lanes];  ///< row of body a
     std::int32_t b[block_lanes];
-    std::int32_t constraint[block_lanes];  ///< index in the list or store of the type
-    std::int32_t count;
+};
+/// Whose numbers are in a block: indices in the list or store of the type.
+struct alignas(64) BlockConstraints {
+    std::int32_t lane[block_lanes];
 };
 
 /// Everything that a kernel reads and writes of one type and pair: blocks, and their streams of floats.
 /// Stream s of block k starts at s + k * floats * 16; a field of a row is sixteen floats in line.
 struct BlockStreams {
-    const BlockIndex* index = nullptr;
-    float* rows = nullptr;          ///< constant through a step
-    float* substep_rows = nullptr;  ///< made by warm_start each substep
+    const BlockBodies* bodies = nullptr;
+    const std::uint8_t* counts = nullptr;           ///< lanes of each block that are not padding
+    const BlockConstraints* constraints = nullptr;  ///< read by prepare and store alone
+    float* rows = nullptr;                          ///< constant through a step
+    float* substep_rows = nullptr;                  ///< made by warm_start each substep
     float* impulses = nullptr;
 };
 

@@ -70,7 +70,7 @@ class ColourMasks {
         return body.kind() == BodyKind::fixed ? nullptr
                                               : &masks_[static_cast<std::size_t>(body.kind())][body.row()];
     }
-    std::array<std::vector<std::uint32_t>, moving_kinds> masks_;
+    std::array<AlignedVector<std::uint32_t>, moving_kinds> masks_;
 };
 
 }  // namespace motley

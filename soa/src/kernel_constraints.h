@@ -146,13 +146,14 @@ struct Kernels {
                                                        const BlockStreams& streams, std::int64_t block,
                                                        const Work& work)
     {
-        const BlockIndex& index = streams.index[block];
-        for (int lane = 0; lane < index.count; lane += Lanes_width) {
+        const BlockBodies& bodies = streams.bodies[block];
+        const int count = streams.counts[block];
+        for (int lane = 0; lane < count; lane += Lanes_width) {
             work(Bundle{context.bodies[static_cast<int>(kind_a)], context.bodies[static_cast<int>(kind_b)],
-                        index.a + lane, index.b + lane, index.constraint + lane,
+                        bodies.a + lane, bodies.b + lane, streams.constraints[block].lane + lane,
                         streams.rows + block * row_stride + lane,
                         streams.substep_rows + block * substep_stride + lane,
-                        streams.impulses + block * impulse_stride + lane, index.count - lane});
+                        streams.impulses + block * impulse_stride + lane, count - lane});
         }
     }
 
@@ -211,9 +212,9 @@ struct Kernels {
                                                 std::int32_t block, std::int32_t end)
     {
         if (block + 1 >= end) return;
-        const BlockIndex& index = streams.index[block + 1];
-        prefetch_bodies<kind_a>(context.bodies[static_cast<int>(kind_a)], index.a);
-        prefetch_bodies<kind_b>(context.bodies[static_cast<int>(kind_b)], index.b);
+        const BlockBodies& next = streams.bodies[block + 1];
+        prefetch_bodies<kind_a>(context.bodies[static_cast<int>(kind_a)], next.a);
+        prefetch_bodies<kind_b>(context.bodies[static_cast<int>(kind_b)], next.b);
     }
 
     template <bool relax>

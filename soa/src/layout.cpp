@@ -5,14 +5,16 @@
 
 namespace motley {
 
-void Layout::colour(Scene& scene, std::size_t contact_count)
+void Layout::begin(Scene& scene, std::size_t contact_count)
 {
     if (!scene.joints().version || scene.joints().version != joint_version_) {
         place_joints(scene);
         if (!scene.joints().version) scene.joints().version = std::make_shared<const char>('\0');
         joint_version_ = scene.joints().version;
     }
-    colour_contacts(scene, contact_count);
+    masks_.copy(joint_masks_, scene.bodies());
+    if (uncoloured_.size() < contact_count) uncoloured_.resize(contact_count + contact_count / 2);
+    contacts.begin({intake.placements.data(), contact_count});
 }
 
 void Layout::place_joints(Scene& scene)
@@ -43,27 +45,23 @@ void Layout::place_joints(Scene& scene)
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.fill(chunk);
 }
 
-void Layout::colour_contacts(Scene& scene, std::size_t count)
+void Layout::colour_contacts(ContactList& list)
 {
-    masks_.copy(joint_masks_, scene.bodies());
-    const std::span<Placement> placements(intake.placements.data(), count);
-    if (uncoloured_.capacity() < count) uncoloured_.reserve(count + count / 2);
-    uncoloured_.clear();
-    for (std::uint32_t i = 0; i < count; ++i) {
+    const std::span<Placement> placements(intake.placements.data(), list.count);
+    std::size_t uncoloured = 0;
+    for (std::uint32_t i = 0; i < placements.size(); ++i) {
         const Placement& placement = placements[i];
         // A joint added since may have taken the colour; then the contact looks for another below. One in the
         // overflow looks again too: the crowd around its hub may have thinned.
-        if (placement.colour >= overflow_colour ||
-            !masks_.try_take(placement.a, placement.b, placement.colour)) {
-            uncoloured_.push_back(i);
-        }
+        const bool keeps =
+            placement.colour < overflow_colour && masks_.try_take(placement.a, placement.b, placement.colour);
+        if (!keeps) uncoloured_[uncoloured++] = i;
+        list.colours[i] = placement.colour;
     }
-    for (const std::uint32_t i : uncoloured_) {
-        placements[i].colour = masks_.take_first(placements[i].a, placements[i].b);
+    for (std::size_t k = 0; k < uncoloured; ++k) {
+        const std::uint32_t i = uncoloured_[k];
+        list.colours[i] = placements[i].colour = masks_.take_first(placements[i].a, placements[i].b);
     }
-    auto& colours = scene.contact_cache().staged().colours;
-    for (std::size_t i = 0; i < count; ++i) colours[i] = placements[i].colour;
-    contacts.begin(placements);
 }
 
 void Layout::cut(Scene& scene, std::span<const Contact> list)

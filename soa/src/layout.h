@@ -22,8 +22,10 @@ class Layout {
 
     /// First the host's contacts are taken in...
     ContactIntake intake;
-    /// ...then everything gets a colour, in order, by one thread...
-    void colour(Scene& scene, std::size_t contact_count);
+    /// ...then room is made, and joints that changed are coloured and placed...
+    void begin(Scene& scene, std::size_t contact_count);
+    /// ...then every contact gets a colour, in order, by one thread, without allocating...
+    void colour_contacts(ContactList& list);
     /// ...then the contacts are sorted into blocks (count, open, fill)...
     BatchSet contacts{0, contact_type_count};
     /// ...and the blocks are cut into work.
@@ -62,7 +64,6 @@ class Layout {
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(Scene& scene);
-    void colour_contacts(Scene& scene, std::size_t count);
     void point_at_data(Scene& scene, std::span<const Contact> contacts);
 };
 

@@ -30,10 +30,10 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 15107455742761213449ULL},
-            {"baumgarte", iterative, 7948632401890849947ULL},
-            {"no drift correction", none, 7495059615264103012ULL},
-            {"projection", projection, 8803171856676076967ULL}};
+    return {{"soft_step", soft, 14695652546739117744ULL},
+            {"baumgarte", iterative, 1032896179966864989ULL},
+            {"no drift correction", none, 12983324377581379828ULL},
+            {"projection", projection, 15108735213734514677ULL}};
 }
 
 /// The state's hash after every step.

@@ -106,16 +106,18 @@ RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice,
     for (const auto& chunks : sweeps) {
         for (const SweepChunk& chunk : chunks) {
             for (std::int32_t k = chunk.begin; k < chunk.end; ++k) {
-                const BlockIndex& block = chunk.streams.index[k];
+                const BlockBodies& block = chunk.streams.bodies[k];
+                const int count = chunk.streams.counts[k];
+                const std::int32_t* constraint = chunk.streams.constraints[k].lane;
                 std::set<int> movers;
-                for (int lane = 0; lane < block.count; ++lane) {
-                    RC_ASSERT(seen.insert(block.constraint[lane]).second);
-                    for (const int body : {edges[static_cast<std::size_t>(block.constraint[lane])].first,
-                                           edges[static_cast<std::size_t>(block.constraint[lane])].second}) {
+                for (int lane = 0; lane < count; ++lane) {
+                    RC_ASSERT(seen.insert(constraint[lane]).second);
+                    for (const int body : {edges[static_cast<std::size_t>(constraint[lane])].first,
+                                           edges[static_cast<std::size_t>(constraint[lane])].second}) {
                         if (body < 120) RC_ASSERT(movers.insert(body).second);
                     }
                 }
-                for (int lane = block.count; lane < block_lanes; ++lane) {
+                for (int lane = count; lane < block_lanes; ++lane) {
                     RC_ASSERT(block.a[lane] == 0);
                     RC_ASSERT(block.b[lane] == 0);
                 }

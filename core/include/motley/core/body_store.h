@@ -90,7 +90,7 @@ class BodyStore {
     /// Frozen by a step because its state was not finite.
     std::vector<std::uint8_t> contained;
     /// What the inverse mass was before a containment took it, for the revival.
-    std::vector<float> inverse_masses;
+    AlignedVector<float> inverse_masses;
     std::vector<float> inverse_inertias;  ///< likewise, planar only
 
     /// Adds the deltas of a step to the poses of rows [begin, end) of a kind, and clears them. A row that is
@@ -108,10 +108,10 @@ class BodyStore {
         std::uint32_t generation = 1;
         BodyRow row;
     };
-    std::vector<Slot> slots_;
+    AlignedVector<Slot> slots_;
     std::vector<std::uint8_t> live_;
     std::vector<BodyModel> models_;
-    std::vector<BodyMotion> motions_;
+    AlignedVector<BodyMotion> motions_;
     std::vector<std::uint32_t> free_slots_;
 
     std::uint32_t take_row(BodyKind kind);

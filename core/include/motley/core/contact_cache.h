@@ -1,6 +1,8 @@
 // What is remembered of contacts from one step to the next: by key, the bodies, the colour and the impulses.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,10 +20,10 @@ struct ContactList {
     struct Entry {
         std::uint64_t key = 0;
         std::uint32_t body_a = 0, body_b = 0;  ///< fingerprints of the handles
-        std::uint32_t ticket = 0;              ///< of the key in the cache's table
     };
     std::size_t count = 0;
-    AlignedVector<Entry> entries;  ///< `count` of them are in use
+    AlignedVector<Entry> entries;          ///< `count` of them are in use
+    AlignedVector<std::uint32_t> tickets;  ///< of the keys in the cache's table
     AlignedVector<std::uint8_t> colours;
     /// Of contact i at i + 1; the first stays zero, where a contact without a past looks for it.
     AlignedVector<ContactImpulse> impulses = AlignedVector<ContactImpulse>(1);
@@ -114,5 +116,27 @@ class ContactCache {
     };
     std::vector<Survey> surveys_;
 };
+
+inline std::uint32_t ContactCache::find_near(std::uint64_t key, std::uint32_t& cursor) const
+{
+    constexpr std::size_t ahead = 6;
+    const ContactList& list = current();
+    const auto end = static_cast<std::uint32_t>(std::min(list.count, cursor + ahead));
+    for (std::uint32_t i = cursor; i < end; ++i) {
+        if (list.entries[i].key != key) continue;
+        cursor = i + 1;
+        return i;
+    }
+    return none;
+}
+
+inline void ContactCache::claim(std::uint32_t index, std::uint32_t before)
+{
+    ContactList& list = staged();
+    const std::uint32_t ticket = before == none ? none : current().tickets[before];
+    list.tickets[index] = ticket;
+    // Of two that claim one ticket only one is found here by admit(): no need to see the other in time.
+    if (ticket != none) std::atomic_ref(list.positions[ticket]).store(index, std::memory_order_relaxed);
+}
 
 }  // namespace motley

@@ -21,7 +21,7 @@ struct Joint {
     Eigen::Vector3d local_a = Eigen::Vector3d::Zero(), local_b = Eigen::Vector3d::Zero();
     DistanceMode mode = DistanceMode::rod;
     double length = 1, hertz = 1, damping_ratio = 0;
-    Eigen::VectorXd impulse;  ///< carried from step to step
+    Eigen::VectorXd impulse{};  ///< carried from step to step
 };
 
 /// A contact of one step between bodies by index.

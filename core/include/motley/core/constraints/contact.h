@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include "motley/core/constraints/contact_definition.h"
-#include "motley/core/lane_body.h"
+#include "motley/core/lever.h"
 #include "motley/core/step_constants.h"
 
 namespace motley {
@@ -48,9 +48,11 @@ struct ContactKind {
 
     template <class Real, BodyKind a, BodyKind b>
     struct SmoothRow {
-        PairVector<Real, a, b> normal, arm_a, arm_b;
+        PairVector<Real, a, b> normal;
         Real separation;
         Real normal_mass;
+        [[no_unique_address]] Lever<Real, a, is_planar_pair(a, b)> lever_a;
+        [[no_unique_address]] Lever<Real, b, is_planar_pair(a, b)> lever_b;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct PlanarRow {
@@ -116,17 +118,21 @@ struct ContactKind {
         using Vector = PairVector<Real, A::kind, B::kind>;
         Row<Real, A::kind, B::kind> row;
         row.normal = to_space<Vector>(contact.normal);
-        row.arm_a = to_space<Vector>(contact.arm_a);
-        row.arm_b = to_space<Vector>(contact.arm_b);
         row.separation = contact.separation;
-        const auto k = inverse_point_mass(a, row.arm_a) + inverse_point_mass(b, row.arm_b);
+        const Vector arm_a = to_space<Vector>(contact.arm_a), arm_b = to_space<Vector>(contact.arm_b);
+        const auto k = inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b);
         row.normal_mass = inverse_or_zero(dot(row.normal, k * row.normal));
         const Real warm(step.warm_start_scale);
         impulse.normal = warm * memory.normal;
-        if constexpr (!smooth) {
+        if constexpr (smooth) {
+            row.lever_a = lever_of<decltype(row.lever_a)>(arm_a, row.normal);
+            row.lever_b = lever_of<decltype(row.lever_b)>(arm_b, row.normal);
+        } else {
+            row.arm_a = arm_a;
+            row.arm_b = arm_b;
             row.friction = contact.friction;
             row.restitution = contact.restitution;
-            row.approach = dot(row.normal, velocity_at(b, row.arm_b) - velocity_at(a, row.arm_a));
+            row.approach = speed<Real>(row, a, b);
             impulse.peak = Real(0);
             if constexpr (is_planar_pair(A::kind, B::kind)) {
                 const Vector t = tangent_of(row.normal);
@@ -161,9 +167,13 @@ struct ContactKind {
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void warm_start(const StepConstants&, const Row& row, Substep&, const Impulse& impulse, A& a, B& b)
     {
-        const auto push = total_impulse<Real>(row, impulse);
-        apply_impulse(a, row.arm_a, -push);
-        apply_impulse(b, row.arm_b, push);
+        if constexpr (smooth) {
+            push<Real>(row, impulse.normal, a, b);
+        } else {
+            const auto both = total_impulse<Real>(row, impulse);
+            apply_impulse(a, row.arm_a, -both);
+            apply_impulse(b, row.arm_b, both);
+        }
     }
 
     /// One sweep over this contact: friction with the bound of the normal impulse so far, then the normal.
@@ -172,8 +182,7 @@ struct ContactKind {
     {
         if constexpr (!smooth) solve_friction<Real>(row, impulse, a, b);
 
-        const Real moved = dot(row.normal, displacement_at(b, row.arm_b) - displacement_at(a, row.arm_a));
-        const Real separation = row.separation + moved;
+        const Real separation = row.separation + moved<Real>(row, a, b);
         const auto apart = separation > Real(0);
         Real bias = Real(step.inverse_substep) * separation;
         Real mass_scale(1);
@@ -189,9 +198,8 @@ struct ContactKind {
             mass_scale = select(apart, Real(1), Real(soft.mass_scale));
             impulse_scale = select(apart, Real(0), Real(soft.impulse_scale));
         }
-        const Real speed = dot(row.normal, velocity_at(b, row.arm_b) - velocity_at(a, row.arm_a));
-        const Real wanted =
-            impulse.normal - row.normal_mass * mass_scale * (speed + bias) - impulse_scale * impulse.normal;
+        const Real wanted = impulse.normal - row.normal_mass * mass_scale * (speed<Real>(row, a, b) + bias) -
+                            impulse_scale * impulse.normal;
         push_normal<Real>(row, maximum(wanted, Real(0)), impulse, a, b);
     }
 
@@ -199,8 +207,8 @@ struct ContactKind {
     template <class Real, class Row, class Impulse, class A, class B>
     static void restitute(const StepConstants& step, const Row& row, Impulse& impulse, A& a, B& b)
     {
-        const Real speed = dot(row.normal, velocity_at(b, row.arm_b) - velocity_at(a, row.arm_a));
-        const Real wanted = impulse.normal - row.normal_mass * (speed + row.restitution * row.approach);
+        const Real wanted =
+            impulse.normal - row.normal_mass * (speed<Real>(row, a, b) + row.restitution * row.approach);
         const auto bounces = (row.restitution > Real(0)) &
                              (row.approach < Real(-step.restitution_threshold)) & (impulse.peak > Real(0));
         push_normal<Real>(row, select(bounces, maximum(wanted, Real(0)), impulse.normal), impulse, a, b);
@@ -210,12 +218,17 @@ struct ContactKind {
     template <class Real, class Row, class Substep, class A, class B>
     static void project(const StepConstants& step, const Row& row, const Substep&, A& a, B& b)
     {
-        const Real moved = dot(row.normal, displacement_at(b, row.arm_b) - displacement_at(a, row.arm_a));
-        const Real deep = minimum(row.separation + moved + Real(step.slop), Real(0));
+        const Real deep = minimum(row.separation + moved<Real>(row, a, b) + Real(step.slop), Real(0));
         const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep start must not explode
-        const auto push = -(row.normal_mass * Real(step.projection_rate) * error) * row.normal;
-        apply_displacement(a, row.arm_a, -push);
-        apply_displacement(b, row.arm_b, push);
+        const Real lambda = -(row.normal_mass * Real(step.projection_rate) * error);
+        if constexpr (smooth) {
+            displace_along(a, row.normal, row.lever_a, -lambda);
+            displace_along(b, row.normal, row.lever_b, lambda);
+        } else {
+            const auto both = lambda * row.normal;
+            apply_displacement(a, row.arm_a, -both);
+            apply_displacement(b, row.arm_b, both);
+        }
     }
 
     template <class Real, class Row, class Impulse>
@@ -229,14 +242,45 @@ struct ContactKind {
     }
 
   private:
+    // The normal's row of J: times v, times the displacement of the step, and M^-1 J^T lambda.
+    template <class Real, class Row, class A, class B>
+    static Real speed(const Row& row, const A& a, const B& b)
+    {
+        if constexpr (smooth) {
+            return speed_along(b, row.normal, row.lever_b) - speed_along(a, row.normal, row.lever_a);
+        } else {
+            return dot(row.normal, velocity_at(b, row.arm_b) - velocity_at(a, row.arm_a));
+        }
+    }
+    template <class Real, class Row, class A, class B>
+    static Real moved(const Row& row, const A& a, const B& b)
+    {
+        if constexpr (smooth) {
+            return moved_along(b, row.normal, row.lever_b) - moved_along(a, row.normal, row.lever_a);
+        } else {
+            return dot(row.normal, displacement_at(b, row.arm_b) - displacement_at(a, row.arm_a));
+        }
+    }
+    template <class Real, class Row, class A, class B>
+    static void push(const Row& row, const Real& lambda, A& a, B& b)
+    {
+        if constexpr (smooth) {
+            push_along(a, row.normal, row.lever_a, -lambda);
+            push_along(b, row.normal, row.lever_b, lambda);
+        } else {
+            const auto both = lambda * row.normal;
+            apply_impulse(a, row.arm_a, -both);
+            apply_impulse(b, row.arm_b, both);
+        }
+    }
+
     template <class Real, class Row, class Impulse, class A, class B>
     static void push_normal(const Row& row, const Real& wanted, Impulse& impulse, A& a, B& b)
     {
-        const auto push = (wanted - impulse.normal) * row.normal;
+        const Real change = wanted - impulse.normal;
         impulse.normal = wanted;
         if constexpr (!smooth) impulse.peak = maximum(impulse.peak, wanted);
-        apply_impulse(a, row.arm_a, -push);
-        apply_impulse(b, row.arm_b, push);
+        push<Real>(row, change, a, b);
     }
 
     template <class Real, class Row, class Impulse, class A, class B>
