@@ -42,15 +42,15 @@ bool compare_ways(const DemoOptions& options, std::int64_t agents)
             run.seconds = options.seconds;
             run.solver = {.threads = way.threads, .isa = way.isa};
             way.last = run_scene(crowd, run, quiet);
-            const double steps = way.last.bodies * static_cast<double>(way.last.steps);
-            way.rates.push_back(steps / way.last.whole_seconds());
-            way.solver_rates.push_back(steps / way.last.solver_seconds);
+            way.rates.push_back(way.last.bodies / way.last.median_step_seconds);
+            way.solver_rates.push_back(way.last.bodies / way.last.median_solver_seconds);
             fmt::print(stderr, "crowd of {}: round {} of {}, {} x {}\n", agents, round + 1, options.rounds,
                        isa_name(way.isa), way.threads);
         }
     }
     fmt::print(
-        "\ncrowd of {} people, 5 per m2, {} steps of 1/60 s, 4 substeps; medians of {} interleaved rounds, "
+        "\ncrowd of {} people, 5 per m2, {} steps of 1/60 s, 4 substeps; median step, median of {} "
+        "interleaved rounds, "
         "host load {:.2f}\n",
         agents, ways[0].last.steps, options.rounds, host_load());
     fmt::print("{:<10}{:>8}{:>22}{:>22}{:>14}{:>16}  {}\n", "isa", "threads", "M agent-steps/s",

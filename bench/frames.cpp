@@ -8,7 +8,10 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
+
+#include "font.h"
 
 namespace motley::bench {
 namespace {
@@ -16,6 +19,7 @@ namespace {
 constexpr int longest_side = 900;  // pixels
 constexpr int margin = 20;
 constexpr int bar_width = 14;
+constexpr int label_width = 44;
 
 struct Colour {
     std::uint8_t r, g, b;
@@ -42,6 +46,8 @@ class Picture {
     {
     }
 
+    [[nodiscard]] int width() const { return width_; }
+    [[nodiscard]] int height() const { return height_; }
     void set(int x, int y, Colour c)
     {
         if (x >= 0 && y >= 0 && x < width_ && y < height_)
@@ -72,6 +78,21 @@ class Picture {
             }
         }
     }
+    /// Two pixels a dot, from its upper left corner.
+    void text(int x, int y, std::string_view letters)
+    {
+        for (const char letter : letters) {
+            for (const Glyph& glyph : glyphs) {
+                if (glyph.letter != letter) continue;
+                for (int dot = 0; dot < 7 * 5 * 4; ++dot) {
+                    const int row = dot / 20, column = dot / 4 % 5;
+                    if ((glyph.rows[static_cast<std::size_t>(row)] >> (4 - column) & 1) != 0)
+                        set(x + 2 * column + dot % 2, y + 2 * row + dot / 2 % 2, {50, 50, 55});
+                }
+            }
+            x += 12;
+        }
+    }
     void save(const std::string& path) const
     {
         png_image image{};
@@ -88,6 +109,22 @@ class Picture {
     int width_, height_;
     std::vector<Colour> pixels_;
 };
+
+/// The bar of colours with its numbers, in N per metre of circumference.
+void draw_legend(Picture& picture)
+{
+    const int left = picture.width() - margin / 2 - label_width - bar_width;
+    const int top = margin + 24, height = picture.height() - margin - top;
+    for (int row = 0; row < height; ++row) {
+        for (int column = 0; column < bar_width; ++column)
+            picture.set(left + column, top + row, colour_of(1 - static_cast<double>(row) / height));
+    }
+    for (int quarter = 0; quarter <= 4; ++quarter) {
+        picture.text(left + bar_width + 4, top + height - height * quarter / 4 - 7,
+                     fmt::format("{:.0f}", FrameWriter::full_pressure * quarter / 4));
+    }
+    picture.text(left, margin / 2, "N/m");
+}
 
 }  // namespace
 
@@ -118,7 +155,7 @@ void FrameWriter::fit(const Crowd& crowd)
     min_y_ -= 0.5;
     const double wide = max_x + 0.5 - min_x_, high = max_y + 0.5 - min_y_;
     scale_ = longest_side / std::max(wide, high);
-    width_ = static_cast<int>(wide * scale_) + 2 * margin + bar_width;
+    width_ = static_cast<int>(wide * scale_) + 2 * margin + bar_width + label_width;
     height_ = static_cast<int>(high * scale_) + 2 * margin;
 }
 
@@ -146,11 +183,7 @@ void FrameWriter::write(const Crowd& crowd, const Scene& scene)
         picture.disc(x(crowd.positions[i].x), y(crowd.positions[i].y), radius * scale_,
                      colour_of(pressure / full_pressure));
     }
-    for (int row = margin; row < height_ - margin; ++row) {
-        const double share = 1 - static_cast<double>(row - margin) / (height_ - 2 * margin);
-        for (int column = 0; column < bar_width; ++column)
-            picture.set(width_ - margin / 2 - bar_width + column, row, colour_of(share));
-    }
+    draw_legend(picture);
     picture.save(fmt::format("{}/frame-{:05d}.png", folder_, count_++));
 }
 

@@ -21,6 +21,14 @@ double now()
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+double median(std::vector<double> values)
+{
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 /// A bar on a terminal; elsewhere a line each quarter.
 class Progress {
   public:
@@ -114,7 +122,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     const auto steps =
         static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));
     Progress progress(outputs.progress, entry.name, steps);
-    std::vector<double> step_seconds;
+    std::vector<double> step_seconds, solver_seconds;
     for (std::int64_t step = 0; step < steps; ++step) {
         const double time = static_cast<double>(step) * static_cast<double>(options.dt);
         const double began = now();
@@ -131,6 +139,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         result.search_seconds += found - steered;
         result.solver_seconds += solved - found;
         step_seconds.push_back(solved - began);
+        solver_seconds.push_back(solved - found);
         for (std::size_t s = 0; s < stage_count; ++s) result.stages[s] += result.last.seconds[s];
         const auto constraints = static_cast<double>(result.last.contacts + result.last.joints);
         result.constraints += constraints;
@@ -152,10 +161,8 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     const auto count = static_cast<double>(std::max<std::int64_t>(1, result.steps));
     result.bodies /= count;
     result.constraints /= count;
-    std::nth_element(step_seconds.begin(),
-                     step_seconds.begin() + static_cast<std::ptrdiff_t>(step_seconds.size() / 2),
-                     step_seconds.end());
-    if (!step_seconds.empty()) result.median_step_seconds = step_seconds[step_seconds.size() / 2];
+    result.median_step_seconds = median(step_seconds);
+    result.median_solver_seconds = median(solver_seconds);
     result.errors = scene->scene.errors();
     result.state_hash = scene->scene.state_hash();
     judge_contacts(result, *scene, executor);

@@ -19,9 +19,10 @@ struct RunResult {
     double bodies = 0;  ///< mean over the steps
     std::array<double, stage_count> stages{};
     double solver_seconds = 0, steering_seconds = 0, search_seconds = 0;
-    double median_step_seconds = 0;  ///< of a whole step: solver, steering and search
-    double constraints = 0;          ///< mean
-    double constraint_sweeps = 0;    ///< constraints x sweeps, summed
+    double median_step_seconds = 0;    ///< of a whole step: solver, steering and search
+    double median_solver_seconds = 0;  ///< of the solver's part
+    double constraints = 0;            ///< mean
+    double constraint_sweeps = 0;      ///< constraints x sweeps, summed
     StepReport last;
     double overlap_p50 = 0, overlap_p99 = 0,
            overlap_max = 0;  ///< deepest overlap of each person, share of radius

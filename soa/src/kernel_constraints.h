@@ -152,7 +152,8 @@ struct Kernels {
             work(Bundle{context.bodies[static_cast<int>(kind_a)], context.bodies[static_cast<int>(kind_b)],
                         bodies.a + lane, bodies.b + lane, streams.constraints[block].lane + lane,
                         streams.rows + block * row_stride + lane,
-                        streams.substep_rows + block * substep_stride + lane,
+                        // A stream of nothing is null, and stays so.
+                        substep_stride == 0 ? nullptr : streams.substep_rows + block * substep_stride + lane,
                         streams.impulses + block * impulse_stride + lane, count - lane});
         }
     }

@@ -47,4 +47,12 @@ struct BodyState {
     Vec3<float> angular_velocity{};
 };
 
+/// From the anchor on a to the anchor on b, in the world, m; anchors are in the frames of their bodies.
+inline Vec3<double> anchor_separation(const BodyState& a, const BodyState& b, const Vec3<float>& local_a,
+                                      const Vec3<float>& local_b)
+{
+    return (b.position - a.position) + (rotate(b.orientation, convert<double>(local_b)) -
+                                        rotate(a.orientation, convert<double>(local_a)));
+}
+
 }  // namespace motley

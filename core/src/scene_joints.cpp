@@ -1,0 +1,115 @@
+// Joints that come and go, and what they did.
+#include "motley/core/scene.h"
+
+#include <cmath>
+
+#include "motley/core/invalid_input.h"
+
+namespace motley {
+
+JointBodies Scene::check_joint_bodies(BodyId a, BodyId b) const
+{
+    require_alive(a, "joint.body_a");
+    require_alive(b, "joint.body_b");
+    if (a == b) refuse("joint.body_b", "the same body as body_a", "two different bodies");
+    const bool fixed_a = bodies_.row_of(a).kind() == BodyKind::fixed;
+    const bool fixed_b = bodies_.row_of(b).kind() == BodyKind::fixed;
+    if (fixed_a && fixed_b)
+        refuse("joint.body_b", "a second body that cannot move", "at least one dynamic body");
+    return {bodies_.model(a), bodies_.model(b), fixed_a, fixed_b};
+}
+
+ConstraintId Scene::take_joint_slot(int type, std::size_t index)
+{
+    std::uint32_t slot;
+    if (joints_.free_slots.empty()) {
+        slot = static_cast<std::uint32_t>(joints_.slots.size());
+        joints_.slots.emplace_back();
+    } else {
+        slot = joints_.free_slots.back();
+        joints_.free_slots.pop_back();
+    }
+    JointStores::Slot& entry = joints_.slots[slot];
+    if (++entry.generation == 0) entry.generation = 1;
+    entry.index = static_cast<std::uint32_t>(index);
+    entry.type = static_cast<std::uint8_t>(type);
+    entry.live = true;
+    return {slot, entry.generation};
+}
+
+bool Scene::is_alive(ConstraintId joint) const
+{
+    return joint.slot < joints_.slots.size() && joints_.slots[joint.slot].live &&
+           joints_.slots[joint.slot].generation == joint.generation;
+}
+
+std::size_t Scene::joint_count() const
+{
+    std::size_t count = 0;
+    joints_.for_each([&](const auto& store, int) { count += store.size(); });
+    return count;
+}
+
+void Scene::remove_joint_at(int type, std::size_t index)
+{
+    joints_.for_each([&](auto& store, int t) {
+        if (t != type) return;
+        JointStores::Slot& entry = joints_.slots[store.slots[index]];
+        entry.live = false;
+        joints_.free_slots.push_back(store.slots[index]);
+        --bodies_.joint_counts[store.definitions[index].body_a.slot];
+        --bodies_.joint_counts[store.definitions[index].body_b.slot];
+        store.swap_remove(index);
+        if (index < store.size()) joints_.slots[store.slots[index]].index = static_cast<std::uint32_t>(index);
+    });
+    joints_.version.reset();
+}
+
+void Scene::remove_joint(ConstraintId joint)
+{
+    if (!is_alive(joint)) {
+        refuse("remove_joint.joint", "slot " + std::to_string(joint.slot) + ", not alive",
+               "a joint of this scene");
+    }
+    remove_joint_at(joints_.slots[joint.slot].type, joints_.slots[joint.slot].index);
+}
+
+void Scene::remove_joints_of(std::span<const BodyId> bodies)
+{
+    bool any = false;
+    for (const BodyId body : bodies) any = any || bodies_.joint_counts[body.slot] != 0;
+    if (!any) return;
+    std::vector<std::uint8_t> going(bodies_.slot_count(), 0);
+    for (const BodyId body : bodies) going[body.slot] = 1;
+    joints_.for_each([&](auto& store, int type) {
+        for (std::size_t i = store.size(); i-- > 0;) {
+            if (going[store.definitions[i].body_a.slot] || going[store.definitions[i].body_b.slot])
+                remove_joint_at(type, i);
+        }
+    });
+}
+
+JointForce Scene::joint_force(ConstraintId joint) const
+{
+    if (!is_alive(joint)) {
+        refuse("joint_force.joint", "slot " + std::to_string(joint.slot) + ", not alive",
+               "a joint of this scene");
+    }
+    const JointStores::Slot& entry = joints_.slots[joint.slot];
+    JointForce result;
+    joints_.for_each([&](const auto& store, int type) {
+        if (type != entry.type) return;
+        using Type = typename std::remove_cvref_t<decltype(store)>::Type;
+        const auto& definition = store.definitions[entry.index];
+        const Vec3<double> d = anchor_separation(state(definition.body_a), state(definition.body_b),
+                                                 definition.local_anchor_a, definition.local_anchor_b);
+        if (last_substep > 0) {
+            result.force = (1 / last_substep) * Type::push_on_b(definition, store.memory_of(entry.index), d);
+        }
+        const Vec3<double> e = Type::error(definition, d);
+        result.error = static_cast<float>(std::sqrt(dot(e, e)));
+    });
+    return result;
+}
+
+}  // namespace motley

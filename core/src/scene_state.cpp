@@ -1,0 +1,234 @@
+// The state of bodies, read and written by the host one at a time and in bulk. Nothing is changed before everything
+// is checked.
+#include "motley/core/scene.h"
+
+#include <cmath>
+
+#include "motley/core/body_checks.h"
+#include "motley/core/invalid_input.h"
+
+namespace motley {
+
+BodyState Scene::state(BodyId body) const
+{
+    require_alive(body, "state.body");
+    const BodyRow where = bodies_.row_of(body);
+    const BodyRows& rows = bodies_.rows(where.kind());
+    const std::size_t row = where.row();
+    BodyState state;
+    state.position = rows.pose[row].position;
+    state.yaw = rows.pose[row].yaw;
+    const float* v = &rows.velocity[row * 4 * static_cast<std::size_t>(quads_of(where.kind()))];
+    switch (where.kind()) {
+        case BodyKind::particle:
+            state.linear_velocity = {v[0], v[1], v[2]};
+            break;
+        case BodyKind::planar:
+            state.linear_velocity = {v[0], v[1], 0};
+            state.angular_velocity = {0, 0, v[2]};
+            state.orientation = {0, 0, std::sin(state.yaw / 2), std::cos(state.yaw / 2)};
+            break;
+        case BodyKind::rigid:
+        case BodyKind::fixed:
+            state.linear_velocity = {v[0], v[1], v[2]};
+            state.angular_velocity = {v[4], v[5], v[6]};
+            state.orientation = rows.orientation[row];
+            break;
+    }
+    return state;
+}
+
+void Scene::set_pose(BodyId body, const Vec3<double>& position, const Quat<double>& orientation, double yaw)
+{
+    require_alive(body, "set_pose.body");
+    if (body == ground_) refuse("set_pose.body", "the ground", "a body that the host added");
+    check_position("set_pose.position", position);
+    check("set_pose.yaw", yaw, -1e9, 1e9, "a finite value from -1e9 to 1e9 (rad)");
+    const Quat<double>& q = orientation;
+    const double length2 = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+    check("set_pose.orientation", length2, 1e-12, 1e12,
+          "a quaternion with a length from 1e-6 to 1e6 (squared shown)");
+    const BodyRow where = bodies_.row_of(body);
+    BodyRows& rows = bodies_.rows(where.kind());
+    rows.pose[where.row()] = {position, yaw};
+    if (quads_of(where.kind()) == 2) {
+        const double length = std::sqrt(length2);
+        rows.orientation[where.row()] = {q.x / length, q.y / length, q.z / length, q.w / length};
+        if (where.kind() == BodyKind::rigid && bodies_.contained[body.slot] == 0)
+            bodies_.refresh_world_inertia(where.row());
+    }
+    if (bodies_.joint_counts[body.slot] == 0) return;
+    // A teleport makes the cached impulses meaningless.
+    joints_.for_each([&](auto& store, int) {
+        for (std::size_t i = 0; i < store.size(); ++i) {
+            if (store.definitions[i].body_a == body || store.definitions[i].body_b == body)
+                store.forget_impulse(i);
+        }
+    });
+}
+
+void Scene::check_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular) const
+{
+    check_velocity_of(bodies_.model(body), bodies_.motion(body), linear, angular);
+}
+
+void Scene::write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular)
+{
+    const BodyRow where = bodies_.row_of(body);
+    float* v =
+        &bodies_.rows(where.kind())
+             .velocity[std::size_t{4} * where.row() * static_cast<std::size_t>(quads_of(where.kind()))];
+    if (linear) {
+        v[0] = linear->x;
+        v[1] = linear->y;
+        if (where.kind() != BodyKind::planar) v[2] = linear->z;
+    }
+    if (!angular) return;
+    if (where.kind() == BodyKind::planar) v[2] = angular->z;
+    if (quads_of(where.kind()) == 2) {
+        v[4] = angular->x;
+        v[5] = angular->y;
+        v[6] = angular->z;
+    }
+}
+
+void Scene::set_velocity(BodyId body, const Vec3<float>& linear, const Vec3<float>& angular)
+{
+    require_alive(body, "set_velocity.body");
+    check_velocity(body, &linear, &angular);
+    write_velocity(body, &linear, &angular);
+}
+
+void Scene::set_velocities(std::span<const BodyId> bodies, StridedSpan<const Vec3<float>> linear,
+                           StridedSpan<const Vec3<float>> angular)
+{
+    if (linear.size() != bodies.size()) {
+        refuse("set_velocities.linear.size()", static_cast<double>(linear.size()), "the size of bodies");
+    }
+    if (!angular.empty() && angular.size() != bodies.size()) {
+        refuse("set_velocities.angular.size()", static_cast<double>(angular.size()),
+               "0 or the size of bodies");
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        require_alive(bodies[i], "set_velocities.bodies");
+        check_velocity(bodies[i], &linear[i], angular.empty() ? nullptr : &angular[i]);
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        write_velocity(bodies[i], &linear[i], angular.empty() ? nullptr : &angular[i]);
+    }
+}
+
+void Scene::set_force(BodyId body, const Vec3<float>& force, const Vec3<float>& torque)
+{
+    set_forces({&body, 1}, {&force, 1}, {&torque, 1});
+}
+
+void Scene::set_forces(std::span<const BodyId> bodies, StridedSpan<const Vec3<float>> forces,
+                       StridedSpan<const Vec3<float>> torques)
+{
+    if (forces.size() != bodies.size()) {
+        refuse("set_forces.forces.size()", static_cast<double>(forces.size()), "the size of bodies");
+    }
+    if (!torques.empty() && torques.size() != bodies.size()) {
+        refuse("set_forces.torques.size()", static_cast<double>(torques.size()), "0 or the size of bodies");
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        require_alive(bodies[i], "set_forces.bodies");
+        if (bodies_.motion(bodies[i]) != BodyMotion::dynamic_body) {
+            refuse("set_forces.bodies", "a static or kinematic body", "dynamic bodies");
+        }
+        if (!is_finite(forces[i]))
+            check_vector("set_forces.forces", forces[i], 1e30F, "finite components (N)");
+        if (!torques.empty() && !is_finite(torques[i])) {
+            check_vector("set_forces.torques", torques[i], 1e30F, "finite components (N m)");
+        }
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const BodyRow where = bodies_.row_of(bodies[i]);
+        BodyRows& rows = bodies_.rows(where.kind());
+        float* a = &rows.acceleration[std::size_t{4} * where.row() *
+                                      static_cast<std::size_t>(quads_of(where.kind()))];
+        const float inverse_mass = bodies_.inverse_masses[bodies[i].slot];
+        a[0] = inverse_mass * forces[i].x;
+        a[1] = inverse_mass * forces[i].y;
+        if (where.kind() != BodyKind::planar) a[2] = inverse_mass * forces[i].z;
+        if (torques.empty()) continue;
+        if (where.kind() == BodyKind::planar)
+            a[2] = rows.delta[std::size_t{4} * where.row() + 3] * torques[i].z;
+        if (where.kind() == BodyKind::rigid) {
+            a[4] = torques[i].x;
+            a[5] = torques[i].y;
+            a[6] = torques[i].z;
+        }
+    }
+}
+
+void Scene::revive(BodyId body, const Vec3<double>& position, const Vec3<float>& linear)
+{
+    require_alive(body, "revive.body");
+    if (bodies_.contained[body.slot] == 0) refuse("revive.body", "a body that moves", "a contained body");
+    check_position("revive.position", position);
+    check_velocity(body, &linear, nullptr);
+    bodies_.revive(body);
+    bodies_.rows(bodies_.row_of(body).kind()).pose[bodies_.row_of(body).row()].position = position;
+    write_velocity(body, &linear, nullptr);
+}
+
+bool Scene::is_contained(BodyId body) const
+{
+    require_alive(body, "is_contained.body");
+    return bodies_.contained[body.slot] != 0;
+}
+
+void Scene::read_positions(std::span<const BodyId> bodies, StridedSpan<Vec3<double>> positions) const
+{
+    if (positions.size() != bodies.size()) {
+        refuse("read_positions.positions.size()", static_cast<double>(positions.size()),
+               "the size of bodies");
+    }
+    require_alive(bodies, "read_positions.bodies");
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const BodyRow where = bodies_.row_of(bodies[i]);
+        positions[i] = bodies_.rows(where.kind()).pose[where.row()].position;
+    }
+}
+
+void Scene::read_velocities(std::span<const BodyId> bodies, StridedSpan<Vec3<float>> linear,
+                            StridedSpan<Vec3<float>> angular) const
+{
+    if (!linear.empty() && linear.size() != bodies.size()) {
+        refuse("read_velocities.linear.size()", static_cast<double>(linear.size()),
+               "0 or the size of bodies");
+    }
+    if (!angular.empty() && angular.size() != bodies.size()) {
+        refuse("read_velocities.angular.size()", static_cast<double>(angular.size()),
+               "0 or the size of bodies");
+    }
+    require_alive(bodies, "read_velocities.bodies");
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const BodyRow where = bodies_.row_of(bodies[i]);
+        const float* v =
+            &bodies_.rows(where.kind())
+                 .velocity[std::size_t{4} * where.row() * static_cast<std::size_t>(quads_of(where.kind()))];
+        const bool planar = where.kind() == BodyKind::planar;
+        if (!linear.empty()) linear[i] = {v[0], v[1], planar ? 0.0F : v[2]};
+        if (angular.empty()) continue;
+        angular[i] = {};
+        if (planar) angular[i].z = v[2];
+        if (quads_of(where.kind()) == 2) angular[i] = {v[4], v[5], v[6]};
+    }
+}
+
+void Scene::read_yaws(std::span<const BodyId> bodies, StridedSpan<double> yaws) const
+{
+    if (yaws.size() != bodies.size()) {
+        refuse("read_yaws.yaws.size()", static_cast<double>(yaws.size()), "the size of bodies");
+    }
+    require_alive(bodies, "read_yaws.bodies");
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const BodyRow where = bodies_.row_of(bodies[i]);
+        yaws[i] = bodies_.rows(where.kind()).pose[where.row()].yaw;
+    }
+}
+
+}  // namespace motley
