@@ -19,8 +19,8 @@ struct CacheLineAllocator {
 
     CacheLineAllocator() = default;
     template <class U>
-    CacheLineAllocator(
-        const CacheLineAllocator<U>&)  // NOLINT(google-explicit-constructor): allocators rebind
+    // NOLINTNEXTLINE(google-explicit-constructor): allocators rebind
+    CacheLineAllocator(const CacheLineAllocator<U>&)
     {
     }
     T* allocate(std::size_t count)

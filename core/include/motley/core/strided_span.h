@@ -20,9 +20,11 @@ class StridedSpan {
         : first_(reinterpret_cast<Byte*>(first)), size_(size), stride_(stride_bytes)
     {
     }
+    /// A span is a strided span.
     template <class Container>
-    requires std::is_convertible_v<Container&&, std::span<T>> StridedSpan(
-        Container&& elements)  // NOLINT(google-explicit-constructor): a span is a strided span
+    requires std::is_convertible_v<Container&&, std::span<T>>
+    // NOLINTNEXTLINE(google-explicit-constructor)
+    StridedSpan(Container&& elements)
         : StridedSpan(std::span<T>(elements).data(), std::span<T>(elements).size())
     {
     }
