@@ -58,7 +58,8 @@ bool BatchSet::Pool::holds(std::size_t block, BodyRow a, BodyRow b) const
 
 BatchSet::BatchSet(int first_type, int last_type)
     : first_class_(first_type * body_kind_count * body_kind_count),
-      pools_(static_cast<std::size_t>((last_type - first_type) * body_kind_count * body_kind_count))
+      pools_(static_cast<std::size_t>((last_type - first_type) * body_kind_count * body_kind_count)),
+      totals_(pools_.size() * colours)
 {
 }
 
@@ -95,27 +96,26 @@ void BatchSet::count(std::int64_t chunk)
 
 void BatchSet::open(const KernelTable& kernels)
 {
+    std::fill(totals_.begin(), totals_.end(), 0);
+    for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
+        const std::span<std::int32_t> places = places_of(chunk);
+        for (std::size_t key = 0; key < places.size(); ++key) {
+            const std::int32_t here = places[key];
+            places[key] = totals_[key];
+            totals_[key] += here;
+        }
+    }
     bool has_overflow = false;
     for (std::size_t p = 0; p < pools_.size(); ++p) {
         Pool& pool = pools_[p];
         std::int32_t blocks = 0;
-        for (std::size_t colour = 0; colour < colours; ++colour) {
-            std::int32_t total = 0;
-            for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
-                std::int32_t& place = places_of(chunk)[p * colours + colour];
-                const std::int32_t here = place;
-                place = total;
-                total += here;
-            }
+        for (std::size_t colour = 0; colour < parallel_colours; ++colour) {
+            pool.constraints[colour] = totals_[p * colours + colour];
             pool.first_block[colour] = blocks;
-            if (colour == overflow_colour) {
-                pool.overflow = total;
-            } else {
-                pool.constraints[colour] = total;
-                blocks += (total + block_lanes - 1) / block_lanes;
-            }
+            blocks += (pool.constraints[colour] + block_lanes - 1) / block_lanes;
         }
-        pool.first_block[colours] = blocks;
+        pool.overflow = totals_[p * colours + overflow_colour];
+        pool.first_block[overflow_colour] = pool.first_block[colours] = blocks;
         has_overflow = has_overflow || pool.overflow > 0;
         pool.make_room(blocks);
     }
@@ -195,18 +195,17 @@ void BatchSet::cut(const KernelTable& table, SweepLists& sweeps, TransferList& t
         const auto first_part = static_cast<std::int32_t>(transfers.parts.size());
         for (std::size_t p = 0; p < pools_.size(); ++p) {
             Pool& pool = pools_[p];
-            if (pool.block_count() == 0) continue;
             const int constraint_class = first_class_ + static_cast<int>(p);
-            for (std::size_t colour = 0; colour < colours; ++colour) {
-                const std::int32_t first = pool.first_block[colour],
-                                   blocks = pool.first_block[colour + 1] - first;
-                const auto share = [&](std::int64_t t) {
-                    return first + static_cast<std::int32_t>(blocks * t / tiles);
-                };
-                if (share(tile) == share(tile + 1)) continue;
+            for (std::size_t colour = 0; colour < colours && pool.block_count() > 0; ++colour) {
+                const std::int32_t first = pool.first_block[colour];
+                const std::int64_t blocks = pool.first_block[colour + 1] - first;
+                if (blocks == 0) continue;
+                const auto begin = first + static_cast<std::int32_t>(blocks * tile / tiles);
+                const auto end = first + static_cast<std::int32_t>(blocks * (tile + 1) / tiles);
+                if (begin == end) continue;
                 transfers.parts.push_back({&table.constraints[constraint_class], pool.streams(),
-                                           constraint_class / (body_kind_count * body_kind_count),
-                                           share(tile), share(tile + 1)});
+                                           constraint_class / (body_kind_count * body_kind_count), begin,
+                                           end});
             }
         }
         const auto last_part = static_cast<std::int32_t>(transfers.parts.size());

@@ -103,6 +103,7 @@ class BatchSet {
     std::span<const Placement> placements_;
     /// For each chunk and then each class and colour: first how many, then which place of the colour comes next.
     std::vector<std::int32_t> places_;
+    std::vector<std::int32_t> totals_;  ///< of each class and colour
 
     [[nodiscard]] std::size_t key_of(const Placement& placement) const
     {

@@ -114,7 +114,12 @@ void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::s
     std::uint32_t cursor = static_cast<std::uint32_t>(first);
     for (auto i = static_cast<std::uint32_t>(first); i < last; ++i) {
         const Contact& contact = contacts[i];
-        __builtin_prefetch(&contact + 12);
+        // Contacts lie in line, their bodies anywhere.
+        constexpr std::size_t ahead = 8;
+        if (i + ahead < last) {
+            scene.bodies().prefetch(contacts[i + ahead].body_a);
+            scene.bodies().prefetch(contacts[i + ahead].body_b);
+        }
         placements[i].constraint = static_cast<std::int32_t>(i);
         if (!place(scene.bodies(), contact, placements[i])) {
             mark_bad(i);

@@ -10,20 +10,33 @@
 namespace motley {
 
 /// Calls body(begin, end) for consecutive chunks of at most `grain` elements that cover [0, count), on
-/// whichever thread comes; returns when all are done. The chunks do not depend on the number of threads.
+/// whichever thread comes; returns when all are done. The chunks do not depend on the number of threads. The caller
+/// starts at the front and the others at the back, so that of two loops in a row over the same data each thread finds
+/// about the same part in its cache.
 template <class Body>
 void parallel_for(Executor& executor, std::int64_t count, std::int64_t grain, const Body& body)
 {
-    std::atomic<std::int64_t> next{0};
-    const auto work = [&](int) {
-        for (std::int64_t begin = next.fetch_add(grain); begin < count; begin = next.fetch_add(grain)) {
+    const auto chunks = static_cast<std::uint32_t>((count + grain - 1) / grain);
+    // The chunks that nobody has claimed: the first in the low half, one past the last in the high half.
+    std::atomic<std::uint64_t> left{std::uint64_t{chunks} << 32};
+    const auto work = [&](int worker) {
+        std::uint64_t seen = left.load();
+        for (;;) {
+            const auto first = static_cast<std::uint32_t>(seen),
+                       last = static_cast<std::uint32_t>(seen >> 32);
+            if (first == last) return;
+            const std::uint64_t after = worker == 0 ? seen + 1 : seen - (std::uint64_t{1} << 32);
+            if (!left.compare_exchange_weak(seen, after)) continue;
+            const std::int64_t begin = grain * (worker == 0 ? first : last - 1);
             body(begin, begin + grain < count ? begin + grain : count);
+            seen = left.load();
         }
     };
-    if (executor.concurrency() == 1 || count <= grain) {
+    if (executor.concurrency() == 1 || chunks <= 1) {
         work(0);
     } else {
-        executor.run(executor.concurrency(), std::ref(work));  // a reference: std::function need not allocate
+        // A reference: std::function need not allocate for it.
+        executor.run(executor.concurrency(), std::ref(work));
     }
 }
 
