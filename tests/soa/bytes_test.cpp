@@ -1,0 +1,47 @@
+// The README's bytes a lane are what the kernels stream.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "block.h"
+
+namespace motley {
+namespace {
+
+int bytes(const KernelTable& table, int type, BodyKind kind)
+{
+    const ConstraintKernels& kernels = table.constraints[class_of(type, kind, kind)];
+    const int row = kernels.substep_floats > 0 ? kernels.substep_floats : kernels.row_floats;
+    return 4 * (row + kernels.impulse_floats + 2);  // two body indices
+}
+
+TEST(Readme, BytesALaneAreWhatTheKernelsStream)
+{
+    std::ifstream file(MOTLEY_README);
+    ASSERT_TRUE(file) << MOTLEY_README;
+    std::map<std::string, std::string> last_cells;  // of each table row, by the first cell's beginning
+    for (std::string line; std::getline(file, line);) {
+        const std::size_t end = line.rfind(" |"), begin = line.rfind("| ", end);
+        if (line.starts_with("| ") && end != std::string::npos && begin != std::string::npos && begin > 0)
+            last_cells[line.substr(2)] = line.substr(begin + 2, end - begin - 2);
+    }
+    const std::pair<const char*, int> rows[] = {{"contact, smooth", 0},
+                                                {"contact with friction", 1},
+                                                {"ball-socket", contact_type_count},
+                                                {"distance", contact_type_count + 1}};
+    for (const Isa isa : available_isas()) {
+        const KernelTable& table = kernel_table(isa);
+        for (const auto& [name, type] : rows) {
+            const std::string measured = std::to_string(bytes(table, type, BodyKind::planar)) + " / " +
+                                         std::to_string(bytes(table, type, BodyKind::rigid));
+            const auto row = last_cells.lower_bound(name);
+            ASSERT_TRUE(row != last_cells.end() && row->first.starts_with(name)) << name;
+            EXPECT_EQ(row->second, measured) << name << " on " << isa_name(isa);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace motley
