@@ -40,6 +40,88 @@ Jacobian distance_jacobian(const Body& a, const Body& b, const Eigen::Vector3d& 
     return direction_jacobian(u, arm(a, local_a), arm(b, local_b));
 }
 
+Eigen::VectorXd frame_error(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
+                            LinearLock linear, AngularLock angular)
+{
+    const Eigen::Matrix3d axes_a = (a.orientation * frame_a.rotation).toRotationMatrix();
+    const Eigen::Matrix3d axes_b = (b.orientation * frame_b.rotation).toRotationMatrix();
+    const Eigen::Vector3d d = point_error(a, b, frame_a.position, frame_b.position);
+    Eigen::VectorXd error(static_cast<int>(linear) + static_cast<int>(angular));
+    if (linear == LinearLock::point) error.head<3>() = d;
+    if (linear == LinearLock::line) error.head<2>() = axes_a.rightCols<2>().transpose() * d;
+    if (linear == LinearLock::plane) error(0) = axes_a.col(0).dot(d);
+    if (angular == AngularLock::all) {
+        Eigen::Quaterniond q =
+            (a.orientation * frame_a.rotation).conjugate() * (b.orientation * frame_b.rotation);
+        if (q.w() < 0) q.coeffs() = -q.coeffs();
+        error.tail<3>() = 2 * q.vec();
+    }
+    if (angular == AngularLock::swing) error.tail<2>() = axes_a.rightCols<2>().transpose() * axes_b.col(0);
+    if (angular == AngularLock::perpendicular) error.tail<1>()(0) = axes_a.col(0).dot(axes_b.col(1));
+    return error;
+}
+
+Jacobian frame_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
+                        LinearLock linear, AngularLock angular)
+{
+    const Eigen::Quaterniond rotation_a = a.orientation * frame_a.rotation;
+    const Eigen::Matrix3d axes_a = rotation_a.toRotationMatrix();
+    const Eigen::Matrix3d axes_b = (b.orientation * frame_b.rotation).toRotationMatrix();
+    const Eigen::Vector3d d = point_error(a, b, frame_a.position, frame_b.position);
+    const int linear_rows = static_cast<int>(linear), angular_rows = static_cast<int>(angular);
+    Jacobian j = Jacobian::Zero(linear_rows + angular_rows, 12);
+    if (linear == LinearLock::point) {
+        j.topRows<3>() = point_jacobian(a, b, frame_a.position, frame_b.position);
+    } else {
+        const int first_axis = linear == LinearLock::line ? 1 : 0;
+        for (int i = 0; i < linear_rows; ++i) {
+            j.row(i) = direction_jacobian(axes_a.col(first_axis + i), arm(a, frame_a.position) + d,
+                                          arm(b, frame_b.position));
+        }
+    }
+    Eigen::MatrixXd g(angular_rows, 3);
+    if (angular == AngularLock::all) {
+        Eigen::Quaterniond q = rotation_a.conjugate() * (b.orientation * frame_b.rotation);
+        if (q.w() < 0) q.coeffs() = -q.coeffs();
+        g = (q.w() * Eigen::Matrix3d::Identity() - skew(q.vec())) * axes_a.transpose();
+    } else if (angular == AngularLock::swing) {
+        g.row(0) = axes_b.col(0).cross(axes_a.col(1)).transpose();
+        g.row(1) = axes_b.col(0).cross(axes_a.col(2)).transpose();
+    } else if (angular == AngularLock::perpendicular) {
+        g.row(0) = axes_b.col(1).cross(axes_a.col(0)).transpose();
+    }
+    j.block(linear_rows, 3, angular_rows, 3) = -g;
+    j.block(linear_rows, 9, angular_rows, 3) = g;
+    return j;
+}
+
+double drive_value(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b, DriveAxis axis)
+{
+    const Eigen::Quaterniond rotation_a = a.orientation * frame_a.rotation;
+    if (axis == DriveAxis::slide) {
+        return (rotation_a * Eigen::Vector3d::UnitX())
+            .dot(point_error(a, b, frame_a.position, frame_b.position));
+    }
+    const Eigen::Quaterniond q = rotation_a.conjugate() * (b.orientation * frame_b.rotation);
+    return 2 * std::atan2(q.w() < 0 ? -q.x() : q.x(), std::abs(q.w()));
+}
+
+Jacobian drive_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
+                        DriveAxis axis)
+{
+    const Eigen::Vector3d x_a = a.orientation * (frame_a.rotation * Eigen::Vector3d::UnitX());
+    const Eigen::Vector3d x_b = b.orientation * (frame_b.rotation * Eigen::Vector3d::UnitX());
+    if (axis == DriveAxis::slide) {
+        const Eigen::Vector3d d = point_error(a, b, frame_a.position, frame_b.position);
+        return direction_jacobian(x_a, arm(a, frame_a.position) + d, arm(b, frame_b.position));
+    }
+    const Eigen::Vector3d t = (x_a + x_b) / (1 + x_a.dot(x_b));
+    Jacobian j = Jacobian::Zero(1, 12);
+    j.block<1, 3>(0, 3) = -t.transpose();
+    j.block<1, 3>(0, 9) = t.transpose();
+    return j;
+}
+
 Jacobian direction_jacobian(const Eigen::Vector3d& direction, const Eigen::Vector3d& arm_a,
                             const Eigen::Vector3d& arm_b)
 {

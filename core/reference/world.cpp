@@ -20,7 +20,9 @@ struct World::JointRow {
     Eigen::MatrixXd mass;
     Eigen::VectorXd bias, relax_bias;
     Soft soft, relax_soft;
-    double upper;  ///< largest impulse: 0 of a rope
+    double upper;                                 ///< largest impulse: 0 of a rope
+    double value = 0, h = 0, push_out_speed = 0;  ///< of a drive
+    Soft limit_soft{};
 };
 
 struct World::ContactRow {
@@ -69,45 +71,100 @@ Eigen::VectorXd World::speed(int a, int b, const Jacobian& jacobian) const
     return jacobian * v;
 }
 
-World::JointRow World::begin_joint(Joint& joint, double h, const SolverSettings& settings)
+Jacobian World::jacobian_of(const Joint& joint) const
 {
     const Body& a = bodies[static_cast<std::size_t>(joint.a)];
     const Body& b = bodies[static_cast<std::size_t>(joint.b)];
+    switch (joint.kind) {
+        case Joint::Kind::distance:
+            return distance_jacobian(a, b, joint.local_a, joint.local_b);
+        case Joint::Kind::frames:
+            return frame_jacobian(a, b, joint.frame_a, joint.frame_b, joint.linear, joint.angular);
+        case Joint::Kind::drive:
+            return drive_jacobian(a, b, joint.frame_a, joint.frame_b, joint.axis);
+        case Joint::Kind::ball_socket:
+            break;
+    }
+    return point_jacobian(a, b, joint.local_a, joint.local_b)
+        .topRows(is_planar_pair(joint.a, joint.b) ? 2 : 3);
+}
+
+Eigen::VectorXd World::error_of(const Joint& joint) const
+{
+    const Body& a = bodies[static_cast<std::size_t>(joint.a)];
+    const Body& b = bodies[static_cast<std::size_t>(joint.b)];
+    switch (joint.kind) {
+        case Joint::Kind::distance:
+            return Eigen::VectorXd::Constant(
+                1, distance_error(a, b, joint.local_a, joint.local_b, joint.length));
+        case Joint::Kind::frames:
+            return frame_error(a, b, joint.frame_a, joint.frame_b, joint.linear, joint.angular);
+        case Joint::Kind::drive: {
+            // What a position solve mends: how far the coordinate is beyond its limits.
+            const double value = drive_value(a, b, joint.frame_a, joint.frame_b, joint.axis);
+            return Eigen::VectorXd::Constant(
+                1, std::min(value - joint.lower, 0.0) + std::max(value - joint.upper, 0.0));
+        }
+        case Joint::Kind::ball_socket:
+            break;
+    }
+    return point_error(a, b, joint.local_a, joint.local_b).head(is_planar_pair(joint.a, joint.b) ? 2 : 3);
+}
+
+World::JointRow World::begin_joint(Joint& joint, double h, const SolverSettings& settings)
+{
     const bool substeps = settings.method == Method::soft_step;
     const double beta =
         settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
-    const Soft usual =
-        substeps ? softness(settings.joint_hertz, settings.joint_damping_ratio, h) : Soft{beta / h, 1, 0};
     const Soft rigid{0, 1, 0};
-    JointRow row{&joint, Jacobian(3, 12), {}, {}, {}, usual, rigid, std::numeric_limits<double>::max()};
-    if (joint.kind == Joint::Kind::ball_socket) {
-        const int rows = is_planar_pair(joint.a, joint.b) ? 2 : 3;
-        row.jacobian = point_jacobian(a, b, joint.local_a, joint.local_b).topRows(rows);
-        row.bias = usual.rate * point_error(a, b, joint.local_a, joint.local_b).head(rows);
-        row.relax_bias = Eigen::VectorXd::Zero(rows);
-    } else {
-        const double error = distance_error(a, b, joint.local_a, joint.local_b, joint.length);
-        row.jacobian = distance_jacobian(a, b, joint.local_a, joint.local_b);
-        const bool rope = joint.mode == DistanceMode::rope, spring = joint.mode == DistanceMode::spring;
-        if (spring) row.soft = row.relax_soft = softness(joint.hertz, joint.damping_ratio, h);
-        row.bias = Eigen::VectorXd::Constant(1, row.soft.rate * error);
-        row.relax_bias = Eigen::VectorXd::Constant(1, spring ? row.soft.rate * error : 0);
-        if (rope) row.upper = 0;
-        if (rope && error < 0) {  // slack: it may tighten within the substep and no further
+    Soft soft =
+        substeps ? softness(settings.joint_hertz, settings.joint_damping_ratio, h) : Soft{beta / h, 1, 0};
+    const bool spring = joint.hertz > 0;
+    if (spring) soft = softness(joint.hertz, joint.damping_ratio, h);
+    const Eigen::VectorXd error = error_of(joint);
+    JointRow row{&joint,
+                 jacobian_of(joint),
+                 {},
+                 soft.rate * error,
+                 {},
+                 soft,
+                 spring ? soft : rigid,
+                 std::numeric_limits<double>::max()};
+    row.relax_bias = row.relax_soft.rate * error;
+    if (joint.kind == Joint::Kind::distance && joint.mode == DistanceMode::rope) {
+        row.upper = 0;
+        if (error(0) < 0) {  // slack: it may tighten within the substep and no further
             row.soft = rigid;
-            row.bias(0) = row.relax_bias(0) = error / h;
+            row.bias = row.relax_bias = error / h;
         }
     }
-    row.mass = effective_mass(row.jacobian, a, b);
-    if (joint.impulse.size() != row.jacobian.rows())
-        joint.impulse = Eigen::VectorXd::Zero(row.jacobian.rows());
-    apply(joint.a, joint.b, row.jacobian, joint.impulse);
+    row.mass = effective_mass(row.jacobian, bodies[static_cast<std::size_t>(joint.a)],
+                              bodies[static_cast<std::size_t>(joint.b)]);
+    const bool drive = joint.kind == Joint::Kind::drive;
+    const Eigen::Index impulses = drive ? 3 : row.jacobian.rows();
+    if (joint.impulse.size() != impulses) joint.impulse = Eigen::VectorXd::Zero(impulses);
+    if (drive) {
+        row.value =
+            drive_value(bodies[static_cast<std::size_t>(joint.a)], bodies[static_cast<std::size_t>(joint.b)],
+                        joint.frame_a, joint.frame_b, joint.axis);
+        row.h = h;
+        row.push_out_speed = settings.push_out_speed;
+        row.limit_soft =
+            substeps ? softness(settings.joint_hertz, settings.joint_damping_ratio, h) : Soft{beta / h, 1, 0};
+        apply(joint.a, joint.b, row.jacobian, Eigen::VectorXd::Constant(1, joint.impulse.sum()));
+    } else {
+        apply(joint.a, joint.b, row.jacobian, joint.impulse);
+    }
     return row;
 }
 
 void World::solve_joint(JointRow& row, bool relax)
 {
     Joint& joint = *row.joint;
+    if (joint.kind == Joint::Kind::drive) {
+        solve_drive(row, relax);
+        return;
+    }
     const Soft& soft = relax ? row.relax_soft : row.soft;
     const Eigen::VectorXd bias = relax ? row.relax_bias : row.bias;
     Eigen::VectorXd impulse = joint.impulse -
@@ -116,6 +173,43 @@ void World::solve_joint(JointRow& row, bool relax)
     if (impulse.size() == 1) impulse(0) = std::min(impulse(0), row.upper);
     apply(joint.a, joint.b, row.jacobian, impulse - joint.impulse);
     joint.impulse = impulse;
+}
+
+/// Spring, motor and limit one after another, each an impulse of its own along the one row.
+void World::solve_drive(JointRow& row, bool relax)
+{
+    Joint& joint = *row.joint;
+    const double mass = row.mass(0, 0);
+    const auto change_to = [&](Eigen::Index which, double wanted) {
+        apply(joint.a, joint.b, row.jacobian, Eigen::VectorXd::Constant(1, wanted - joint.impulse(which)));
+        joint.impulse(which) = wanted;
+    };
+    const auto v = [&] { return speed(joint.a, joint.b, row.jacobian)(0); };
+    if (joint.hertz > 0) {
+        change_to(0,
+                  joint.impulse(0) -
+                      row.soft.mass_scale * mass * (v() + row.soft.rate * (row.value - joint.spring_target)) -
+                      row.soft.impulse_scale * joint.impulse(0));
+    }
+    const double most = row.h * joint.motor_max_force;
+    change_to(1, std::clamp(joint.impulse(1) - mass * (v() - joint.motor_speed), -most, most));
+
+    // The nearer limit, as C >= 0 along `side`; both at once when there is no room between them.
+    const double above = row.value - joint.lower, below = joint.upper - row.value;
+    const bool lock = joint.lower == joint.upper;
+    const double side = lock || above < below ? 1 : -1, c = side > 0 ? above : below;
+    Soft soft = relax ? Soft{0, 1, 0} : row.limit_soft;
+    double bias = soft.rate * c;
+    if (!lock) {
+        bias = std::max(bias, -row.push_out_speed);
+        if (c > 0) {
+            soft = {0, 1, 0};
+            bias = c / row.h;
+        }
+    }
+    const double held = side * joint.impulse(2);
+    const double wanted = held - soft.mass_scale * mass * (side * v() + bias) - soft.impulse_scale * held;
+    change_to(2, side * (lock ? wanted : std::max(wanted, 0.0)));
 }
 
 World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
@@ -216,19 +310,16 @@ void World::project(std::vector<ContactRow>& contacts, const SolverSettings& set
         body_b.advance(change.tail<6>(), 1);
     };
     for (Joint& joint : joints) {
-        const Body& a = bodies[static_cast<std::size_t>(joint.a)];
-        const Body& b = bodies[static_cast<std::size_t>(joint.b)];
-        if (joint.kind == Joint::Kind::ball_socket) {
-            const int rows = is_planar_pair(joint.a, joint.b) ? 2 : 3;
-            const Jacobian j = point_jacobian(a, b, joint.local_a, joint.local_b).topRows(rows);
-            move(joint.a, joint.b, j,
-                 -effective_mass(j, a, b) * point_error(a, b, joint.local_a, joint.local_b).head(rows));
-        } else if (joint.mode != DistanceMode::spring) {
-            double error = distance_error(a, b, joint.local_a, joint.local_b, joint.length);
-            if (joint.mode == DistanceMode::rope) error = std::max(error, 0.0);
-            const Jacobian j = distance_jacobian(a, b, joint.local_a, joint.local_b);
-            move(joint.a, joint.b, j, -effective_mass(j, a, b) * Eigen::VectorXd::Constant(1, error));
-        }
+        // Springs are forces, not positions.
+        if (joint.hertz > 0 && joint.kind != Joint::Kind::drive) continue;
+        Eigen::VectorXd error = error_of(joint);
+        if (joint.kind == Joint::Kind::distance && joint.mode == DistanceMode::rope)
+            error = error.cwiseMax(0.0);
+        const Jacobian j = jacobian_of(joint);
+        move(joint.a, joint.b, j,
+             -effective_mass(j, bodies[static_cast<std::size_t>(joint.a)],
+                             bodies[static_cast<std::size_t>(joint.b)]) *
+                 error);
     }
     for (ContactRow& row : contacts) {
         const double deep = std::min(separation(row) + static_cast<double>(settings.penetration_slop), 0.0);

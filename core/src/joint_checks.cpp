@@ -30,4 +30,16 @@ void check_anchor(std::string_view field, const Vec3<float>& anchor, BodyModel m
     }
 }
 
+void check_joint_frame(std::string_view field, const JointFrame& frame, BodyModel model, bool fixed)
+{
+    const std::string name(field);
+    if (model == BodyModel::particle && !fixed) {
+        refuse(name, "on a particle", "a body that turns: rigid, planar, static or kinematic");
+    }
+    check_anchor(name + ".position", frame.position, model, fixed);
+    const Quat<float>& q = frame.rotation;
+    check_range(name + ".rotation", q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 1e-12F, 1e12F,
+                "a quaternion with a length from 1e-6 to 1e6 (squared shown)");
+}
+
 }  // namespace motley

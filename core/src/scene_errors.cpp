@@ -48,21 +48,27 @@ std::uint64_t Scene::state_hash() const
 SceneErrors Scene::errors() const
 {
     SceneErrors errors;
-    double sum = 0;
+    double squares = 0, angle_squares = 0;
     std::size_t count = 0;
     joints_.for_each([&](const auto& store, int) {
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-        for (const auto& definition : store.definitions) {
-            const Vec3<double> e = Type::error(
-                definition, anchor_separation(state(definition.body_a), state(definition.body_b),
-                                              definition.local_anchor_a, definition.local_anchor_b));
-            const double square = dot(e, e);
-            sum += square;
-            errors.joint_separation_max = std::max(errors.joint_separation_max, std::sqrt(square));
+        for (std::size_t i = 0; i < store.size(); ++i) {
+            const auto& definition = store.definitions[i];
+            const JointReport report = Type::report(definition, store.memory_of(i), state(definition.body_a),
+                                                    state(definition.body_b), 0);
+            const auto error = static_cast<double>(report.error),
+                       angle = static_cast<double>(report.angle_error);
+            squares += error * error;
+            angle_squares += angle * angle;
+            errors.joint_separation_max = std::max(errors.joint_separation_max, error);
+            errors.joint_angle_max = std::max(errors.joint_angle_max, angle);
             ++count;
         }
     });
-    if (count > 0) errors.joint_separation_rms = std::sqrt(sum / static_cast<double>(count));
+    if (count > 0) {
+        errors.joint_separation_rms = std::sqrt(squares / static_cast<double>(count));
+        errors.joint_angle_rms = std::sqrt(angle_squares / static_cast<double>(count));
+    }
     for (std::uint32_t slot = 1; slot < bodies_.slot_count(); ++slot) {
         if (!bodies_.is_slot_live(slot) || bodies_.inverse_masses[slot] == 0) continue;
         const BodyId body = bodies_.id_of_slot(slot);

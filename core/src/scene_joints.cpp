@@ -89,25 +89,21 @@ void Scene::remove_joints_of(std::span<const BodyId> bodies)
     });
 }
 
-JointForce Scene::joint_force(ConstraintId joint) const
+JointReport Scene::joint_report(ConstraintId joint) const
 {
     if (!is_alive(joint)) {
-        refuse("joint_force.joint", "slot " + std::to_string(joint.slot) + ", not alive",
+        refuse("joint_report.joint", "slot " + std::to_string(joint.slot) + ", not alive",
                "a joint of this scene");
     }
     const JointStores::Slot& entry = joints_.slots[joint.slot];
-    JointForce result;
+    const double inverse_substep = last_substep > 0 ? 1 / static_cast<double>(last_substep) : 0;
+    JointReport result;
     joints_.for_each([&](const auto& store, int type) {
         if (type != entry.type) return;
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         const auto& definition = store.definitions[entry.index];
-        const Vec3<double> d = anchor_separation(state(definition.body_a), state(definition.body_b),
-                                                 definition.local_anchor_a, definition.local_anchor_b);
-        if (last_substep > 0) {
-            result.force = (1 / last_substep) * Type::push_on_b(definition, store.memory_of(entry.index), d);
-        }
-        const Vec3<double> e = Type::error(definition, d);
-        result.error = static_cast<float>(std::sqrt(dot(e, e)));
+        result = Type::report(definition, store.memory_of(entry.index), state(definition.body_a),
+                              state(definition.body_b), inverse_substep);
     });
     return result;
 }

@@ -9,8 +9,10 @@ inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float
 template <class Type, BodyKind a, BodyKind b>
 void enter_pair(KernelTable& table, int type)
 {
-    // Two bodies that cannot move need no constraint, and the scene refuses it.
-    if constexpr (a != BodyKind::fixed || b != BodyKind::fixed) {
+    // Two bodies that cannot move need no constraint, a particle has no axes to lock, and the scene refuses both.
+    constexpr bool moves = a != BodyKind::fixed || b != BodyKind::fixed;
+    constexpr bool has_particle = a == BodyKind::particle || b == BodyKind::particle;
+    if constexpr (moves && !(has_particle && requires { Type::needs_bodies_that_turn; })) {
         Kernels<Type, a, b>::enter(table.constraints[class_of(type, a, b)]);
     }
 }

@@ -288,8 +288,8 @@ TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
          "remove_bodies", "twice"},
         {"remove a removed joint", [](Fixture& f) { f.scene.remove_joint(f.removed_joint); }, "remove_joint",
          "not alive"},
-        {"force of a removed joint", [](Fixture& f) { (void)f.scene.joint_force(f.removed_joint); },
-         "joint_force", "not alive"},
+        {"force of a removed joint", [](Fixture& f) { (void)f.scene.joint_report(f.removed_joint); },
+         "joint_report", "not alive"},
         {"add_bodies sizes",
          [](Fixture& f) {
              const BodyDefinition d[2];

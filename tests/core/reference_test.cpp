@@ -109,6 +109,62 @@ TEST(Reference, DistanceJacobianMatchesFiniteDifferences)
     });
 }
 
+TEST(Reference, FrameJacobiansMatchFiniteDifferencesForEveryCombinationOfLocks)
+{
+    Random random(9);
+    for_every_pair([&](const Pair& p) {
+        const auto frame = [&](const Eigen::Vector3d& position) {
+            return Frame{position, Eigen::Quaterniond(random.symmetric(), random.symmetric(),
+                                                      random.symmetric(), random.symmetric())
+                                       .normalized()};
+        };
+        const Frame a = frame(p.local_a), b = frame(p.local_b);
+        for (int linear = 0; linear <= 3; ++linear) {
+            for (int angular = 0; angular <= 3; ++angular) {
+                if (linear + angular == 0) continue;
+                const auto locks =
+                    std::pair{static_cast<LinearLock>(linear), static_cast<AngularLock>(angular)};
+                const auto error = [&](const Pair& q) -> Eigen::VectorXd {
+                    return frame_error(q.a, q.b, a, b, locks.first, locks.second);
+                };
+                const Eigen::VectorXd difference =
+                    (error(p.moved(epsilon)) - error(p.moved(-epsilon))) / (2 * epsilon);
+                const Eigen::VectorXd analytic =
+                    frame_jacobian(p.a, p.b, a, b, locks.first, locks.second) * p.velocity();
+                EXPECT_LT((difference - analytic).norm(), tolerance * (1 + analytic.norm()))
+                    << linear << " linear and " << angular << " angular rows";
+            }
+        }
+    });
+}
+
+TEST(Reference, DriveJacobiansMatchFiniteDifferencesAlongMotionsThatTheirJointsAllow)
+{
+    // A twist is that of a hinge: about the axis that both bodies share.
+    Random random(10);
+    for_every_pair([&](const Pair& p) {
+        const Frame a{p.local_a, Eigen::Quaterniond(random.symmetric(), random.symmetric(),
+                                                    random.symmetric(), random.symmetric())
+                                     .normalized()};
+        const Eigen::Quaterniond world_a = p.a.orientation * a.rotation;
+        const double angle = 2.5 * random.symmetric();
+        const Frame b{p.local_b, p.b.orientation.conjugate() * world_a *
+                                     Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX())};
+        Pair hinged = p;
+        hinged.b.velocity.tail<3>() = p.a.velocity.tail<3>() + 1.3 * (world_a * Eigen::Vector3d::UnitX());
+        for (const DriveAxis axis : {DriveAxis::slide, DriveAxis::twist}) {
+            const auto value = [&](const Pair& q) { return drive_value(q.a, q.b, a, b, axis); };
+            const double difference =
+                (value(hinged.moved(epsilon)) - value(hinged.moved(-epsilon))) / (2 * epsilon);
+            const double analytic = (drive_jacobian(hinged.a, hinged.b, a, b, axis) * hinged.velocity())(0);
+            EXPECT_NEAR(difference, analytic, tolerance * (1 + std::abs(analytic)));
+            if (axis == DriveAxis::twist) {
+                EXPECT_NEAR(value(hinged), angle, 1e-12);
+            }
+        }
+    });
+}
+
 TEST(Reference, ContactRowsMatchFiniteDifferencesOfTheGapBetweenMaterialPoints)
 {
     for_every_pair([](const Pair& p) {

@@ -171,10 +171,140 @@ TEST(AgainstReference, RodsRopesAndSpringsAgreeForEveryPairAndMethod)
                                          .local_b = eigen(joint.local_anchor_b),
                                          .mode = mode,
                                          .length = joint.length,
-                                         .hertz = joint.hertz,
+                                         .hertz = mode == DistanceMode::spring ? joint.hertz : 0,
                                          .damping_ratio = joint.damping_ratio});
             run_joint(twin, settings, name + ", mode " + std::to_string(static_cast<int>(mode)));
         });
+    }
+}
+
+Eigen::Quaterniond eigen(const Quat<double>& q)
+{
+    return Eigen::Quaterniond(q.w, q.x, q.y, q.z);
+}
+Quat<float> narrowed(const Eigen::Quaterniond& q)
+{
+    return {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
+            static_cast<float>(q.w())};
+}
+
+reference::Frame reference_frame(const JointFrame& f)
+{
+    return {eigen(f.position),
+            Eigen::Quaterniond(f.rotation.w, f.rotation.x, f.rotation.y, f.rotation.z).normalized()};
+}
+
+/// Random frames on two bodies that turn, nearly where a joint wants them. With a planar body their axes lie in or
+/// across the plane (`x_across`), as a host's would: between other axes rows depend on each other.
+std::pair<JointFrame, JointFrame> random_frames(const Twin& twin, testing::Random& random, bool planar,
+                                                bool x_across)
+{
+    const auto r = [&] { return random.symmetric(); };
+    const auto narrow = [](const Eigen::Vector3d& v) {
+        return Vec3<float>{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+    };
+    const auto vector = [&](double size) {
+        return Eigen::Vector3d(size * r(), size * r(), planar ? 0 : size * r());
+    };
+    const BodyState a = twin.scene.state(twin.ids[0]), b = twin.scene.state(twin.ids[1]);
+    const Eigen::Quaterniond turn_a = eigen(a.orientation), turn_b = eigen(b.orientation);
+    Eigen::Quaterniond world = Eigen::Quaterniond(r(), r(), r(), r()).normalized();
+    Eigen::Vector3d tilt = vector(0.02);
+    if (planar) {
+        world = Eigen::AngleAxisd(3 * r(), Eigen::Vector3d::UnitZ());
+        if (x_across) world = world * Eigen::AngleAxisd(-EIGEN_PI / 2, Eigen::Vector3d::UnitY());
+        tilt = {0, 0, 0.02 * r()};
+    }
+    const JointFrame frame_a{narrow(vector(0.4)), narrowed(turn_a.conjugate() * world)};
+    const Eigen::Vector3d anchor = Eigen::Vector3d(a.position.x, a.position.y, a.position.z) +
+                                   turn_a * eigen(frame_a.position) + vector(0.02);
+    const Eigen::Quaterniond tilted =
+        Eigen::Quaterniond(1, tilt.x() / 2, tilt.y() / 2, tilt.z() / 2).normalized();
+    return {
+        frame_a,
+        {narrow(turn_b.conjugate() * (anchor - Eigen::Vector3d(b.position.x, b.position.y, b.position.z))),
+         narrowed(turn_b.conjugate() * tilted * world)}};
+}
+
+template <LinearLock linear, AngularLock angular>
+void compare_frame_joints(const JointStiffness& stiffness)
+{
+    for_every_pair([&](Twin& twin, testing::Random& random, const SolverSettings& settings,
+                       const std::string& name, int a, int b) {
+        if (a == 0 || b == 0) return;
+        FrameJointDefinition<linear, angular> joint{twin.ids[0], twin.ids[1], {}, {}, stiffness};
+        std::tie(joint.frame_a, joint.frame_b) =
+            random_frames(twin, random, a == 1 || b == 1, angular == AngularLock::swing);
+        twin.scene.add_joint(joint);
+        twin.world.joints.push_back({.kind = reference::Joint::Kind::frames,
+                                     .a = 0,
+                                     .b = 1,
+                                     .hertz = stiffness.hertz,
+                                     .damping_ratio = stiffness.damping_ratio,
+                                     .frame_a = reference_frame(joint.frame_a),
+                                     .frame_b = reference_frame(joint.frame_b),
+                                     .linear = linear,
+                                     .angular = angular});
+        run_joint(twin, settings, name + ", hertz " + std::to_string(stiffness.hertz));
+    });
+}
+
+/// A drive beside nothing: limits that are met within the steps, motors that reach their bound, springs.
+template <DriveAxis axis>
+void compare_drives(float lower, float upper, float speed, float force, float hertz)
+{
+    for_every_pair([&](Twin& twin, testing::Random& random, const SolverSettings& settings,
+                       const std::string& name, int a, int b) {
+        if (a == 0 || b == 0) return;
+        DriveDefinition<axis> drive{.body_a = twin.ids[0], .body_b = twin.ids[1]};
+        std::tie(drive.frame_a, drive.frame_b) =
+            random_frames(twin, random, a == 1 || b == 1, axis == DriveAxis::twist);
+        drive.lower = lower;
+        drive.upper = upper;
+        drive.motor_speed = speed;
+        drive.motor_max_force = force;
+        drive.spring_hertz = hertz;
+        drive.spring_damping_ratio = 0.4F;
+        drive.spring_target = 0.1F;
+        twin.scene.add_joint(drive);
+        twin.world.joints.push_back({.kind = reference::Joint::Kind::drive,
+                                     .a = 0,
+                                     .b = 1,
+                                     .hertz = hertz,
+                                     .damping_ratio = drive.spring_damping_ratio,
+                                     .frame_a = reference_frame(drive.frame_a),
+                                     .frame_b = reference_frame(drive.frame_b),
+                                     .axis = axis,
+                                     .lower = lower,
+                                     .upper = upper,
+                                     .motor_speed = speed,
+                                     .motor_max_force = force,
+                                     .spring_target = drive.spring_target});
+        run_joint(twin, settings,
+                  name + ", axis " + std::to_string(static_cast<int>(axis)) + ", from " +
+                      std::to_string(lower) + " to " + std::to_string(upper));
+    });
+}
+
+TEST(AgainstReference, DrivesAgreeForEveryPairOfBodiesThatTurn)
+{
+    const float free = std::numeric_limits<float>::infinity();
+    compare_drives<DriveAxis::slide>(-0.05F, 0.1F, 0, 0, 0);
+    compare_drives<DriveAxis::slide>(0.05F, 0.05F, 0, 0, 0);
+    compare_drives<DriveAxis::slide>(-free, 0.2F, 2, 5, 0);
+    compare_drives<DriveAxis::slide>(-free, free, 0, 1, 3);
+    compare_drives<DriveAxis::twist>(-0.05F, 0.1F, 0, 0, 0);
+    compare_drives<DriveAxis::twist>(0.05F, 0.05F, 0, 0, 0);
+    compare_drives<DriveAxis::twist>(-free, 0.2F, 2, 0.5F, 0);
+    compare_drives<DriveAxis::twist>(-free, free, 0, 0.1F, 3);
+}
+
+TEST(AgainstReference, FrameJointsAgreeForEveryPairOfBodiesThatTurn)
+{
+    for (const JointStiffness& stiffness : {JointStiffness{}, JointStiffness{5, 0.5F}}) {
+        compare_frame_joints<LinearLock::point, AngularLock::all>(stiffness);
+        compare_frame_joints<LinearLock::point, AngularLock::swing>(stiffness);
+        compare_frame_joints<LinearLock::line, AngularLock::all>(stiffness);
     }
 }
 

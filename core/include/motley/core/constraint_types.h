@@ -5,6 +5,8 @@
 #include "motley/core/constraints/ball_socket.h"
 #include "motley/core/constraints/contact.h"
 #include "motley/core/constraints/distance.h"
+#include "motley/core/constraints/drive.h"
+#include "motley/core/constraints/frame_joint.h"
 
 namespace motley {
 
@@ -14,7 +16,21 @@ struct TypeList {
 };
 
 using ContactTypes = TypeList<SmoothContact, FrictionContact>;
-using JointTypes = TypeList<BallSocket, Distance>;
+template <class Definition>
+struct FrameJointOf;
+template <LinearLock linear, AngularLock angular>
+struct FrameJointOf<FrameJointDefinition<linear, angular>> {
+    using type = FrameJoint<linear, angular>;
+};
+
+using Fixed = FrameJointOf<FixedDefinition>::type;
+using Hinge = FrameJointOf<HingeDefinition>::type;
+using Slider = FrameJointOf<SliderDefinition>::type;
+
+using SlideDrive = Drive<DriveAxis::slide>;
+using TwistDrive = Drive<DriveAxis::twist>;
+
+using JointTypes = TypeList<BallSocket, Distance, Fixed, Hinge, Slider, SlideDrive, TwistDrive>;
 
 /// Types of constraint in all: contacts first, then joints, each at its place in the lists.
 inline constexpr int contact_type_count = ContactTypes::size;

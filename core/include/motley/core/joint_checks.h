@@ -1,9 +1,11 @@
 // The checks that joint definitions share.
 #pragma once
 
+#include <cmath>
 #include <string_view>
 
 #include "motley/core/body.h"
+#include "motley/core/constraints/frame_joint_definition.h"
 
 namespace motley {
 
@@ -20,5 +22,16 @@ void check_range(std::string_view field, float value, float low, float high, std
 /// Refuses an anchor that is not finite or longer than 1e9 m, or not at the centre of a particle, which has
 /// no orientation to carry it.
 void check_anchor(std::string_view field, const Vec3<float>& anchor, BodyModel model, bool fixed);
+
+/// Refuses a frame that is not finite, whose rotation has no direction, or on a particle, which cannot turn.
+void check_joint_frame(std::string_view field, const JointFrame& frame, BodyModel model, bool fixed);
+
+/// A quaternion of any length made unit; exact to rounding.
+template <class Real>
+Quat<Real> unit(const Quat<Real>& q)
+{
+    const Real scale = Real(1) / std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    return {scale * q.x, scale * q.y, scale * q.z, scale * q.w};
+}
 
 }  // namespace motley

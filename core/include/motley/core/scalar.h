@@ -62,4 +62,26 @@ SineCosine<Real> sine_cosine(const Real& angle)
     return {s4, Real(1) - v4};
 }
 
+/// The angle of (x, y) for x >= 0, absolute error below 2e-7: Abramowitz and Stegun 4.4.49 on the smaller over the
+/// larger. Ours, so that it has one answer everywhere; (0, 0) gives 0.
+template <class Real>
+Real arc_tangent2(const Real& y, const Real& x)
+{
+    const Real rise = absolute(y);
+    const auto steep = rise > x;
+    const Real t = select(steep, x, rise) / maximum(select(steep, rise, x), Real(1e-30F));
+    const Real t2 = t * t;
+    const Real angle =
+        t * (Real(1) +
+             t2 * (Real(-0.3333314528F) +
+                   t2 * (Real(0.1999355085F) +
+                         t2 * (Real(-0.1420889944F) +
+                               t2 * (Real(0.1065626393F) +
+                                     t2 * (Real(-0.0752896400F) +
+                                           t2 * (Real(0.0429096138F) + t2 * (Real(-0.0161657367F) +
+                                                                             t2 * Real(0.0028662257F)))))))));
+    const Real up = select(steep, Real(1.5707963F) - angle, angle);
+    return select(y < Real(0), -up, up);
+}
+
 }  // namespace motley

@@ -10,17 +10,12 @@
 #include "motley/core/constraint_types.h"
 #include "motley/core/contact_cache.h"
 #include "motley/core/ids.h"
+#include "motley/core/joint_report.h"
 #include "motley/core/joint_store.h"
 #include "motley/core/step_report.h"
 #include "motley/core/strided_span.h"
 
 namespace motley {
-
-/// What a joint did in the last step.
-struct JointForce {
-    Vec3<float> force{};  ///< N, world, on body b at its anchor
-    float error = 0;      ///< m: |C| now, of a rope only what it is too long by
-};
 
 /// Holds everything that decides what the next step computes. Every call that is refused throws
 /// InvalidInput and changes nothing. Not thread-safe; one scene, one thread, or many scenes, many threads.
@@ -75,8 +70,8 @@ class Scene {
     void remove_joint(ConstraintId joint);
     [[nodiscard]] bool is_alive(ConstraintId joint) const;
     [[nodiscard]] std::size_t joint_count() const;
-    /// The force that a joint applied in the last substep of the last step, and its error now.
-    [[nodiscard]] JointForce joint_force(ConstraintId joint) const;
+    /// The force and torque that a joint applied in the last substep of the last step, and its error now.
+    [[nodiscard]] JointReport joint_report(ConstraintId joint) const;
 
     // ---- contacts -----------------------------------------------------------------------------------------
     /// What the contacts of the last step did, in the order of its list.

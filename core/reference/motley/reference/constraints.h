@@ -3,6 +3,8 @@
 #pragma once
 
 #include "motley/core/constraints/contact_definition.h"
+#include "motley/core/constraints/drive_definition.h"
+#include "motley/core/constraints/frame_joint_definition.h"
 #include "motley/reference/body.h"
 
 namespace motley::reference {
@@ -23,6 +25,26 @@ double distance_error(const Body& a, const Body& b, const Eigen::Vector3d& local
 /// [-u, -r_a x u, u, r_b x u].
 Jacobian distance_jacobian(const Body& a, const Body& b, const Eigen::Vector3d& local_a,
                            const Eigen::Vector3d& local_b);
+
+/// A frame on a body, in the frame of the body.
+struct Frame {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+};
+/// The locked coordinates of frame b in frame a: of a point all of d (world), of a line d along y and z of a, of a plane
+/// d along x; of all rotations 2 vec(q_a* q_b) with w >= 0, of swing x_b along y and z of a, of perpendicular axes
+/// x_a . y_b.
+Eigen::VectorXd frame_error(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
+                            LinearLock linear, AngularLock angular);
+/// Rows [-e, -(r_a + d) x e, e, r_b x e] and [0, -g, 0, g].
+Jacobian frame_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
+                        LinearLock linear, AngularLock angular);
+
+/// How far b's frame is along x of a's frame, or turned about the x axis that the frames share.
+double drive_value(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b, DriveAxis axis);
+/// [-x, -(r_a + d) x x, x, r_b x x], or [0, -t, 0, t] with t = (x_a + x_b) / (1 + x_a . x_b).
+Jacobian drive_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
+                        DriveAxis axis);
 
 /// [-n, -r_a x n, n, r_b x n]: the row of any direction at a contact, normal or tangent.
 Jacobian direction_jacobian(const Eigen::Vector3d& direction, const Eigen::Vector3d& arm_a,

@@ -14,14 +14,20 @@
 
 namespace motley::reference {
 
-/// A joint between bodies of the world by index, of either kind.
+/// A joint between bodies of the world by index, of any kind.
 struct Joint {
-    enum class Kind { ball_socket, distance } kind = Kind::ball_socket;
+    enum class Kind { ball_socket, distance, frames, drive } kind = Kind::ball_socket;
     int a = 0, b = 0;
     Eigen::Vector3d local_a = Eigen::Vector3d::Zero(), local_b = Eigen::Vector3d::Zero();
     DistanceMode mode = DistanceMode::rod;
-    double length = 1, hertz = 1, damping_ratio = 0;
-    Eigen::VectorXd impulse{};  ///< carried from step to step
+    double length = 1;
+    double hertz = 0, damping_ratio = 0;  ///< hertz > 0: a spring, also a drive's
+    Frame frame_a{}, frame_b{};
+    LinearLock linear = LinearLock::none;
+    AngularLock angular = AngularLock::none;
+    DriveAxis axis = DriveAxis::slide;
+    double lower = 0, upper = 0, motor_speed = 0, motor_max_force = 0, spring_target = 0;
+    Eigen::VectorXd impulse{};  ///< carried from step to step; of a drive: spring, motor, limit
 };
 
 /// A contact of one step between bodies by index.
@@ -57,8 +63,11 @@ class World {
     void apply(int a, int b, const Jacobian& jacobian, const Eigen::VectorXd& impulse);
     [[nodiscard]] Eigen::VectorXd speed(int a, int b, const Jacobian& jacobian) const;
 
+    [[nodiscard]] Jacobian jacobian_of(const Joint& joint) const;
+    [[nodiscard]] Eigen::VectorXd error_of(const Joint& joint) const;
     JointRow begin_joint(Joint& joint, double h, const SolverSettings& settings);
     void solve_joint(JointRow& row, bool relax);
+    void solve_drive(JointRow& row, bool relax);
     ContactRow begin_contact(const ContactPoint& point, double warm);
     void solve_contact(ContactRow& row, double h, const SolverSettings& settings, bool relax);
     [[nodiscard]] double separation(const ContactRow& row) const;

@@ -5,10 +5,13 @@
 // Solved as a block: Gauss-Seidel inside one joint does not converge for long levers. Two rows in the plane.
 #pragma once
 
+#include <cmath>
+
 #include "motley/core/constraints/ball_socket_definition.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_pose.h"
+#include "motley/core/joint_report.h"
 #include "motley/core/step_constants.h"
 
 namespace motley {
@@ -112,12 +115,16 @@ struct BallSocket {
         return {to_three(impulse.push)};
     }
 
-    /// C in double, for the report.
-    static Vec3<double> error(const Definition&, const Vec3<double>& separation) { return separation; }
-    /// The force of the remembered impulse over one substep, on b.
-    static Vec3<float> push_on_b(const Definition&, const Memory<float>& memory, const Vec3<double>&)
+    /// What it did and how far off it is, from the poses now, in double.
+    static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b, double inverse_substep)
     {
-        return memory.push;
+        const Vec3<double> d = anchor_separation(a, b, joint.local_anchor_a, joint.local_anchor_b);
+        return {convert<float>(inverse_substep * convert<double>(memory.push)),
+                {},
+                static_cast<float>(std::sqrt(dot(d, d))),
+                0,
+                JointState::active};
     }
 
   private:

@@ -6,13 +6,15 @@
 // One row whatever the pair; the mode is masks, not branches, so that all three share a block.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "motley/core/constraints/distance_definition.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_pose.h"
-#include "motley/core/step_constants.h"
+#include "motley/core/joint_report.h"
+#include "motley/core/lane_softness.h"
 
 namespace motley {
 
@@ -28,7 +30,7 @@ struct Distance {
         Real length;
         Vec3<Real> anchor_b;
         Real upper;          ///< largest lambda: 0 of a rope
-        Real omega;          ///< rad/s of a spring, 0 of rod and rope
+        Real hertz;          ///< of a spring, 0 of rod and rope
         Real damping_ratio;  ///< of a spring
     };
     template <class Real>
@@ -39,8 +41,7 @@ struct Distance {
     struct Row {
         PairVector<Real, a, b> start_arm_a, start_arm_b, start_between;
         Real length, upper;
-        Real rate, mass_scale, impulse_scale;
-        Real is_spring;  ///< 1 or 0
+        LaneSoftness<Real> soft;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -78,7 +79,7 @@ struct Distance {
                 joint.length,
                 joint.local_anchor_b,
                 joint.mode == DistanceMode::rope ? 0.0F : std::numeric_limits<float>::max(),
-                spring ? 6.2831853F * joint.hertz : 0.0F,
+                spring ? joint.hertz : 0.0F,
                 spring ? joint.damping_ratio : 0.0F};
     }
 
@@ -96,17 +97,7 @@ struct Distance {
         row.start_between = to_space<Vector>(pose.between + arm_b - arm_a);
         row.length = joint.length;
         row.upper = joint.upper;
-        // Softness of CONVENTIONS with this joint's own frequency, capped at 0.25/h: a quarter turn is pi/2.
-        const Real h(step.substep);
-        const auto spring = joint.omega > Real(0);
-        const Real omega = minimum(joint.omega, Real(1.5707963F * step.inverse_substep));
-        const Real a1 = select(spring, Real(2) * joint.damping_ratio + h * omega, Real(1));
-        const Real a2 = h * omega * a1;
-        const Real a3 = Real(1) / (Real(1) + a2);
-        row.rate = select(spring, omega / a1, Real(step.joint.rate));
-        row.mass_scale = select(spring, a2 * a3, Real(step.joint.mass_scale));
-        row.impulse_scale = select(spring, a3, Real(step.joint.impulse_scale));
-        row.is_spring = select(spring, Real(1), Real(0));
+        row.soft = softness_or(step, joint.hertz, joint.damping_ratio, step.joint);
         impulse.along = Real(step.warm_start_scale) * memory.along;
         return row;
     }
@@ -121,18 +112,18 @@ struct Distance {
         substep.mass = mass_along<Real>(substep.arm_a, substep.arm_b, substep.axis, a, b);
 
         const Real error = length - row.length;
-        const auto spring = row.is_spring > Real(0);
+        const auto spring = row.soft.is_own > Real(0);
         // A slack rope is speculative: it may tighten to zero within the substep and no further.
         const auto slack = (row.upper < Real(1)) & (error < Real(0));
         const Real closing = Real(step.inverse_substep) * error;
-        const Real soft_bias = row.rate * error;
+        const Real soft_bias = row.soft.rate * error;
         substep.bias = select(slack, closing, soft_bias);
-        substep.mass_scale = select(slack, Real(1), row.mass_scale);
-        substep.impulse_scale = select(slack, Real(0), row.impulse_scale);
+        substep.mass_scale = select(slack, Real(1), row.soft.mass_scale);
+        substep.impulse_scale = select(slack, Real(0), row.soft.impulse_scale);
         // Relaxation takes the bias out of rods and taut ropes; a spring's softness is its physics and stays.
         substep.relax_bias = select(slack, closing, select(spring, soft_bias, Real(0)));
-        substep.relax_mass_scale = select(spring, row.mass_scale, Real(1));
-        substep.relax_impulse_scale = select(spring, row.impulse_scale, Real(0));
+        substep.relax_mass_scale = select(spring, row.soft.mass_scale, Real(1));
+        substep.relax_impulse_scale = select(spring, row.soft.impulse_scale, Real(0));
 
         const auto push = impulse.along * substep.axis;
         apply_impulse(a, substep.arm_a, -push);
@@ -165,7 +156,7 @@ struct Distance {
         const Real length = measure<Real>(row, arm_a, arm_b, a, b, axis);
         const Real mass = mass_along<Real>(arm_a, arm_b, axis, a, b);
         // Springs are forces, not positions; a slack rope has nothing to mend.
-        const Real wrong = select(row.is_spring > Real(0), Real(0), length - row.length);
+        const Real wrong = select(row.soft.is_own > Real(0), Real(0), length - row.length);
         const Real error = select(row.upper > Real(0), wrong, maximum(wrong, Real(0)));
         const auto push = -(mass * error) * axis;
         apply_displacement(a, arm_a, -push);
@@ -178,19 +169,25 @@ struct Distance {
         return {impulse.along};
     }
 
-    static Vec3<double> error(const Definition& joint, const Vec3<double>& separation)
+    /// What it did and how far off it is, from the poses now, in double.
+    static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b, double inverse_substep)
     {
-        const double length = std::sqrt(dot(separation, separation));
+        const Vec3<double> d = anchor_separation(a, b, joint.local_anchor_a, joint.local_anchor_b);
+        const double length = std::sqrt(dot(d, d));
+        const Vec3<double> axis = length > 1e-9 ? (1 / length) * d : Vec3<double>{1, 0, 0};
         const double wrong = length - static_cast<double>(joint.length);
-        if (joint.mode == DistanceMode::spring || (joint.mode == DistanceMode::rope && wrong < 0)) return {};
-        return {wrong, 0, 0};
-    }
-    static Vec3<float> push_on_b(const Definition&, const Memory<float>& memory,
-                                 const Vec3<double>& separation)
-    {
-        const double length = std::sqrt(dot(separation, separation));
-        if (length < 1e-9) return {memory.along, 0, 0};
-        return convert<float>((static_cast<double>(memory.along) / length) * separation);
+        const bool is_wrong =
+            joint.mode == DistanceMode::rod || (joint.mode == DistanceMode::rope && wrong > 0);
+        JointReport report;
+        report.force = convert<float>((inverse_substep * static_cast<double>(memory.along)) * axis);
+        report.error = is_wrong ? static_cast<float>(std::abs(wrong)) : 0.0F;
+        if (joint.mode != DistanceMode::rope) {
+            report.state = JointState::active;
+        } else if (memory.along < 0) {
+            report.state = JointState::upper;
+        }
+        return report;
     }
 
   private:

@@ -1,0 +1,292 @@
+// A drive: limits, motor and spring on one coordinate C of two frames.
+//
+//   slide   C = x_a . d, d = p_b - p_a        row [-x_a, -(r_a + d) x x_a, x_a, r_b x x_a]
+//   twist   C = 2 atan2(v . x, w), q = q_a* q_b, w >= 0    row [0, -t, 0, t], t = (x_a + x_b) / (1 + x_a . x_b)
+//
+// One row and up to three impulses along it: the motor's, bounded by its force times h; the spring's, soft; the
+// limit's, >= 0 at the lower end and <= 0 at the upper. They are solved one after another on a speed that each
+// updates, so bodies are read and written once. What a drive does not have is switched off by masks: lanes with and
+// without share a block.
+#pragma once
+
+#include <cmath>
+
+#include "motley/core/constraints/drive_definition.h"
+#include "motley/core/invalid_input.h"
+#include "motley/core/joint_checks.h"
+#include "motley/core/joint_report.h"
+#include "motley/core/lane_softness.h"
+#include "motley/core/wrench.h"
+
+namespace motley {
+
+template <DriveAxis drive_axis>
+struct Drive {
+    using Definition = DriveDefinition<drive_axis>;
+    static constexpr bool has_restitution = false;
+    static constexpr bool recomputes_each_substep = true;
+    static constexpr bool needs_bodies_that_turn = true;
+    static constexpr bool slides = drive_axis == DriveAxis::slide;
+    /// Stands for no limit: far enough to be slack for ever, small enough to stay finite.
+    static constexpr float far_away = 1e12F;
+    static constexpr float half_turn = 3.14159265F;
+
+    template <class Real>
+    struct Parameters {
+        Vec3<Real> position_a;
+        Real lower;
+        Quat<Real> rotation_a;
+        Vec3<Real> position_b;
+        Real upper;
+        Quat<Real> rotation_b;
+        Real motor_speed, motor_max_force;
+        Real spring_hertz, spring_damping_ratio;
+        Real spring_target;
+    };
+    template <class Real>
+    struct Memory {
+        Real motor, spring, limit;  ///< N s or N m s
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        Vec3<Real> start_arm_a, start_arm_b, start_separation;
+        Quat<Real> start_frame_a, start_frame_b;
+        Real lower, upper;
+        Real motor_speed, motor_max_impulse;
+        Real spring_target;
+        LaneSoftness<Real> spring;  ///< mass_scale and impulse_scale 0 where there is none
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+        Vec3<Real> axis;              ///< x_a or t
+        Vec3<Real> lever_a, lever_b;  ///< slide only; of a twist they are the axis
+        Real inverse_mass, mass;      ///< K and its inverse
+        Real value;                   ///< C
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Impulse {
+        Real motor, spring, limit;
+    };
+
+    static void validate(const Definition& drive, const JointBodies& bodies)
+    {
+        check_joint_frame("frame_a", drive.frame_a, bodies.model_a, bodies.fixed_a);
+        check_joint_frame("frame_b", drive.frame_b, bodies.model_b, bodies.fixed_b);
+        const float most = slides ? largest_length : half_turn;
+        const char* range = slides ? "-1e9 to 1e9 (m) or infinite" : "-pi to pi (rad) or infinite";
+        if (!std::isinf(drive.lower)) check_range("lower", drive.lower, -most, most, range);
+        if (!std::isinf(drive.upper)) check_range("upper", drive.upper, -most, most, range);
+        if (!(drive.lower <= drive.upper)) refuse("lower", drive.lower, "at most upper");
+        check_range("motor_speed", drive.motor_speed, -1e9F, 1e9F, "a finite value from -1e9 to 1e9");
+        check_range("motor_max_force", drive.motor_max_force, 0, 1e12F, "a finite value from 0 to 1e12");
+        check_range("spring_hertz", drive.spring_hertz, 0, 1e6F, "0 (no spring) or up to 1e6 (Hz)");
+        check_range("spring_damping_ratio", drive.spring_damping_ratio, 0, 1e6F, "0 to 1e6");
+        check_range("spring_target", drive.spring_target, -most, most,
+                    slides ? "-1e9 to 1e9 (m)" : "-pi to pi (rad)");
+    }
+    static Parameters<float> parameters(const Definition& drive)
+    {
+        return {drive.frame_a.position,
+                std::fmax(drive.lower, -far_away),
+                unit(drive.frame_a.rotation),
+                drive.frame_b.position,
+                std::fmin(drive.upper, far_away),
+                unit(drive.frame_b.rotation),
+                drive.motor_speed,
+                drive.motor_max_force,
+                drive.spring_hertz,
+                drive.spring_damping_ratio,
+                drive.spring_target};
+    }
+
+    template <class Real, class A, class B>
+    static auto prepare(const StepConstants& step, const Parameters<Real>& drive, const Memory<Real>& memory,
+                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
+                        Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        Row<Real, A::kind, B::kind> row;
+        row.start_arm_a = to_world(pose.orientation_a, drive.position_a);
+        row.start_arm_b = to_world(pose.orientation_b, drive.position_b);
+        row.start_separation = pose.between + row.start_arm_b - row.start_arm_a;
+        row.start_frame_a = to_world(pose.orientation_a, drive.rotation_a);
+        row.start_frame_b = to_world(pose.orientation_b, drive.rotation_b);
+        row.lower = drive.lower;
+        row.upper = drive.upper;
+        row.motor_speed = drive.motor_speed;
+        row.motor_max_impulse = Real(step.substep) * drive.motor_max_force;
+        row.spring_target = drive.spring_target;
+        // Without a spring nothing is wanted and nothing is kept: impulse_scale 1 forgets.
+        row.spring = softness_or(step, drive.spring_hertz, drive.spring_damping_ratio, Softness{0, 0, 1});
+        const Real warm(step.warm_start_scale);
+        impulse.motor = warm * memory.motor;
+        impulse.spring = warm * memory.spring;
+        impulse.limit = warm * memory.limit;
+        return row;
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
+                           A& a, B& b)
+    {
+        build<Real>(row, substep, a, b);
+        const Real lambda = impulse.motor + impulse.spring + impulse.limit;
+        push(substep, lambda, a, b);
+    }
+
+    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants& step, const Row& row, const Substep& substep, Impulse& impulse,
+                      A& a, B& b)
+    {
+        const Real before = impulse.motor + impulse.spring + impulse.limit;
+        Real speed = dot(substep.axis, linear_of(b) - linear_of(a)) + dot(substep.lever_b, angular_of(b)) -
+                     dot(substep.lever_a, angular_of(a));
+        if constexpr (!slides) speed = dot(substep.axis, angular_of(b) - angular_of(a));
+
+        const auto change_to = [&](Real& held, const Real& wanted) {
+            speed = speed + substep.inverse_mass * (wanted - held);
+            held = wanted;
+        };
+        // A spring is physics: relaxation leaves it as it is.
+        change_to(impulse.spring, impulse.spring -
+                                      row.spring.mass_scale * substep.mass *
+                                          (speed + row.spring.rate * (substep.value - row.spring_target)) -
+                                      row.spring.impulse_scale * impulse.spring);
+        const Real motor = impulse.motor - substep.mass * (speed - row.motor_speed);
+        change_to(impulse.motor, maximum(minimum(motor, row.motor_max_impulse), -row.motor_max_impulse));
+
+        const Real above = substep.value - row.lower, below = row.upper - substep.value;
+        const Real at_lower =
+            maximum(limit_impulse<relax>(step, above, speed, substep.mass, impulse.limit), Real(0));
+        // The upper limit is the lower one of the mirrored coordinate.
+        const Real at_upper =
+            -maximum(limit_impulse<relax>(step, below, -speed, substep.mass, -impulse.limit), Real(0));
+        // One limit at a time, the nearer one; a coordinate without room between them is held from both sides.
+        const Real both = select(row.lower < row.upper, select(above < below, at_lower, at_upper),
+                                 lock_impulse<relax>(step, above, speed, substep.mass, impulse.limit));
+        change_to(impulse.limit, both);
+
+        push(substep, impulse.motor + impulse.spring + impulse.limit - before, a, b);
+    }
+
+    template <class Real, class Row, class Substep, class A, class B>
+    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    {
+        Substep now;
+        build<Real>(row, now, a, b);
+        const Real wrong = minimum(now.value - row.lower, Real(0)) + maximum(now.value - row.upper, Real(0));
+        const Real lambda = -(now.mass * wrong);
+        if constexpr (slides) {
+            displace(a, -(lambda * now.axis), -(lambda * now.lever_a));
+            displace(b, lambda * now.axis, lambda * now.lever_b);
+        } else {
+            const Vec3<Real> none{Real(0), Real(0), Real(0)};
+            displace(a, none, -(lambda * now.axis));
+            displace(b, none, lambda * now.axis);
+        }
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    {
+        return {impulse.motor, impulse.spring, impulse.limit};
+    }
+
+    /// What it did and how far beyond its limits it is, from the poses now, in double.
+    static JointReport report(const Definition& drive, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b, double inverse_substep)
+    {
+        const Quat<double> frame_a = a.orientation * unit(convert<double>(drive.frame_a.rotation));
+        const Quat<double> frame_b = b.orientation * unit(convert<double>(drive.frame_b.rotation));
+        const Vec3<double> d = anchor_separation(a, b, drive.frame_a.position, drive.frame_b.position);
+        const double lambda =
+            inverse_substep * (static_cast<double>(memory.motor) + static_cast<double>(memory.spring) +
+                               static_cast<double>(memory.limit));
+        const Quat<double> q = conjugate(frame_a) * frame_b;
+        const double value =
+            slides ? dot(axis_x(frame_a), d) : 2 * std::atan2(q.w < 0 ? -q.x : q.x, std::abs(q.w));
+        const double wrong = std::fmax(0.0, std::fmax(static_cast<double>(drive.lower) - value,
+                                                      value - static_cast<double>(drive.upper)));
+        JointReport report;
+        (slides ? report.force : report.torque) = convert<float>(lambda * axis_x(frame_a));
+        (slides ? report.error : report.angle_error) = static_cast<float>(wrong);
+        if (memory.limit != 0) {
+            report.state = memory.limit > 0 ? JointState::lower : JointState::upper;
+        } else if (drive.motor_max_force > 0 || drive.spring_hertz > 0) {
+            report.state = JointState::active;
+        }
+        return report;
+    }
+
+  private:
+    /// What the accumulated impulse of a limit C >= 0 wants to be.
+    template <bool relax, class Real>
+    static Real limit_impulse(const StepConstants& step, const Real& c, const Real& speed, const Real& mass,
+                              const Real& held)
+    {
+        const auto room = c > Real(0);
+        // Before the limit: it may be reached within the substep and no further.
+        const Real closing = Real(step.inverse_substep) * c;
+        const Real soft = relax ? Real(0) : maximum(Real(step.joint.rate) * c, Real(-step.push_out_speed));
+        const Real mass_scale = relax ? Real(1) : select(room, Real(1), Real(step.joint.mass_scale));
+        const Real impulse_scale = relax ? Real(0) : select(room, Real(0), Real(step.joint.impulse_scale));
+        return held - mass_scale * mass * (speed + select(room, closing, soft)) - impulse_scale * held;
+    }
+    /// The same of an equality C = 0.
+    template <bool relax, class Real>
+    static Real lock_impulse(const StepConstants& step, const Real& c, const Real& speed, const Real& mass,
+                             const Real& held)
+    {
+        if constexpr (relax) return held - mass * speed;
+        return held - Real(step.joint.mass_scale) * mass * (speed + Real(step.joint.rate) * c) -
+               Real(step.joint.impulse_scale) * held;
+    }
+
+    template <class Real, class Row, class Substep, class A, class B>
+    static void build(const Row& row, Substep& substep, const A& a, const B& b)
+    {
+        const Quat<Real> frame_a = turn_of(a) * row.start_frame_a;
+        if constexpr (slides) {
+            const Vec3<Real> arm_a = rotate(turn_of(a), row.start_arm_a),
+                             arm_b = rotate(turn_of(b), row.start_arm_b);
+            const Vec3<Real> d = row.start_separation + (to_three(b.delta) - to_three(a.delta)) +
+                                 (arm_b - row.start_arm_b) - (arm_a - row.start_arm_a);
+            substep.axis = axis_x(frame_a);
+            substep.lever_a = cross(arm_a + d, substep.axis);
+            substep.lever_b = cross(arm_b, substep.axis);
+            substep.value = dot(substep.axis, d);
+            substep.inverse_mass =
+                dot(substep.axis, over_mass(a, substep.axis) + over_mass(b, substep.axis)) +
+                dot(substep.lever_a, over_inertia(a, substep.lever_a)) +
+                dot(substep.lever_b, over_inertia(b, substep.lever_b));
+        } else {
+            const Quat<Real> frame_b = turn_of(b) * row.start_frame_b;
+            const Quat<Real> q = relative_rotation(frame_a, frame_b);
+            const Vec3<Real> x_a = axis_x(frame_a), x_b = axis_x(frame_b);
+            // The axes of a hinge never come near opposite; without one, half a turn of swing has no twist.
+            const Real scale = Real(1) / maximum(Real(1) + dot(x_a, x_b), Real(0.01F));
+            substep.axis = scale * (x_a + x_b);
+            substep.lever_a = substep.lever_b = substep.axis;
+            substep.value = Real(2) * arc_tangent2(q.x, q.w);
+            substep.inverse_mass =
+                dot(substep.axis, over_inertia(a, substep.axis) + over_inertia(b, substep.axis));
+        }
+        const Real size = slides ? linear_size(a) + linear_size(b) : angular_size(a) + angular_size(b);
+        const auto usable = substep.inverse_mass > Real(rounding_share) * size;
+        substep.mass = select(usable, inverse_or_zero(substep.inverse_mass), Real(0));
+    }
+
+    template <class Real, class Substep, class A, class B>
+    static void push(const Substep& substep, const Real& lambda, A& a, B& b)
+    {
+        if constexpr (slides) {
+            apply_wrench(a, -(lambda * substep.axis), -(lambda * substep.lever_a));
+            apply_wrench(b, lambda * substep.axis, lambda * substep.lever_b);
+        } else {
+            const Vec3<Real> none{Real(0), Real(0), Real(0)};
+            apply_wrench(a, none, -(lambda * substep.axis));
+            apply_wrench(b, none, lambda * substep.axis);
+        }
+    }
+};
+
+}  // namespace motley

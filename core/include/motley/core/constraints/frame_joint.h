@@ -1,0 +1,304 @@
+// Joints that lock axes of a frame on b to those of a frame on a: one row an axis, all rows of a joint solved at once.
+//
+//   point          C = d,  d = p_b - p_a        rows [-1, [r_a]x, 1, -[r_b]x]
+//   plane, line    C = e . d, e = x; y and z of a            [-e, -(r_a + d) x e, e, r_b x e]
+//   all            C = 2 vec(q_a* q_b), w >= 0               [0, -G, 0, G], G = (w - [v]x) F_a^T
+//   swing          C = (y_a . x_b, z_a . x_b)                [0, -g, 0, g], g = x_b x y_a, x_b x z_a
+//   perpendicular  C = x_a . y_b                             [0, -g, 0, g], g = y_b x x_a
+//
+// The lever of a ends where b's anchor is (r_a + d, not r_a): e turns with a. Swing has a false solution half a turn
+// away: x_a . x_b < 0, which no small motion reaches.
+#pragma once
+
+#include <cmath>
+
+#include "motley/core/constraints/frame_joint_definition.h"
+#include "motley/core/invalid_input.h"
+#include "motley/core/joint_checks.h"
+#include "motley/core/joint_report.h"
+#include "motley/core/lane_softness.h"
+#include "motley/core/small_system.h"
+#include "motley/core/wrench.h"
+
+namespace motley {
+
+constexpr int rows_of(LinearLock lock)
+{
+    return static_cast<int>(lock);
+}
+constexpr int rows_of(AngularLock lock)
+{
+    return static_cast<int>(lock);
+}
+
+template <LinearLock linear_lock, AngularLock angular_lock>
+struct FrameJoint {
+    using Definition = FrameJointDefinition<linear_lock, angular_lock>;
+    static constexpr bool has_restitution = false;
+    static constexpr bool recomputes_each_substep = true;
+    static constexpr bool needs_bodies_that_turn = true;
+    static constexpr int linear_rows = rows_of(linear_lock);
+    static constexpr int angular_rows = rows_of(angular_lock);
+    static constexpr int rows = linear_rows + angular_rows;
+
+    template <class Real>
+    struct Parameters {
+        Vec3<Real> position_a;
+        Real hertz;
+        Quat<Real> rotation_a;
+        Vec3<Real> position_b;
+        Real damping_ratio;
+        Quat<Real> rotation_b;
+    };
+    template <class Real>
+    struct Memory {
+        Real lambda[rows];  ///< N s of the linear rows, N m s of the angular ones
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        Vec3<Real> start_arm_a, start_arm_b;      ///< when the step began
+        Vec3<Real> start_separation;              ///< d
+        Quat<Real> start_frame_a, start_frame_b;  ///< world
+        LaneSoftness<Real> soft;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+        /// To b's anchor; of a point joint, of a its own anchor.
+        Vec3<Real> arm_a, arm_b;
+        Vec3<Real> linear[linear_lock == LinearLock::point || linear_rows == 0 ? 1 : linear_rows];  ///< e
+        Vec3<Real> angular[angular_rows == 0 ? 1 : angular_rows];                                   ///< g
+        SmallFactor<Real, rows> mass;
+        Real error[rows];  ///< C
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Impulse {
+        Real lambda[rows];
+    };
+
+    static void validate(const Definition& joint, const JointBodies& bodies)
+    {
+        check_joint_frame("frame_a", joint.frame_a, bodies.model_a, bodies.fixed_a);
+        check_joint_frame("frame_b", joint.frame_b, bodies.model_b, bodies.fixed_b);
+        check_range("stiffness.hertz", joint.stiffness.hertz, 0, 1e6F, "0 (the solver's) or up to 1e6 (Hz)");
+        check_range("stiffness.damping_ratio", joint.stiffness.damping_ratio, 0, 1e6F, "0 to 1e6");
+    }
+    static Parameters<float> parameters(const Definition& joint)
+    {
+        return {joint.frame_a.position, joint.stiffness.hertz,         unit(joint.frame_a.rotation),
+                joint.frame_b.position, joint.stiffness.damping_ratio, unit(joint.frame_b.rotation)};
+    }
+
+    template <class Real, class A, class B>
+    static auto prepare(const StepConstants& step, const Parameters<Real>& joint, const Memory<Real>& memory,
+                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
+                        Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        Row<Real, A::kind, B::kind> row;
+        row.start_arm_a = to_world(pose.orientation_a, joint.position_a);
+        row.start_arm_b = to_world(pose.orientation_b, joint.position_b);
+        row.start_separation = pose.between + row.start_arm_b - row.start_arm_a;
+        row.start_frame_a = to_world(pose.orientation_a, joint.rotation_a);
+        row.start_frame_b = to_world(pose.orientation_b, joint.rotation_b);
+        row.soft = softness_or(step, joint.hertz, joint.damping_ratio, step.joint);
+        for (int i = 0; i < rows; ++i) impulse.lambda[i] = Real(step.warm_start_scale) * memory.lambda[i];
+        return row;
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
+                           A& a, B& b)
+    {
+        build(row, substep, a, b);
+        push(substep, impulse.lambda, a, b, [](auto& body, const auto& linear, const auto& angular) {
+            apply_wrench(body, linear, angular);
+        });
+    }
+
+    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants&, const Row& row, const Substep& substep, Impulse& impulse, A& a,
+                      B& b)
+    {
+        const LaneSoftness<Real> soft = relax ? relaxed(row.soft) : row.soft;
+        Real change[rows];
+        speeds(substep, a, b, change);
+        for (int i = 0; i < rows; ++i) change[i] = -(change[i] + soft.rate * substep.error[i]);
+        solve_in_place(substep.mass, change);
+        for (int i = 0; i < rows; ++i) {
+            change[i] = soft.mass_scale * change[i] - soft.impulse_scale * impulse.lambda[i];
+            impulse.lambda[i] = impulse.lambda[i] + change[i];
+        }
+        push(substep, change, a, b, [](auto& body, const auto& linear, const auto& angular) {
+            apply_wrench(body, linear, angular);
+        });
+    }
+
+    template <class Real, class Row, class Substep, class A, class B>
+    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    {
+        Substep now;
+        build(row, now, a, b);
+        // Springs are forces, not positions.
+        const auto own = row.soft.is_own > Real(0);
+        Real change[rows];
+        for (int i = 0; i < rows; ++i) change[i] = select(own, Real(0), -now.error[i]);
+        solve_in_place(now.mass, change);
+        push(now, change, a, b,
+             [](auto& body, const auto& linear, const auto& angular) { displace(body, linear, angular); });
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    {
+        Memory<Real> memory;
+        for (int i = 0; i < rows; ++i) memory.lambda[i] = impulse.lambda[i];
+        return memory;
+    }
+
+    /// What it did and how far off it is, from the poses now, in double.
+    static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b, double inverse_substep)
+    {
+        const Quat<double> frame_a = a.orientation * unit(convert<double>(joint.frame_a.rotation));
+        const Quat<double> frame_b = b.orientation * unit(convert<double>(joint.frame_b.rotation));
+        const Vec3<double> d = anchor_separation(a, b, joint.frame_a.position, joint.frame_b.position);
+        Vec3<double> linear[3], angular[3];
+        double error[6] = {};
+        linear_rows_of(frame_a, d, linear, error);
+        angular_rows_of(frame_a, frame_b, angular, error + linear_rows);
+        Vec3<double> force{}, torque{};
+        double linear_error = 0, angular_error = 0;
+        for (int i = 0; i < rows; ++i) {
+            const double lambda = inverse_substep * static_cast<double>(memory.lambda[i]);
+            if (i < linear_rows) {
+                force = force + lambda * linear[i];
+                linear_error += error[i] * error[i];
+            } else {
+                torque = torque + lambda * angular[i - linear_rows];
+                angular_error += error[i] * error[i];
+            }
+        }
+        return {convert<float>(force), convert<float>(torque), static_cast<float>(std::sqrt(linear_error)),
+                static_cast<float>(std::sqrt(angular_error)), JointState::active};
+    }
+
+  private:
+    template <class Real>
+    static void linear_rows_of(const Quat<Real>& frame_a, const Vec3<Real>& d, Vec3<Real>* e, Real* error)
+    {
+        if constexpr (linear_lock == LinearLock::point) {
+            e[0] = {Real(1), Real(0), Real(0)};
+            e[1] = {Real(0), Real(1), Real(0)};
+            e[2] = {Real(0), Real(0), Real(1)};
+        } else if constexpr (linear_lock == LinearLock::line) {
+            e[0] = axis_y(frame_a);
+            e[1] = axis_z(frame_a);
+        } else if constexpr (linear_lock == LinearLock::plane) {
+            e[0] = axis_x(frame_a);
+        }
+        for (int i = 0; i < linear_rows; ++i) error[i] = dot(e[i], d);
+    }
+    template <class Real>
+    static void angular_rows_of(const Quat<Real>& frame_a, const Quat<Real>& frame_b, Vec3<Real>* g,
+                                Real* error)
+    {
+        if constexpr (angular_lock == AngularLock::all) {
+            const Quat<Real> q = relative_rotation(frame_a, frame_b);
+            g[0] = rotate(frame_a, Vec3<Real>{q.w, q.z, -q.y});
+            g[1] = rotate(frame_a, Vec3<Real>{-q.z, q.w, q.x});
+            g[2] = rotate(frame_a, Vec3<Real>{q.y, -q.x, q.w});
+            error[0] = q.x + q.x;
+            error[1] = q.y + q.y;
+            error[2] = q.z + q.z;
+        } else if constexpr (angular_lock == AngularLock::swing) {
+            const Vec3<Real> x_b = axis_x(frame_b), y_a = axis_y(frame_a), z_a = axis_z(frame_a);
+            g[0] = cross(x_b, y_a);
+            g[1] = cross(x_b, z_a);
+            error[0] = dot(y_a, x_b);
+            error[1] = dot(z_a, x_b);
+        } else if constexpr (angular_lock == AngularLock::perpendicular) {
+            const Vec3<Real> x_a = axis_x(frame_a), y_b = axis_y(frame_b);
+            g[0] = cross(y_b, x_a);
+            error[0] = dot(x_a, y_b);
+        }
+    }
+
+    /// J, its C and the factors of J M^-1 J^T where the bodies are now.
+    template <class Row, class Substep, class A, class B>
+    static void build(const Row& row, Substep& substep, const A& a, const B& b)
+    {
+        using Real = std::remove_cvref_t<decltype(row.soft.rate)>;
+        const Vec3<Real> arm_a = rotate(turn_of(a), row.start_arm_a);
+        substep.arm_b = rotate(turn_of(b), row.start_arm_b);
+        const Quat<Real> frame_a = turn_of(a) * row.start_frame_a;
+        // Only differences, so nothing is lost far from the origin.
+        const Vec3<Real> d = row.start_separation + (to_three(b.delta) - to_three(a.delta)) +
+                             (substep.arm_b - row.start_arm_b) - (arm_a - row.start_arm_a);
+        substep.arm_a = linear_lock == LinearLock::point ? arm_a : arm_a + d;
+        Vec3<Real> e[3];
+        linear_rows_of(frame_a, d, e, substep.error);
+        if constexpr (linear_lock != LinearLock::point) {
+            for (int i = 0; i < linear_rows; ++i) substep.linear[i] = e[i];
+        }
+        if constexpr (angular_rows > 0) {
+            angular_rows_of(frame_a, turn_of(b) * row.start_frame_b, substep.angular,
+                            substep.error + linear_rows);
+        }
+
+        Vec3<Real> lever_a[rows], lever_b[rows];
+        for (int i = 0; i < linear_rows; ++i) {
+            lever_a[i] = cross(substep.arm_a, e[i]);
+            lever_b[i] = cross(substep.arm_b, e[i]);
+        }
+        for (int i = linear_rows; i < rows; ++i) lever_a[i] = lever_b[i] = substep.angular[i - linear_rows];
+        Real k[rows][rows];
+        for (int i = 0; i < rows; ++i) {
+            const Vec3<Real> turn_a = over_inertia(a, lever_a[i]), turn_b = over_inertia(b, lever_b[i]);
+            for (int j = 0; j <= i; ++j) {
+                k[i][j] = dot(turn_a, lever_a[j]) + dot(turn_b, lever_b[j]);
+                if (i < linear_rows) k[i][j] = k[i][j] + dot(over_mass(a, e[i]) + over_mass(b, e[i]), e[j]);
+            }
+        }
+        const Real linear_floor = Real(rounding_share) * (linear_size(a) + linear_size(b));
+        const Real angular_floor = Real(rounding_share) * (angular_size(a) + angular_size(b));
+        Real floor[rows];
+        for (int i = 0; i < rows; ++i) floor[i] = i < linear_rows ? linear_floor : angular_floor;
+        substep.mass = factor<Real, rows>(k, floor);
+    }
+
+    /// J v.
+    template <class Real, class Substep, class A, class B>
+    static void speeds(const Substep& substep, const A& a, const B& b, Real (&speed)[rows])
+    {
+        const Vec3<Real> turn = angular_of(b) - angular_of(a);
+        if constexpr (linear_rows > 0) {
+            const Vec3<Real> v = (linear_of(b) + cross(angular_of(b), substep.arm_b)) -
+                                 (linear_of(a) + cross(angular_of(a), substep.arm_a));
+            if constexpr (linear_lock == LinearLock::point) {
+                speed[0] = v.x;
+                speed[1] = v.y;
+                speed[2] = v.z;
+            } else {
+                for (int i = 0; i < linear_rows; ++i) speed[i] = dot(substep.linear[i], v);
+            }
+        }
+        for (int i = linear_rows; i < rows; ++i) speed[i] = dot(substep.angular[i - linear_rows], turn);
+    }
+
+    /// J^T lambda to both bodies, by `apply(body, linear, angular)`.
+    template <class Real, class Substep, class A, class B, class Apply>
+    static void push(const Substep& substep, const Real (&lambda)[rows], A& a, B& b, const Apply& apply)
+    {
+        Vec3<Real> linear{Real(0), Real(0), Real(0)}, angular = linear;
+        if constexpr (linear_lock == LinearLock::point) {
+            linear = {lambda[0], lambda[1], lambda[2]};
+        } else {
+            for (int i = 0; i < linear_rows; ++i) linear = linear + lambda[i] * substep.linear[i];
+        }
+        for (int i = linear_rows; i < rows; ++i)
+            angular = angular + lambda[i] * substep.angular[i - linear_rows];
+        apply(a, -linear, -(cross(substep.arm_a, linear) + angular));
+        apply(b, linear, cross(substep.arm_b, linear) + angular);
+    }
+};
+
+}  // namespace motley

@@ -1,0 +1,27 @@
+// What a joint tells of itself.
+#pragma once
+
+#include <cstdint>
+
+#include "motley/core/vector.h"
+
+namespace motley {
+
+/// Whether a joint had anything to say in the last substep.
+enum class JointState : std::uint8_t {
+    inactive,  ///< a limit or rope with room on every side
+    active,    ///< holds, drives or springs
+    lower,     ///< at its lower limit
+    upper      ///< at its upper limit; of a rope: taut
+};
+
+/// What a joint did in the last substep of the last step, and how far off it is now.
+struct JointReport {
+    Vec3<float> force{};    ///< N, world, on body b at its anchor
+    Vec3<float> torque{};   ///< N m, world, on body b about its anchor
+    float error = 0;        ///< m: the length of the linear part of C, of a limit only what it is beyond it
+    float angle_error = 0;  ///< rad, of the angular part
+    JointState state = JointState::inactive;
+};
+
+}  // namespace motley

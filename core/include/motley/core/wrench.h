@@ -1,0 +1,181 @@
+// Bodies that turn, seen in three dimensions whatever their kind: twists (linear and angular velocity) and wrenches
+// (an impulse and a turning impulse), for constraints whose rows may point anywhere. What a kind cannot do has no
+// inverse mass, and so no effect.
+#pragma once
+
+#include "motley/core/joint_pose.h"
+
+namespace motley {
+
+// ---- velocities -----------------------------------------------------------------------------------------------------
+
+template <class Real, BodyKind kind>
+Vec3<Real> linear_of(const LaneBody<Real, kind>& body)
+{
+    return to_three(body.linear);
+}
+template <class Real, BodyKind kind>
+Vec3<Real> angular_of(const LaneBody<Real, kind>& body)
+{
+    return body.angular;
+}
+template <class Real>
+Vec3<Real> angular_of(const LaneBody<Real, BodyKind::planar>& body)
+{
+    return {Real(0), Real(0), body.yaw_rate};
+}
+
+// ---- M^-1 -----------------------------------------------------------------------------------------------------------
+
+template <class Real>
+Vec3<Real> over_mass(const LaneBody<Real, BodyKind::rigid>& body, const Vec3<Real>& v)
+{
+    return body.inverse_mass * v;
+}
+template <class Real>
+Vec3<Real> over_mass(const LaneBody<Real, BodyKind::planar>& body, const Vec3<Real>& v)
+{
+    return {body.inverse_mass * v.x, body.inverse_mass * v.y, Real(0)};
+}
+template <class Real>
+Vec3<Real> over_mass(const LaneBody<Real, BodyKind::fixed>&, const Vec3<Real>&)
+{
+    return {Real(0), Real(0), Real(0)};
+}
+template <class Real>
+Vec3<Real> over_inertia(const LaneBody<Real, BodyKind::rigid>& body, const Vec3<Real>& v)
+{
+    return body.inverse_inertia * v;
+}
+template <class Real>
+Vec3<Real> over_inertia(const LaneBody<Real, BodyKind::planar>& body, const Vec3<Real>& v)
+{
+    return {Real(0), Real(0), body.inverse_inertia * v.z};
+}
+template <class Real>
+Vec3<Real> over_inertia(const LaneBody<Real, BodyKind::fixed>&, const Vec3<Real>&)
+{
+    return {Real(0), Real(0), Real(0)};
+}
+
+/// The size of M^-1, against which a row that a body cannot follow is told from one that it hardly can: a planar body
+/// has no mass across its plane but rounding.
+template <class Real, BodyKind kind>
+Real linear_size(const LaneBody<Real, kind>& body)
+{
+    return body.inverse_mass;
+}
+template <class Real>
+Real linear_size(const LaneBody<Real, BodyKind::fixed>&)
+{
+    return Real(0);
+}
+template <class Real>
+Real angular_size(const LaneBody<Real, BodyKind::rigid>& body)
+{
+    return body.inverse_inertia.xx + body.inverse_inertia.yy + body.inverse_inertia.zz;
+}
+template <class Real>
+Real angular_size(const LaneBody<Real, BodyKind::planar>& body)
+{
+    return body.inverse_inertia;
+}
+template <class Real>
+Real angular_size(const LaneBody<Real, BodyKind::fixed>&)
+{
+    return Real(0);
+}
+/// Share of that size below which a row is nothing but rounding: a direction off by 1e-5, squared.
+inline constexpr float rounding_share = 1e-10F;
+
+// ---- v += M^-1 (linear, angular) ------------------------------------------------------------------------------------
+
+template <class Real>
+void apply_wrench(LaneBody<Real, BodyKind::rigid>& body, const Vec3<Real>& linear, const Vec3<Real>& angular)
+{
+    body.linear = body.linear + over_mass(body, linear);
+    body.angular = body.angular + over_inertia(body, angular);
+}
+template <class Real>
+void apply_wrench(LaneBody<Real, BodyKind::planar>& body, const Vec3<Real>& linear, const Vec3<Real>& angular)
+{
+    body.linear = body.linear + body.inverse_mass * Vec2<Real>{linear.x, linear.y};
+    body.yaw_rate = body.yaw_rate + body.inverse_inertia * angular.z;
+}
+template <class Real>
+void apply_wrench(LaneBody<Real, BodyKind::fixed>&, const Vec3<Real>&, const Vec3<Real>&)
+{
+}
+
+/// The same to positions: the displacement of an impulse of a position solve.
+template <class Real>
+void displace(LaneBody<Real, BodyKind::rigid>& body, const Vec3<Real>& linear, const Vec3<Real>& angular)
+{
+    body.delta = body.delta + over_mass(body, linear);
+    body.delta_rotation = normalised(rotation_by(over_inertia(body, angular)) * body.delta_rotation);
+}
+template <class Real>
+void displace(LaneBody<Real, BodyKind::planar>& body, const Vec3<Real>& linear, const Vec3<Real>& angular)
+{
+    body.delta = body.delta + body.inverse_mass * Vec2<Real>{linear.x, linear.y};
+    body.delta_yaw = body.delta_yaw + body.inverse_inertia * angular.z;
+}
+template <class Real>
+void displace(LaneBody<Real, BodyKind::fixed>&, const Vec3<Real>&, const Vec3<Real>&)
+{
+}
+
+// ---- orientations ---------------------------------------------------------------------------------------------------
+
+/// How far a body has turned since the step began.
+template <class Real, BodyKind kind>
+Quat<Real> turn_of(const LaneBody<Real, kind>& body)
+{
+    return body.delta_rotation;
+}
+template <class Real>
+Quat<Real> turn_of(const LaneBody<Real, BodyKind::planar>& body)
+{
+    const SineCosine<Real> half = sine_cosine(Real(0.5F) * body.delta_yaw);
+    return {Real(0), Real(0), half.sine, half.cosine};
+}
+
+/// A rotation in the frame of a body, seen from the world.
+template <class Real, BodyKind kind>
+Quat<Real> to_world(const Orientation<Real, kind>& o, const Quat<Real>& local)
+{
+    return o.rotation * local;
+}
+template <class Real>
+Quat<Real> to_world(const Orientation<Real, BodyKind::planar>& o, const Quat<Real>& local)
+{
+    const SineCosine<Real> half = sine_cosine(Real(0.5F) * o.yaw);
+    return Quat<Real>{Real(0), Real(0), half.sine, half.cosine} * local;
+}
+
+/// The rotation from a to b in the frame of a, with w >= 0: of the two quaternions the one of the shorter turn.
+template <class Real>
+Quat<Real> relative_rotation(const Quat<Real>& a, const Quat<Real>& b)
+{
+    const Quat<Real> q = conjugate(a) * b;
+    const auto far = q.w < Real(0);
+    return {select(far, -q.x, q.x), select(far, -q.y, q.y), select(far, -q.z, q.z), select(far, -q.w, q.w)};
+}
+
+template <class Real>
+Vec3<Real> axis_x(const Quat<Real>& frame)
+{
+    return rotate(frame, Vec3<Real>{Real(1), Real(0), Real(0)});
+}
+template <class Real>
+Vec3<Real> axis_y(const Quat<Real>& frame)
+{
+    return rotate(frame, Vec3<Real>{Real(0), Real(1), Real(0)});
+}
+template <class Real>
+Vec3<Real> axis_z(const Quat<Real>& frame)
+{
+    return rotate(frame, Vec3<Real>{Real(0), Real(0), Real(1)});
+}
+
+}  // namespace motley
