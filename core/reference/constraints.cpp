@@ -122,6 +122,24 @@ Jacobian drive_jacobian(const Body& a, const Body& b, const Frame& frame_a, cons
     return j;
 }
 
+double swing_angle(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b)
+{
+    const Eigen::Vector3d x_a = a.orientation * (frame_a.rotation * Eigen::Vector3d::UnitX());
+    const Eigen::Vector3d x_b = b.orientation * (frame_b.rotation * Eigen::Vector3d::UnitX());
+    return std::atan2(x_a.cross(x_b).norm(), x_a.dot(x_b));
+}
+
+Jacobian swing_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b)
+{
+    const Eigen::Vector3d x_a = a.orientation * (frame_a.rotation * Eigen::Vector3d::UnitX());
+    const Eigen::Vector3d x_b = b.orientation * (frame_b.rotation * Eigen::Vector3d::UnitX());
+    Jacobian j = Jacobian::Zero(1, 12);
+    const Eigen::Vector3d n = x_a.cross(x_b).stableNormalized();
+    j.block<1, 3>(0, 3) = -n.transpose();
+    j.block<1, 3>(0, 9) = n.transpose();
+    return j;
+}
+
 Jacobian direction_jacobian(const Eigen::Vector3d& direction, const Eigen::Vector3d& arm_a,
                             const Eigen::Vector3d& arm_b)
 {
@@ -141,7 +159,11 @@ Eigen::Matrix<double, 12, 12> pair_inverse_mass(const Body& a, const Body& b)
 
 Eigen::MatrixXd effective_mass(const Jacobian& jacobian, const Body& a, const Body& b)
 {
-    const Eigen::MatrixXd k = jacobian * pair_inverse_mass(a, b) * jacobian.transpose();
+    const Eigen::Matrix<double, 12, 12> inverse_mass = pair_inverse_mass(a, b);
+    const Eigen::MatrixXd k = jacobian * inverse_mass * jacobian.transpose();
+    // Rows across everything that the pair can do: nothing but rounding, and nothing to invert.
+    if (k.diagonal().maxCoeff() < 1e-12 * inverse_mass.diagonal().maxCoeff())
+        return Eigen::MatrixXd::Zero(k.rows(), k.cols());
     return k.completeOrthogonalDecomposition().pseudoInverse();
 }
 

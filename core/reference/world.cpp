@@ -12,6 +12,13 @@ Eigen::Vector3d eigen(const Vec3<float>& v)
     return {v.x, v.y, v.z};
 }
 
+/// C <= 0: it only pulls back.
+bool is_one_sided(const Joint& joint)
+{
+    return joint.kind == Joint::Kind::swing_limit ||
+           (joint.kind == Joint::Kind::distance && joint.mode == DistanceMode::rope);
+}
+
 }  // namespace
 
 struct World::JointRow {
@@ -80,6 +87,8 @@ Jacobian World::jacobian_of(const Joint& joint) const
             return distance_jacobian(a, b, joint.local_a, joint.local_b);
         case Joint::Kind::frames:
             return frame_jacobian(a, b, joint.frame_a, joint.frame_b, joint.linear, joint.angular);
+        case Joint::Kind::swing_limit:
+            return swing_jacobian(a, b, joint.frame_a, joint.frame_b);
         case Joint::Kind::drive:
             return drive_jacobian(a, b, joint.frame_a, joint.frame_b, joint.axis);
         case Joint::Kind::ball_socket:
@@ -99,6 +108,9 @@ Eigen::VectorXd World::error_of(const Joint& joint) const
                 1, distance_error(a, b, joint.local_a, joint.local_b, joint.length));
         case Joint::Kind::frames:
             return frame_error(a, b, joint.frame_a, joint.frame_b, joint.linear, joint.angular);
+        case Joint::Kind::swing_limit:
+            return Eigen::VectorXd::Constant(1,
+                                             swing_angle(a, b, joint.frame_a, joint.frame_b) - joint.length);
         case Joint::Kind::drive: {
             // What a position solve mends: how far the coordinate is beyond its limits.
             const double value = drive_value(a, b, joint.frame_a, joint.frame_b, joint.axis);
@@ -131,7 +143,7 @@ World::JointRow World::begin_joint(Joint& joint, double h, const SolverSettings&
                  spring ? soft : rigid,
                  std::numeric_limits<double>::max()};
     row.relax_bias = row.relax_soft.rate * error;
-    if (joint.kind == Joint::Kind::distance && joint.mode == DistanceMode::rope) {
+    if (is_one_sided(joint)) {
         row.upper = 0;
         if (error(0) < 0) {  // slack: it may tighten within the substep and no further
             row.soft = rigid;
@@ -313,8 +325,7 @@ void World::project(std::vector<ContactRow>& contacts, const SolverSettings& set
         // Springs are forces, not positions.
         if (joint.hertz > 0 && joint.kind != Joint::Kind::drive) continue;
         Eigen::VectorXd error = error_of(joint);
-        if (joint.kind == Joint::Kind::distance && joint.mode == DistanceMode::rope)
-            error = error.cwiseMax(0.0);
+        if (is_one_sided(joint)) error = error.cwiseMax(0.0);
         const Jacobian j = jacobian_of(joint);
         move(joint.a, joint.b, j,
              -effective_mass(j, bodies[static_cast<std::size_t>(joint.a)],

@@ -267,6 +267,105 @@ TEST(BadInput, EveryFieldOfAJointIsChecked)
     for (const Case& c : cases) expect_refused(c);
 }
 
+/// Spoils one field of a joint between frames.
+template <class Definition>
+Case frames(const char* what, std::function<void(Definition&, Fixture&)> spoil, const char* field,
+            const char* value)
+{
+    return {what,
+            [spoil](Fixture& f) {
+                Definition joint;
+                joint.body_a = f.rigid;
+                joint.body_b = f.planar;
+                spoil(joint, f);
+                f.scene.add_joint(joint);
+            },
+            field, value};
+}
+
+/// The fields that every joint between frames has.
+template <class Definition>
+void expect_frames_are_checked()
+{
+    using J = Definition;
+    const Case cases[] = {
+        frames<J>(
+            "null body", [](J& j, Fixture&) { j.body_b = {}; }, "body_b", "null"),
+        frames<J>(
+            "a particle", [](J& j, Fixture& f) { j.body_a = f.particle; }, "frame_a", "particle"),
+        frames<J>(
+            "b particle", [](J& j, Fixture& f) { j.body_b = f.particle; }, "frame_b", "particle"),
+        frames<J>(
+            "position a", [](J& j, Fixture&) { j.frame_a.position.y = nan; }, "frame_a.position.y", "nan"),
+        frames<J>(
+            "position b", [](J& j, Fixture&) { j.frame_b.position.z = 2e9F; }, "frame_b.position.z", "2e+09"),
+        frames<J>(
+            "rotation a",
+            [](J& j, Fixture&) {
+                j.frame_a.rotation = {0, 0, 0, 0};
+            },
+            "frame_a.rotation", "0"),
+        frames<J>(
+            "rotation b", [](J& j, Fixture&) { j.frame_b.rotation.w = infinity; }, "frame_b.rotation", "inf"),
+        frames<J>(
+            "rotation NaN", [](J& j, Fixture&) { j.frame_b.rotation.x = nan; }, "frame_b.rotation", "nan"),
+    };
+    for (const Case& c : cases) expect_refused(c);
+}
+
+TEST(BadInput, EveryFieldOfAFrameJointADriveAndASwingLimitIsChecked)
+{
+    expect_frames_are_checked<FixedDefinition>();
+    expect_frames_are_checked<PointOnLineDefinition>();
+    expect_frames_are_checked<TwistDriveDefinition>();
+    expect_frames_are_checked<SwingLimitDefinition>();
+    using Hinge = HingeDefinition;
+    using Slide = SlideDriveDefinition;
+    using Twist = TwistDriveDefinition;
+    using Swing = SwingLimitDefinition;
+    const Case cases[] = {
+        frames<Hinge>(
+            "hertz", [](Hinge& j, Fixture&) { j.stiffness.hertz = -1; }, "stiffness.hertz", "-1"),
+        frames<Hinge>(
+            "hertz NaN", [](Hinge& j, Fixture&) { j.stiffness.hertz = nan; }, "stiffness.hertz", "nan"),
+        frames<Hinge>(
+            "damping", [](Hinge& j, Fixture&) { j.stiffness.damping_ratio = -2; }, "stiffness.damping_ratio",
+            "-2"),
+        frames<Slide>(
+            "lower above upper", [](Slide& j, Fixture&) { j.lower = 2, j.upper = 1; }, "lower", "2"),
+        frames<Slide>(
+            "lower NaN", [](Slide& j, Fixture&) { j.lower = nan; }, "lower", "nan"),
+        frames<Slide>(
+            "upper NaN", [](Slide& j, Fixture&) { j.upper = nan; }, "upper", "nan"),
+        frames<Slide>(
+            "upper far", [](Slide& j, Fixture&) { j.upper = 2e9F; }, "upper", "2e+09"),
+        frames<Slide>(
+            "lower infinite", [](Slide& j, Fixture&) { j.lower = infinity, j.upper = 1; }, "lower", "inf"),
+        frames<Slide>(
+            "speed", [](Slide& j, Fixture&) { j.motor_speed = infinity; }, "motor_speed", "inf"),
+        frames<Slide>(
+            "force", [](Slide& j, Fixture&) { j.motor_max_force = -1; }, "motor_max_force", "-1"),
+        frames<Slide>(
+            "spring hertz", [](Slide& j, Fixture&) { j.spring_hertz = nan; }, "spring_hertz", "nan"),
+        frames<Slide>(
+            "spring damping", [](Slide& j, Fixture&) { j.spring_damping_ratio = -1; }, "spring_damping_ratio",
+            "-1"),
+        frames<Slide>(
+            "spring target", [](Slide& j, Fixture&) { j.spring_target = infinity; }, "spring_target", "inf"),
+        frames<Twist>(
+            "upper beyond pi", [](Twist& j, Fixture&) { j.upper = 4; }, "upper", "4"),
+        frames<Twist>(
+            "target beyond pi", [](Twist& j, Fixture&) { j.spring_target = -4; }, "spring_target", "-4"),
+        frames<Swing>(
+            "negative", [](Swing& j, Fixture&) { j.max_angle = -0.5F; }, "max_angle", "-0.5"),
+        frames<Swing>(
+            "beyond pi", [](Swing& j, Fixture&) { j.max_angle = 3.5F; }, "max_angle", "3.5"),
+        frames<Swing>(
+            "NaN", [](Swing& j, Fixture&) { j.max_angle = nan; }, "max_angle", "nan"),
+    };
+    for (const Case& c : cases) expect_refused(c);
+}
+
 TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
 {
     const Vec3<float> v[2]{};

@@ -165,6 +165,26 @@ TEST(Reference, DriveJacobiansMatchFiniteDifferencesAlongMotionsThatTheirJointsA
     });
 }
 
+TEST(Reference, SwingJacobianMatchesFiniteDifferences)
+{
+    Random random(11);
+    for_every_pair([&](const Pair& p) {
+        const auto frame = [&] {
+            return Frame{Eigen::Vector3d::Zero(), Eigen::Quaterniond(random.symmetric(), random.symmetric(),
+                                                                     random.symmetric(), random.symmetric())
+                                                      .normalized()};
+        };
+        const Frame a = frame(), b = frame();
+        const double angle = swing_angle(p.a, p.b, a, b);
+        if (angle < 0.05 || angle > 3.1) return;  // no direction at the ends
+        const double difference = (swing_angle(p.moved(epsilon).a, p.moved(epsilon).b, a, b) -
+                                   swing_angle(p.moved(-epsilon).a, p.moved(-epsilon).b, a, b)) /
+                                  (2 * epsilon);
+        const double analytic = (swing_jacobian(p.a, p.b, a, b) * p.velocity())(0);
+        EXPECT_NEAR(difference, analytic, tolerance * (1 + std::abs(analytic)) / std::sin(angle));
+    });
+}
+
 TEST(Reference, ContactRowsMatchFiniteDifferencesOfTheGapBetweenMaterialPoints)
 {
     for_every_pair([](const Pair& p) {

@@ -305,7 +305,30 @@ TEST(AgainstReference, FrameJointsAgreeForEveryPairOfBodiesThatTurn)
         compare_frame_joints<LinearLock::point, AngularLock::all>(stiffness);
         compare_frame_joints<LinearLock::point, AngularLock::swing>(stiffness);
         compare_frame_joints<LinearLock::line, AngularLock::all>(stiffness);
+        compare_frame_joints<LinearLock::plane, AngularLock::none>(stiffness);
+        compare_frame_joints<LinearLock::line, AngularLock::none>(stiffness);
+        compare_frame_joints<LinearLock::none, AngularLock::all>(stiffness);
+        compare_frame_joints<LinearLock::none, AngularLock::swing>(stiffness);
+        compare_frame_joints<LinearLock::none, AngularLock::perpendicular>(stiffness);
     }
+}
+
+TEST(AgainstReference, SwingLimitsAgreeForEveryPairOfBodiesThatTurn)
+{
+    for_every_pair([](Twin& twin, testing::Random& random, const SolverSettings& settings,
+                      const std::string& name, int a, int b) {
+        if (a == 0 || b == 0) return;
+        SwingLimitDefinition limit{.body_a = twin.ids[0], .body_b = twin.ids[1], .max_angle = 0.1F};
+        std::tie(limit.frame_a, limit.frame_b) = random_frames(twin, random, a == 1 || b == 1, false);
+        twin.scene.add_joint(limit);
+        twin.world.joints.push_back({.kind = reference::Joint::Kind::swing_limit,
+                                     .a = 0,
+                                     .b = 1,
+                                     .length = limit.max_angle,
+                                     .frame_a = reference_frame(limit.frame_a),
+                                     .frame_b = reference_frame(limit.frame_b)});
+        run_joint(twin, settings, name);
+    });
 }
 
 TEST(AgainstReference, ContactsAgreeForEveryPairAndMethod)

@@ -3,6 +3,7 @@
 
 #include "motley/core/scene.h"
 #include "motley/core/settings.h"
+#include "motley/core/six_dof.h"
 #include "motley/core/step_report.h"
 #include "motley/parallel/executor.h"
 #include "motley/parallel/parallel_for.h"

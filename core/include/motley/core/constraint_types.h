@@ -7,6 +7,7 @@
 #include "motley/core/constraints/distance.h"
 #include "motley/core/constraints/drive.h"
 #include "motley/core/constraints/frame_joint.h"
+#include "motley/core/constraints/swing_limit.h"
 
 namespace motley {
 
@@ -23,14 +24,12 @@ struct FrameJointOf<FrameJointDefinition<linear, angular>> {
     using type = FrameJoint<linear, angular>;
 };
 
-using Fixed = FrameJointOf<FixedDefinition>::type;
-using Hinge = FrameJointOf<HingeDefinition>::type;
-using Slider = FrameJointOf<SliderDefinition>::type;
-
-using SlideDrive = Drive<DriveAxis::slide>;
-using TwistDrive = Drive<DriveAxis::twist>;
-
-using JointTypes = TypeList<BallSocket, Distance, Fixed, Hinge, Slider, SlideDrive, TwistDrive>;
+using JointTypes =
+    TypeList<BallSocket, Distance, FrameJointOf<FixedDefinition>::type, FrameJointOf<HingeDefinition>::type,
+             FrameJointOf<SliderDefinition>::type, FrameJointOf<PointOnPlaneDefinition>::type,
+             FrameJointOf<PointOnLineDefinition>::type, FrameJointOf<RotationLockDefinition>::type,
+             FrameJointOf<ParallelAxesDefinition>::type, FrameJointOf<PerpendicularAxesDefinition>::type,
+             Drive<DriveAxis::slide>, Drive<DriveAxis::twist>, SwingLimit>;
 
 /// Types of constraint in all: contacts first, then joints, each at its place in the lists.
 inline constexpr int contact_type_count = ContactTypes::size;

@@ -9,8 +9,13 @@ namespace motley {
 /// The factors of a symmetric positive semi-definite K of n rows.
 template <class Real, int n>
 struct SmallFactor {
-    Real lower[n * (n - 1) / 2 + (n == 1 ? 1 : 0)];  ///< of L, row by row below the diagonal
-    Real inverse_diagonal[n];                        ///< of D; 0 for a row that depends on those before it
+    Real lower[n * (n - 1) / 2];  ///< of L, row by row below the diagonal
+    Real inverse_diagonal[n];     ///< of D; 0 for a row that depends on those before it
+};
+
+template <class Real>
+struct SmallFactor<Real, 1> {
+    Real inverse_diagonal[1];
 };
 
 constexpr int below_diagonal(int row, int column)
@@ -43,6 +48,13 @@ SmallFactor<Real, n> factor(const Real (&k)[n][n], const Real (&floor)[n])
     return f;
 }
 
+template <class Real>
+SmallFactor<Real, 1> factor(const Real (&k)[1][1], const Real (&floor)[1])
+{
+    const auto usable = k[0][0] > floor[0];
+    return {{select(usable, Real(1) / select(usable, k[0][0], Real(1)), Real(0))}};
+}
+
 /// K^-1 x in place.
 template <class Real, int n>
 void solve_in_place(const SmallFactor<Real, n>& f, Real (&x)[n])
@@ -54,6 +66,12 @@ void solve_in_place(const SmallFactor<Real, n>& f, Real (&x)[n])
     for (int i = n; i-- > 0;) {
         for (int j = i + 1; j < n; ++j) x[i] = x[i] - f.lower[below_diagonal(j, i)] * x[j];
     }
+}
+
+template <class Real>
+void solve_in_place(const SmallFactor<Real, 1>& f, Real (&x)[1])
+{
+    x[0] = x[0] * f.inverse_diagonal[0];
 }
 
 }  // namespace motley

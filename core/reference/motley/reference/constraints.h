@@ -46,6 +46,10 @@ double drive_value(const Body& a, const Body& b, const Frame& frame_a, const Fra
 Jacobian drive_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
                         DriveAxis axis);
 
+/// The angle between the x axes of the frames, and its row [0, -n, 0, n], n = x_a x x_b / |x_a x x_b|.
+double swing_angle(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b);
+Jacobian swing_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b);
+
 /// [-n, -r_a x n, n, r_b x n]: the row of any direction at a contact, normal or tangent.
 Jacobian direction_jacobian(const Eigen::Vector3d& direction, const Eigen::Vector3d& arm_a,
                             const Eigen::Vector3d& arm_b);

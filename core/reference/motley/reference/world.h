@@ -16,11 +16,11 @@ namespace motley::reference {
 
 /// A joint between bodies of the world by index, of any kind.
 struct Joint {
-    enum class Kind { ball_socket, distance, frames, drive } kind = Kind::ball_socket;
+    enum class Kind { ball_socket, distance, frames, drive, swing_limit } kind = Kind::ball_socket;
     int a = 0, b = 0;
     Eigen::Vector3d local_a = Eigen::Vector3d::Zero(), local_b = Eigen::Vector3d::Zero();
     DistanceMode mode = DistanceMode::rod;
-    double length = 1;
+    double length = 1;                    ///< m; of a swing limit the largest angle, rad
     double hertz = 0, damping_ratio = 0;  ///< hertz > 0: a spring, also a drive's
     Frame frame_a{}, frame_b{};
     LinearLock linear = LinearLock::none;

@@ -16,6 +16,7 @@
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
+#include "motley/core/limit.h"
 #include "motley/core/wrench.h"
 
 namespace motley {
@@ -218,29 +219,6 @@ struct Drive {
     }
 
   private:
-    /// What the accumulated impulse of a limit C >= 0 wants to be.
-    template <bool relax, class Real>
-    static Real limit_impulse(const StepConstants& step, const Real& c, const Real& speed, const Real& mass,
-                              const Real& held)
-    {
-        const auto room = c > Real(0);
-        // Before the limit: it may be reached within the substep and no further.
-        const Real closing = Real(step.inverse_substep) * c;
-        const Real soft = relax ? Real(0) : maximum(Real(step.joint.rate) * c, Real(-step.push_out_speed));
-        const Real mass_scale = relax ? Real(1) : select(room, Real(1), Real(step.joint.mass_scale));
-        const Real impulse_scale = relax ? Real(0) : select(room, Real(0), Real(step.joint.impulse_scale));
-        return held - mass_scale * mass * (speed + select(room, closing, soft)) - impulse_scale * held;
-    }
-    /// The same of an equality C = 0.
-    template <bool relax, class Real>
-    static Real lock_impulse(const StepConstants& step, const Real& c, const Real& speed, const Real& mass,
-                             const Real& held)
-    {
-        if constexpr (relax) return held - mass * speed;
-        return held - Real(step.joint.mass_scale) * mass * (speed + Real(step.joint.rate) * c) -
-               Real(step.joint.impulse_scale) * held;
-    }
-
     template <class Real, class Row, class Substep, class A, class B>
     static void build(const Row& row, Substep& substep, const A& a, const B& b)
     {

@@ -54,19 +54,42 @@ struct FrameJoint {
     struct Memory {
         Real lambda[rows];  ///< N s of the linear rows, N m s of the angular ones
     };
+    /// What a joint without such rows has instead of a part; tagged, so that two of them need no room.
+    template <int tag>
+    struct Nothing {
+    };
+    template <bool has_it, int tag, class Part>
+    using IfNeeded = std::conditional_t<has_it, Part, Nothing<tag>>;
+    static constexpr bool has_arms = linear_rows > 0;
+    static constexpr bool has_axes = linear_lock == LinearLock::plane || linear_lock == LinearLock::line;
+    static constexpr bool has_turns = angular_rows > 0;
+
+    template <class Real>
+    struct Anchors {
+        Vec3<Real> arm_a, arm_b, separation;
+    };
+    template <class Real>
+    struct Arms {
+        Vec3<Real> a, b;  ///< a's leads to b's anchor; of a point joint to its own
+    };
+    template <class Real, int count>
+    struct Axes {
+        Vec3<Real> axis[count];
+    };
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
-        Vec3<Real> start_arm_a, start_arm_b;      ///< when the step began
-        Vec3<Real> start_separation;              ///< d
-        Quat<Real> start_frame_a, start_frame_b;  ///< world
+        // When the step began, in the world.
+        [[no_unique_address]] IfNeeded<has_arms, 0, Anchors<Real>> start;
+        [[no_unique_address]] IfNeeded<has_axes || has_turns, 1, Quat<Real>> start_frame_a;
+        [[no_unique_address]] IfNeeded<has_turns, 2, Quat<Real>> start_frame_b;
         LaneSoftness<Real> soft;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
-        /// To b's anchor; of a point joint, of a its own anchor.
-        Vec3<Real> arm_a, arm_b;
-        Vec3<Real> linear[linear_lock == LinearLock::point || linear_rows == 0 ? 1 : linear_rows];  ///< e
-        Vec3<Real> angular[angular_rows == 0 ? 1 : angular_rows];                                   ///< g
+        [[no_unique_address]] IfNeeded<has_arms, 0, Arms<Real>> arm;
+        [[no_unique_address]] IfNeeded<has_axes, 1, Axes<Real, has_axes ? linear_rows : 1>> linear;  ///< e
+        [[no_unique_address]] IfNeeded<has_turns, 2, Axes<Real, has_turns ? angular_rows : 1>>
+            angular;  ///< g
         SmallFactor<Real, rows> mass;
         Real error[rows];  ///< C
     };
@@ -94,11 +117,14 @@ struct FrameJoint {
                         Impulse<Real, A::kind, B::kind>& impulse)
     {
         Row<Real, A::kind, B::kind> row;
-        row.start_arm_a = to_world(pose.orientation_a, joint.position_a);
-        row.start_arm_b = to_world(pose.orientation_b, joint.position_b);
-        row.start_separation = pose.between + row.start_arm_b - row.start_arm_a;
-        row.start_frame_a = to_world(pose.orientation_a, joint.rotation_a);
-        row.start_frame_b = to_world(pose.orientation_b, joint.rotation_b);
+        if constexpr (has_arms) {
+            row.start.arm_a = to_world(pose.orientation_a, joint.position_a);
+            row.start.arm_b = to_world(pose.orientation_b, joint.position_b);
+            row.start.separation = pose.between + row.start.arm_b - row.start.arm_a;
+        }
+        if constexpr (has_axes || has_turns)
+            row.start_frame_a = to_world(pose.orientation_a, joint.rotation_a);
+        if constexpr (has_turns) row.start_frame_b = to_world(pose.orientation_b, joint.rotation_b);
         row.soft = softness_or(step, joint.hertz, joint.damping_ratio, step.joint);
         for (int i = 0; i < rows; ++i) impulse.lambda[i] = Real(step.warm_start_scale) * memory.lambda[i];
         return row;
@@ -227,29 +253,29 @@ struct FrameJoint {
     static void build(const Row& row, Substep& substep, const A& a, const B& b)
     {
         using Real = std::remove_cvref_t<decltype(row.soft.rate)>;
-        const Vec3<Real> arm_a = rotate(turn_of(a), row.start_arm_a);
-        substep.arm_b = rotate(turn_of(b), row.start_arm_b);
-        const Quat<Real> frame_a = turn_of(a) * row.start_frame_a;
-        // Only differences, so nothing is lost far from the origin.
-        const Vec3<Real> d = row.start_separation + (to_three(b.delta) - to_three(a.delta)) +
-                             (substep.arm_b - row.start_arm_b) - (arm_a - row.start_arm_a);
-        substep.arm_a = linear_lock == LinearLock::point ? arm_a : arm_a + d;
-        Vec3<Real> e[3];
-        linear_rows_of(frame_a, d, e, substep.error);
-        if constexpr (linear_lock != LinearLock::point) {
-            for (int i = 0; i < linear_rows; ++i) substep.linear[i] = e[i];
+        Quat<Real> frame_a{};
+        if constexpr (has_axes || has_turns) frame_a = turn_of(a) * row.start_frame_a;
+        Vec3<Real> e[3], lever_a[rows], lever_b[rows];
+        if constexpr (has_arms) {
+            const Vec3<Real> arm_a = rotate(turn_of(a), row.start.arm_a);
+            substep.arm.b = rotate(turn_of(b), row.start.arm_b);
+            // Only differences, so nothing is lost far from the origin.
+            const Vec3<Real> d = row.start.separation + (to_three(b.delta) - to_three(a.delta)) +
+                                 (substep.arm.b - row.start.arm_b) - (arm_a - row.start.arm_a);
+            substep.arm.a = linear_lock == LinearLock::point ? arm_a : arm_a + d;
+            linear_rows_of(frame_a, d, e, substep.error);
+            for (int i = 0; i < linear_rows; ++i) {
+                if constexpr (has_axes) substep.linear.axis[i] = e[i];
+                lever_a[i] = cross(substep.arm.a, e[i]);
+                lever_b[i] = cross(substep.arm.b, e[i]);
+            }
         }
-        if constexpr (angular_rows > 0) {
-            angular_rows_of(frame_a, turn_of(b) * row.start_frame_b, substep.angular,
+        if constexpr (has_turns) {
+            angular_rows_of(frame_a, turn_of(b) * row.start_frame_b, substep.angular.axis,
                             substep.error + linear_rows);
+            for (int i = linear_rows; i < rows; ++i)
+                lever_a[i] = lever_b[i] = substep.angular.axis[i - linear_rows];
         }
-
-        Vec3<Real> lever_a[rows], lever_b[rows];
-        for (int i = 0; i < linear_rows; ++i) {
-            lever_a[i] = cross(substep.arm_a, e[i]);
-            lever_b[i] = cross(substep.arm_b, e[i]);
-        }
-        for (int i = linear_rows; i < rows; ++i) lever_a[i] = lever_b[i] = substep.angular[i - linear_rows];
         Real k[rows][rows];
         for (int i = 0; i < rows; ++i) {
             const Vec3<Real> turn_a = over_inertia(a, lever_a[i]), turn_b = over_inertia(b, lever_b[i]);
@@ -262,42 +288,52 @@ struct FrameJoint {
         const Real angular_floor = Real(rounding_share) * (angular_size(a) + angular_size(b));
         Real floor[rows];
         for (int i = 0; i < rows; ++i) floor[i] = i < linear_rows ? linear_floor : angular_floor;
-        substep.mass = factor<Real, rows>(k, floor);
+        substep.mass = factor(k, floor);
     }
 
     /// J v.
     template <class Real, class Substep, class A, class B>
     static void speeds(const Substep& substep, const A& a, const B& b, Real (&speed)[rows])
     {
-        const Vec3<Real> turn = angular_of(b) - angular_of(a);
-        if constexpr (linear_rows > 0) {
-            const Vec3<Real> v = (linear_of(b) + cross(angular_of(b), substep.arm_b)) -
-                                 (linear_of(a) + cross(angular_of(a), substep.arm_a));
-            if constexpr (linear_lock == LinearLock::point) {
+        if constexpr (has_arms) {
+            const Vec3<Real> v = (linear_of(b) + cross(angular_of(b), substep.arm.b)) -
+                                 (linear_of(a) + cross(angular_of(a), substep.arm.a));
+            if constexpr (has_axes) {
+                for (int i = 0; i < linear_rows; ++i) speed[i] = dot(substep.linear.axis[i], v);
+            } else {
                 speed[0] = v.x;
                 speed[1] = v.y;
                 speed[2] = v.z;
-            } else {
-                for (int i = 0; i < linear_rows; ++i) speed[i] = dot(substep.linear[i], v);
             }
         }
-        for (int i = linear_rows; i < rows; ++i) speed[i] = dot(substep.angular[i - linear_rows], turn);
+        if constexpr (has_turns) {
+            const Vec3<Real> turn = angular_of(b) - angular_of(a);
+            for (int i = linear_rows; i < rows; ++i)
+                speed[i] = dot(substep.angular.axis[i - linear_rows], turn);
+        }
     }
 
     /// J^T lambda to both bodies, by `apply(body, linear, angular)`.
     template <class Real, class Substep, class A, class B, class Apply>
     static void push(const Substep& substep, const Real (&lambda)[rows], A& a, B& b, const Apply& apply)
     {
-        Vec3<Real> linear{Real(0), Real(0), Real(0)}, angular = linear;
-        if constexpr (linear_lock == LinearLock::point) {
-            linear = {lambda[0], lambda[1], lambda[2]};
-        } else {
-            for (int i = 0; i < linear_rows; ++i) linear = linear + lambda[i] * substep.linear[i];
+        Vec3<Real> linear{Real(0), Real(0), Real(0)}, angular_a = linear, angular_b = linear;
+        if constexpr (has_turns) {
+            for (int i = linear_rows; i < rows; ++i)
+                angular_b = angular_b + lambda[i] * substep.angular.axis[i - linear_rows];
+            angular_a = angular_b;
         }
-        for (int i = linear_rows; i < rows; ++i)
-            angular = angular + lambda[i] * substep.angular[i - linear_rows];
-        apply(a, -linear, -(cross(substep.arm_a, linear) + angular));
-        apply(b, linear, cross(substep.arm_b, linear) + angular);
+        if constexpr (has_arms) {
+            if constexpr (has_axes) {
+                for (int i = 0; i < linear_rows; ++i) linear = linear + lambda[i] * substep.linear.axis[i];
+            } else {
+                linear = {lambda[0], lambda[1], lambda[2]};
+            }
+            angular_a = angular_a + cross(substep.arm.a, linear);
+            angular_b = angular_b + cross(substep.arm.b, linear);
+        }
+        apply(a, -linear, -angular_a);
+        apply(b, linear, angular_b);
     }
 };
 

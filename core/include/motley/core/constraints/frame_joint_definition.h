@@ -48,14 +48,14 @@ struct FrameJointDefinition {
 
 using FixedDefinition = FrameJointDefinition<LinearLock::point, AngularLock::all>;
 using HingeDefinition = FrameJointDefinition<LinearLock::point, AngularLock::swing>;
-using UniversalDefinition = FrameJointDefinition<LinearLock::point, AngularLock::perpendicular>;
 using SliderDefinition = FrameJointDefinition<LinearLock::line, AngularLock::all>;
-using CylindricalDefinition = FrameJointDefinition<LinearLock::line, AngularLock::swing>;
-/// Slides and turns on the y-z plane of a.
-using PlaneJointDefinition = FrameJointDefinition<LinearLock::plane, AngularLock::swing>;
-using PointOnLineDefinition = FrameJointDefinition<LinearLock::line, AngularLock::none>;
+/// Beside a parallel-axes joint a joint that slides and turns on the y-z plane.
 using PointOnPlaneDefinition = FrameJointDefinition<LinearLock::plane, AngularLock::none>;
+/// Beside a parallel-axes joint a cylinder in its sleeve.
+using PointOnLineDefinition = FrameJointDefinition<LinearLock::line, AngularLock::none>;
 using RotationLockDefinition = FrameJointDefinition<LinearLock::none, AngularLock::all>;
 using ParallelAxesDefinition = FrameJointDefinition<LinearLock::none, AngularLock::swing>;
+/// Beside a ball-socket a universal joint.
+using PerpendicularAxesDefinition = FrameJointDefinition<LinearLock::none, AngularLock::perpendicular>;
 
 }  // namespace motley

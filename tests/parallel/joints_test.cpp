@@ -1,0 +1,326 @@
+// Joints against motions that are known in closed form, and against each other.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "joint_scene.h"
+
+namespace motley {
+namespace {
+
+constexpr float dt = 1.0F / 60;
+constexpr double pi = 3.14159265358979;
+
+SolverSettings with_gravity(Vec3<float> gravity)
+{
+    SolverSettings settings;
+    settings.gravity = gravity;
+    return settings;
+}
+
+BodyDefinition box(Vec3<double> position, float mass = 2)
+{
+    BodyDefinition body;
+    body.position = position;
+    body.mass = mass;
+    body.inertia = {0.1F * mass, 0, 0, 0.2F * mass, 0, 0.25F * mass};
+    return body;
+}
+
+/// x of the frame along `axis`: 0 x, 1 y, 2 z.
+Quat<float> axis_along(int axis)
+{
+    const Quat<float> turns[3] = {
+        {0, 0, 0, 1}, {0, 0, 0.70710678F, 0.70710678F}, {0, -0.70710678F, 0, 0.70710678F}};
+    return turns[axis];
+}
+
+void run(Scene& scene, Solver& solver, double seconds)
+{
+    for (int step = 0; step < static_cast<int>(std::lround(seconds * 60)); ++step) {
+        ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
+    }
+}
+
+TEST(Hinge, TurnsUnderATorqueAsItsInertiaAboutTheAxisSays)
+{
+    // omega = tau t / (I + m r^2), about z through a point r from the centre; nothing else moves.
+    Scene scene;
+    const BodyId door = scene.add_body(box({0.5, 0, 0}));
+    const ConstraintId hinge = scene.add_joint(
+        HingeDefinition{scene.ground(), door, {{}, axis_along(2)}, {{-0.5F, 0, 0}, axis_along(2)}});
+    scene.set_force(door, {}, {0, 0, 3});
+    Solver solver;
+    run(scene, solver, 1);
+    const double inertia = 0.5 + 2 * 0.25;
+    const BodyState state = scene.state(door);
+    EXPECT_NEAR(state.angular_velocity.z, 3 / inertia, 0.003 * 3);
+    EXPECT_NEAR(std::atan2(state.position.y, state.position.x), 1.5, 0.015);  // tau t^2 / 2 I, t + h/2
+    const JointReport report = scene.joint_report(hinge);
+    EXPECT_LT(report.error, 5e-4F);
+    EXPECT_LT(report.angle_error, 1e-4F);
+    // The hinge pulls the centre along its circle: m r omega^2 inwards, m r alpha along.
+    const Vec3<float> f = report.force;
+    // A report is of the last substep, one or two behind: 2 h of 1 s in omega^2.
+    EXPECT_NEAR(std::sqrt(dot(f, f)), std::hypot(2 * 0.5 * 9, 2 * 0.5 * 3), 9.5 * 2 * 2 / 240);
+}
+
+TEST(Slider, SlidesDownAnInclineWithoutFriction)
+{
+    // v = g sin(theta) t along the rail, and no turn.
+    Scene scene;
+    const double theta = 0.6;
+    const Quat<float> rail{0, 0, static_cast<float>(std::sin(-theta / 2)),
+                           static_cast<float>(std::cos(theta / 2))};
+    const BodyId block = scene.add_body(box({0, 0, 0}));
+    const ConstraintId slider =
+        scene.add_joint(SliderDefinition{scene.ground(), block, {{}, rail}, {{0.2F, 0.1F, 0}, rail}});
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    scene.set_pose(block, {-0.2, -0.1, 0}, {0, 0, 0, 1}, 0);
+    run(scene, solver, 1);
+    const BodyState state = scene.state(block);
+    const double v = 9.81 * std::sin(theta);
+    EXPECT_NEAR(state.linear_velocity.x, v * std::cos(theta), 0.01);
+    EXPECT_NEAR(state.linear_velocity.y, -v * std::sin(theta), 0.01);
+    EXPECT_LT(scene.joint_report(slider).error, 1e-3F);
+    EXPECT_LT(scene.joint_report(slider).angle_error, 1e-3F);
+}
+
+TEST(Fixed, TwoBodiesFlyAsOneAndKeepTheirMomenta)
+{
+    // A welded pair in free flight: the common centre moves straight on, angular momentum stays, and so does the pose
+    // of one in the frame of the other.
+    Scene scene;
+    BodyDefinition left = box({-0.5, 0, 0}, 1), right = box({0.5, 0, 0}, 3);
+    left.linear_velocity = {1, 2, 0};
+    right.angular_velocity = {0.5F, 1, 2};
+    const BodyId a = scene.add_body(left), b = scene.add_body(right);
+    const ConstraintId weld = scene.add_joint(FixedDefinition{a, b, {{0.5F, 0, 0}}, {{-0.5F, 0, 0}}});
+    const auto momenta = [&] {
+        Vec3<double> p{}, l{};
+        for (const auto& [id, definition] : {std::pair{a, left}, std::pair{b, right}}) {
+            const BodyState s = scene.state(id);
+            const double m = definition.mass;
+            const Vec3<double> v = convert<double>(s.linear_velocity);
+            const Vec3<double> w = rotate(conjugate(s.orientation), convert<double>(s.angular_velocity));
+            const Vec3<double> spin{static_cast<double>(definition.inertia.xx) * w.x,
+                                    static_cast<double>(definition.inertia.yy) * w.y,
+                                    static_cast<double>(definition.inertia.zz) * w.z};
+            p = p + m * v;
+            l = l + cross(s.position, m * v) + rotate(s.orientation, spin);
+        }
+        return std::pair{p, l};
+    };
+    const auto before = momenta();
+    Solver solver;
+    run(scene, solver, 2);
+    const auto after = momenta();
+    const Vec3<double> lost = after.first - before.first, turned = after.second - before.second;
+    EXPECT_LT(std::sqrt(dot(lost, lost)), 1e-4);
+    EXPECT_LT(std::sqrt(dot(turned, turned)), 0.02 * std::sqrt(dot(before.second, before.second)));
+    EXPECT_LT(scene.joint_report(weld).error, 1e-3F);
+    EXPECT_LT(scene.joint_report(weld).angle_error, 2e-3F);
+    const BodyState s = scene.state(a), t = scene.state(b);
+    const Vec3<double> relative = rotate(conjugate(s.orientation), t.position - s.position);
+    EXPECT_NEAR(relative.x, 1, 2e-3);
+    EXPECT_NEAR(std::hypot(relative.y, relative.z), 0, 2e-3);
+}
+
+TEST(SlideDrive, AMotorBelowTheWeightStallsAndOneAboveItLifts)
+{
+    // On a vertical rail: a = F/m - g until the speed is reached.
+    for (const float force : {10.0F, 40.0F}) {
+        Scene scene;
+        const BodyId lift = scene.add_body(box({0, 0, 0}));
+        scene.add_joint(SliderDefinition{scene.ground(), lift, {{}, axis_along(1)}, {{}, axis_along(1)}});
+        SlideDriveDefinition motor{.body_a = scene.ground(), .body_b = lift};
+        motor.frame_a.rotation = motor.frame_b.rotation = axis_along(1);
+        motor.motor_speed = 1.5F;
+        motor.motor_max_force = force;
+        const ConstraintId drive = scene.add_joint(motor);
+        Solver solver(with_gravity({0, -9.81F, 0}));
+        run(scene, solver, 0.1);
+        EXPECT_NEAR(scene.state(lift).linear_velocity.y, (force / 2 - 9.81F) * 0.1F, 2e-3F) << force;
+        EXPECT_NEAR(scene.joint_report(drive).force.y, force, 1e-3F * force) << force;
+        run(scene, solver, 1.9);
+        if (force > 20) {
+            EXPECT_NEAR(scene.state(lift).linear_velocity.y, 1.5, 1e-3);
+            EXPECT_NEAR(scene.joint_report(drive).force.y, 2 * 9.81, 0.02);
+        } else {
+            EXPECT_NEAR(scene.state(lift).linear_velocity.y, (force / 2 - 9.81F) * 2, 0.02F);
+        }
+    }
+}
+
+TEST(TwistDrive, ASpringSwingsWithItsFrequency)
+{
+    // Undamped, period 1/f; implicit softness damps and slows by O(f h), so the substeps are many.
+    Scene scene;
+    const BodyId wheel = scene.add_body(box({0, 0, 0}));
+    scene.add_joint(HingeDefinition{scene.ground(), wheel, {{}, axis_along(2)}, {{}, axis_along(2)}});
+    TwistDriveDefinition spring{.body_a = scene.ground(), .body_b = wheel};
+    spring.frame_a.rotation = spring.frame_b.rotation = axis_along(2);
+    spring.spring_hertz = 1;
+    spring.spring_target = 0.5F;
+    scene.add_joint(spring);
+    SolverSettings settings;
+    settings.substeps = 32;
+    Solver solver(settings);
+    double last_rate = 0, first = 0, last = 0;
+    int crossings = 0;
+    for (int step = 0; step < 60 * 6; ++step) {
+        solver.step(scene, dt);
+        const double rate = scene.state(wheel).angular_velocity.z;
+        if (last_rate > 0 && rate <= 0) {  // at the far end
+            const double t = (step + last_rate / (last_rate - rate)) / 60;
+            if (crossings++ == 0) first = t;
+            last = t;
+        }
+        last_rate = rate;
+    }
+    ASSERT_GT(crossings, 4);
+    EXPECT_NEAR((last - first) / (crossings - 1), 1.0, 0.01);
+}
+
+TEST(TwistDrive, AHingedBarRestsAtItsLimitAndReportsWhichOne)
+{
+    Scene scene;
+    const BodyId bar = scene.add_body(box({0.5, 0, 0}));
+    scene.add_joint(
+        HingeDefinition{scene.ground(), bar, {{}, axis_along(2)}, {{-0.5F, 0, 0}, axis_along(2)}});
+    TwistDriveDefinition limit{.body_a = scene.ground(), .body_b = bar, .lower = -0.7F, .upper = 0.2F};
+    limit.frame_a.rotation = limit.frame_b.rotation = axis_along(2);
+    const ConstraintId drive = scene.add_joint(limit);
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    run(scene, solver, 4);
+    const BodyState state = scene.state(bar);
+    EXPECT_NEAR(std::atan2(state.position.y, state.position.x), -0.7, 2e-3);
+    EXPECT_EQ(scene.joint_report(drive).state, JointState::lower);
+    // The limit holds the weight's moment about the hinge.
+    EXPECT_NEAR(scene.joint_report(drive).torque.z, 2 * 9.81 * 0.5 * std::cos(0.7), 0.05);
+}
+
+TEST(SwingLimit, APendulumStaysInItsConeAndHangsAtItsEdge)
+{
+    Scene scene;
+    const BodyId bob = scene.add_body(box({1, 0, 0}));
+    scene.add_joint(BallSocketDefinition{scene.ground(), bob, {}, {-1, 0, 0}});
+    const ConstraintId cone =
+        scene.add_joint(SwingLimitDefinition{.body_a = scene.ground(), .body_b = bob, .max_angle = 0.4F});
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    double widest = 0;
+    for (int step = 0; step < 300; ++step) {
+        solver.step(scene, dt);
+        const Vec3<double> p = scene.state(bob).position;
+        widest = std::max(widest, std::acos(std::clamp(p.x / std::sqrt(dot(p, p)), -1.0, 1.0)));
+    }
+    EXPECT_LT(widest, 0.41);
+    EXPECT_NEAR(std::atan2(scene.state(bob).position.y, scene.state(bob).position.x), -0.4, 3e-3);
+    EXPECT_EQ(scene.joint_report(cone).state, JointState::upper);
+    EXPECT_NEAR(scene.joint_report(cone).torque.z, 2 * 9.81 * std::cos(0.4), 0.2);
+}
+
+/// A box tied to the ground by `tie`, thrown, after a second.
+template <class Tie>
+std::uint64_t thrown(const Tie& tie)
+{
+    Scene scene;
+    BodyDefinition body = box({0.4, 0.1, 0});
+    body.linear_velocity = {0.5F, 1, -0.3F};
+    body.angular_velocity = {1, -0.5F, 2};
+    const BodyId id = scene.add_body(body);
+    tie(scene, id, JointFrame{{}, {0.1F, 0.2F, 0.3F, 1}},
+        JointFrame{{-0.4F, -0.1F, 0}, {0.1F, 0.2F, 0.3F, 1}});
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    run(scene, solver, 1);
+    return scene.state_hash();
+}
+
+TEST(SixDof, BecomesTheVeryJointThatItIs)
+{
+    const auto same = [](const SixDofDefinition& six, const auto& joint, const char* name) {
+        const std::uint64_t by_six =
+            thrown([&](Scene& scene, BodyId body, const JointFrame& a, const JointFrame& b) {
+                SixDofDefinition definition = six;
+                definition.body_a = scene.ground();
+                definition.body_b = body;
+                definition.frame_a = a;
+                definition.frame_b = b;
+                EXPECT_EQ(add_six_dof(scene, definition).size(), 1U) << name;
+            });
+        EXPECT_EQ(by_six, thrown(joint)) << name;
+    };
+    const auto by = []<class Definition>(Definition) {
+        return [](Scene& scene, BodyId body, const JointFrame& a, const JointFrame& b) {
+            scene.add_joint(Definition{scene.ground(), body, a, b});
+        };
+    };
+    SixDofDefinition fixed;
+    same(fixed, by(FixedDefinition{}), "fixed");
+    SixDofDefinition hinge;
+    hinge.twist = AxisSetup::free();
+    same(hinge, by(HingeDefinition{}), "hinge");
+    SixDofDefinition slider;
+    slider.position[0] = AxisSetup::free();
+    same(slider, by(SliderDefinition{}), "slider");
+    SixDofDefinition ball = hinge;
+    ball.max_swing = static_cast<float>(pi);
+    same(
+        ball,
+        [](Scene& scene, BodyId body, const JointFrame& a, const JointFrame& b) {
+            scene.add_joint(BallSocketDefinition{scene.ground(), body, a.position, b.position});
+        },
+        "ball-socket");
+}
+
+TEST(SixDof, LimitsEachPositionWithinItsBox)
+{
+    // Loose in a box of half sizes 0.1, 0.2, 0.3, shaken: no position leaves it by more than its softness.
+    Scene scene;
+    const BodyId body = scene.add_body(box({0, 0, 0}));
+    SixDofDefinition six;
+    six.body_a = scene.ground();
+    six.body_b = body;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float half = 0.1F * static_cast<float>(axis + 1);
+        six.position[axis] = AxisSetup::limited(-half, half);
+    }
+    EXPECT_EQ(add_six_dof(scene, six).size(), 4U);  // three drives and the rotation lock
+    Solver solver(with_gravity({3, -9.81F, 1}));
+    double most[3] = {};
+    for (int step = 0; step < 240; ++step) {
+        if (step % 40 == 20) scene.set_velocity(body, {-2, 3, 4}, {});
+        solver.step(scene, dt);
+        const Vec3<double> p = scene.state(body).position;
+        most[0] = std::max(most[0], std::abs(p.x));
+        most[1] = std::max(most[1], std::abs(p.y));
+        most[2] = std::max(most[2], std::abs(p.z));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_LT(most[axis], 0.1 * (axis + 1) + 2e-3);
+        EXPECT_GT(most[axis], 0.1 * (axis + 1) - 1e-3);
+    }
+}
+
+TEST(SixDof, WhatItRefusesLeavesNothingBehind)
+{
+    Scene scene;
+    const BodyId body = scene.add_body(box({0, 0, 0}));
+    SixDofDefinition six;
+    six.body_a = scene.ground();
+    six.body_b = body;
+    six.twist = AxisSetup::limited(1, -1);
+    EXPECT_THROW(add_six_dof(scene, six), InvalidInput);
+    six.twist = AxisSetup::locked();
+    six.max_swing = 1;
+    EXPECT_THROW(add_six_dof(scene, six), InvalidInput);
+    six.max_swing = -1;
+    EXPECT_THROW(add_six_dof(scene, six), InvalidInput);
+    six.max_swing = static_cast<float>(pi);
+    six.twist = six.position[0] = six.position[1] = six.position[2] = AxisSetup::free();
+    EXPECT_THROW(add_six_dof(scene, six), InvalidInput);
+    EXPECT_EQ(scene.joint_count(), 0U);
+}
+
+}  // namespace
+}  // namespace motley
