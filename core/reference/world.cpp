@@ -1,8 +1,8 @@
 // The step of the reference, written for reading.
-#include "motley/reference/world.h"
-
 #include <algorithm>
 #include <limits>
+
+#include "world_rows.h"
 
 namespace motley::reference {
 namespace {
@@ -20,27 +20,6 @@ bool is_one_sided(const Joint& joint)
 }
 
 }  // namespace
-
-struct World::JointRow {
-    Joint* joint;
-    Jacobian jacobian;
-    Eigen::MatrixXd mass;
-    Eigen::VectorXd bias, relax_bias;
-    Soft soft, relax_soft;
-    double upper;                                 ///< largest impulse: 0 of a rope
-    double value = 0, h = 0, push_out_speed = 0;  ///< of a drive
-    Soft limit_soft{};
-};
-
-struct World::ContactRow {
-    const ContactPoint* point;
-    Jacobian normal, tangents;
-    double normal_mass;
-    Eigen::MatrixXd tangent_mass;
-    double approach;
-    double impulse, peak = 0;
-    Eigen::VectorXd friction;
-};
 
 World::Soft World::softness(double hertz, double damping_ratio, double h)
 {

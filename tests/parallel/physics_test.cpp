@@ -141,6 +141,45 @@ TEST(Spring, FrequencyAndDecayMatchClosedForm)
     EXPECT_NEAR(peak / start_peak, std::exp(-0.05 * w * 3), 0.08 * std::exp(-0.05 * w * 3));
 }
 
+TEST(Friction, ABoxOnASlopeOfTwentyDegreesStaysForAMinute)
+{
+    // tan 20 = 0.36 < mu = 0.5: it must not creep. Gravity is tilted instead of the ground.
+    Scene scene;
+    const double hx = 0.5, hy = 0.25, hz = 0.5;
+    BodyDefinition box;
+    box.mass = 10;
+    box.position = {0, hy, 0};
+    const auto moment = [&](double u, double v) { return static_cast<float>(10.0 / 3 * (u * u + v * v)); };
+    box.inertia = {moment(hy, hz), 0, 0, moment(hx, hz), 0, moment(hx, hy)};
+    const BodyId body = scene.add_body(box);
+    const double slope = 20 * pi / 180;
+    Solver solver(
+        soft({static_cast<float>(9.81 * std::sin(slope)), static_cast<float>(-9.81 * std::cos(slope)), 0}));
+    std::vector<Contact> corners;
+    for (int step = 0; step < 60 * 60; ++step) {
+        corners.clear();
+        const BodyState s = scene.state(body);
+        for (int corner = 0; corner < 4; ++corner) {
+            const Vec3<double> arm =
+                rotate(s.orientation, Vec3<double>{corner % 2 == 0 ? hx : -hx, -hy, corner < 2 ? hz : -hz});
+            const Vec3<double> point = s.position + arm;
+            Contact contact;
+            contact.body_a = scene.ground();
+            contact.body_b = body;
+            contact.key = static_cast<std::uint64_t>(corner);
+            contact.normal = {0, 1, 0};
+            contact.separation = static_cast<float>(point.y);
+            contact.arm_a = {static_cast<float>(point.x), 0, static_cast<float>(point.z)};
+            contact.arm_b = convert<float>(Vec3<double>{arm.x, arm.y - point.y, arm.z});
+            contact.friction = 0.5F;
+            corners.push_back(contact);
+        }
+        ASSERT_EQ(solver.step(scene, 1.0F / 60, corners).status, StepStatus::done);
+    }
+    const Vec3<double> p = scene.state(body).position;
+    EXPECT_LT(std::hypot(p.x, p.z), 1e-3);
+}
+
 TEST(Rope, SlackHasNoForceAndTautHoldsTheWeight)
 {
     Scene scene;

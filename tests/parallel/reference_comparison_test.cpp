@@ -7,45 +7,16 @@
 // errors of successive steps add up, and motions do not amplify them within the steps below.
 #include <gtest/gtest.h>
 
-#include "mixed_scene.h"
-#include "motley/reference/world.h"
+#include "twin.h"
 
 namespace motley {
 namespace {
 
 constexpr float dt = 1.0F / 60;
 constexpr int steps = 30;
+using testing::Twin;
+
 constexpr double bound_per_step = 200 * 6e-8 * 5;  // size: speeds below 5 m/s and rad/s
-
-struct Twin {
-    Scene scene;
-    reference::World world;
-    std::vector<BodyId> ids;
-
-    int add(const BodyDefinition& definition)
-    {
-        ids.push_back(scene.add_body(definition));
-        world.bodies.push_back(reference::Body::from(definition));
-        return static_cast<int>(ids.size()) - 1;
-    }
-    /// The largest difference of positions and velocities.
-    [[nodiscard]] double difference() const
-    {
-        double most = 0;
-        for (std::size_t i = 0; i < ids.size(); ++i) {
-            const BodyState s = scene.state(ids[i]);
-            const reference::Body& b = world.bodies[i];
-            most = std::max(most, (Eigen::Vector3d(s.position.x, s.position.y, s.position.z) - b.position)
-                                      .cwiseAbs()
-                                      .maxCoeff());
-            reference::Vector6 v;
-            v << s.linear_velocity.x, s.linear_velocity.y, s.linear_velocity.z, s.angular_velocity.x,
-                s.angular_velocity.y, s.angular_velocity.z;
-            most = std::max(most, (v - b.velocity).cwiseAbs().maxCoeff());
-        }
-        return most;
-    }
-};
 
 /// 0 particle, 1 planar, 2 rigid, 3 static, 4 kinematic.
 BodyDefinition body_of(int kind, testing::Random& random)

@@ -27,13 +27,20 @@ TEST(Readme, BytesALaneAreWhatTheKernelsStream)
         if (line.starts_with("| ") && end != std::string::npos && begin != std::string::npos && begin > 0)
             last_cells[line.substr(2)] = line.substr(begin + 2, end - begin - 2);
     }
-    const std::pair<const char*, int> rows[] = {{"contact, smooth", 0},
-                                                {"contact with friction", 1},
-                                                {"ball-socket", contact_type_count},
-                                                {"distance", contact_type_count + 1}};
+    // The table's rows by their beginnings, in the order of the list of types.
+    const char* const rows[] = {"contact, smooth", "contact with friction",
+                                "ball-socket",     "distance",
+                                "fixed",           "hinge",
+                                "slider",          "point on a plane",
+                                "point on a line", "rotation lock",
+                                "parallel axes",   "perpendicular axes",
+                                "slide drive",     "twist drive",
+                                "swing limit"};
+    static_assert(std::size(rows) == constraint_type_count, "a row for every type");
     for (const Isa isa : available_isas()) {
         const KernelTable& table = kernel_table(isa);
-        for (const auto& [name, type] : rows) {
+        for (int type = 0; type < constraint_type_count; ++type) {
+            const char* const name = rows[type];
             const std::string measured = std::to_string(bytes(table, type, BodyKind::planar)) + " / " +
                                          std::to_string(bytes(table, type, BodyKind::rigid));
             const auto row = last_cells.lower_bound(name);

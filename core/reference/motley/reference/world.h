@@ -44,6 +44,12 @@ class World {
     /// One step. Contacts are solved in the order of the list.
     void step(double dt, const SolverSettings& settings, const std::vector<ContactPoint>& contacts);
 
+    /// One substep solved simultaneously: every row at once, to a residual near the rounding of doubles, instead of one
+    /// after another. What a sequential method converges to as its iterations grow: the truth for tests. Redundant rows
+    /// share their impulse with the least norm. Contacts must be smooth. Returns the largest violation that is left of
+    /// the equations and inequalities, m/s or rad/s.
+    double step_directly(double dt, const SolverSettings& settings, const std::vector<ContactPoint>& contacts);
+
   private:
     struct Soft {
         double rate, mass_scale, impulse_scale;
