@@ -48,7 +48,8 @@ class World {
     /// after another. What a sequential method converges to as its iterations grow: the truth for tests. Redundant rows
     /// share their impulse with the least norm. Contacts must be smooth. Returns the largest violation that is left of
     /// the equations and inequalities, m/s or rad/s.
-    double step_directly(double dt, const SolverSettings& settings, const std::vector<ContactPoint>& contacts);
+    double step_directly(double dt, const SolverSettings& settings,
+                         const std::vector<ContactPoint>& contacts);
 
   private:
     struct Soft {
