@@ -42,7 +42,17 @@ struct Net {
     }
 };
 
-enum class Tie { smooth_contact, friction_contact, ball_socket, rod };
+enum class Tie {
+    smooth_contact,
+    friction_contact,
+    ball_socket,
+    rod,
+    fixed,
+    hinge,
+    slider,
+    twist_drive,
+    swing_limit
+};
 
 std::unique_ptr<Net> make_net(Tie kind, BodyModel model, int side)
 {
@@ -51,6 +61,20 @@ std::unique_ptr<Net> make_net(Tie kind, BodyModel model, int side)
     net->for_each_pair(side, [&](BodyId a, BodyId b, Vec3<float> arm) {
         if (kind == Tie::ball_socket) {
             net->scene.add_joint(BallSocketDefinition{a, b, arm, -arm});
+        } else if (kind == Tie::fixed) {
+            net->scene.add_joint(FixedDefinition{a, b, {arm}, {-arm}});
+        } else if (kind == Tie::hinge) {
+            net->scene.add_joint(HingeDefinition{a, b, {arm}, {-arm}});
+        } else if (kind == Tie::slider) {
+            net->scene.add_joint(SliderDefinition{a, b, {arm}, {-arm}});
+        } else if (kind == Tie::twist_drive) {
+            TwistDriveDefinition drive{.body_a = a, .body_b = b, .lower = -1, .upper = 1};
+            drive.motor_speed = 1;
+            drive.motor_max_force = 1;
+            drive.spring_hertz = 2;
+            net->scene.add_joint(drive);
+        } else if (kind == Tie::swing_limit) {
+            net->scene.add_joint(SwingLimitDefinition{.body_a = a, .body_b = b, .max_angle = 0.5F});
         } else if (kind == Tie::rod) {
             net->scene.add_joint(DistanceDefinition{.body_a = a, .body_b = b, .length = 0.4F});
         } else {
@@ -145,7 +169,12 @@ void enter_all()
                            {"ball_socket/planar", Tie::ball_socket, BodyModel::planar},
                            {"ball_socket/rigid", Tie::ball_socket, BodyModel::rigid},
                            {"rod/planar", Tie::rod, BodyModel::planar},
-                           {"rod/rigid", Tie::rod, BodyModel::rigid}};
+                           {"rod/rigid", Tie::rod, BodyModel::rigid},
+                           {"fixed/rigid", Tie::fixed, BodyModel::rigid},
+                           {"hinge/rigid", Tie::hinge, BodyModel::rigid},
+                           {"slider/rigid", Tie::slider, BodyModel::rigid},
+                           {"twist_drive/rigid", Tie::twist_drive, BodyModel::rigid},
+                           {"swing_limit/rigid", Tie::swing_limit, BodyModel::rigid}};
     // 4,000 constraints stay in a second level cache, 320,000 do not.
     const std::pair<const char*, int> sizes[] = {{"in_cache", 45}, {"streaming", 400}};
     for (const auto& [place, side] : sizes) {

@@ -9,11 +9,11 @@
 
 namespace motley {
 
-const KernelTable& kernel_table_scalar();
-const KernelTable& kernel_table_sse2();
-const KernelTable& kernel_table_avx2();
-const KernelTable& kernel_table_avx512();
-const KernelTable& kernel_table_neon();
+void enter_kernels_scalar(KernelTable& table);
+void enter_kernels_sse2(KernelTable& table);
+void enter_kernels_avx2(KernelTable& table);
+void enter_kernels_avx512(KernelTable& table);
+void enter_kernels_neon(KernelTable& table);
 
 namespace {
 
@@ -100,23 +100,39 @@ Isa default_isa()
     refuse("MOTLEY_ISA", forced, "one of " + names + " on this machine");
 }
 
+namespace {
+
+/// Made when first asked for.
+template <void (*enter)(KernelTable&)>
+const KernelTable& table_of()
+{
+    static const KernelTable table = [] {
+        KernelTable entered;
+        enter(entered);
+        return entered;
+    }();
+    return table;
+}
+
+}  // namespace
+
 const KernelTable& kernel_table(Isa isa)
 {
     switch (isa) {
 #ifdef MOTLEY_X86
         case Isa::sse2:
-            return kernel_table_sse2();
+            return table_of<enter_kernels_sse2>();
         case Isa::avx2:
-            return kernel_table_avx2();
+            return table_of<enter_kernels_avx2>();
         case Isa::avx512:
-            return kernel_table_avx512();
+            return table_of<enter_kernels_avx512>();
 #endif
 #ifdef MOTLEY_NEON
         case Isa::neon:
-            return kernel_table_neon();
+            return table_of<enter_kernels_neon>();
 #endif
         default:
-            return kernel_table_scalar();
+            return table_of<enter_kernels_scalar>();
     }
 }
 

@@ -52,14 +52,14 @@ void enter_body(KernelTable& table)
     kernels.integrate_positions = integrate_positions<kind>;
 }
 
-inline KernelTable make_table()
+/// Fills a table that was made elsewhere: the constructor of a table made here would be a weak function compiled for
+/// this instruction set.
+inline void enter_kernels(KernelTable& table)
 {
-    KernelTable table;
     enter_types(table, 0, ContactTypes{});
     enter_types(table, contact_type_count, JointTypes{});
     enter_body<BodyKind::particle>(table);
     enter_body<BodyKind::planar>(table);
     enter_body<BodyKind::rigid>(table);
     enter_body<BodyKind::fixed>(table);
-    return table;
 }

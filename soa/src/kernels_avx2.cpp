@@ -14,10 +14,9 @@ using Arch = xsimd::avx2;
 
 }  // namespace
 
-const KernelTable& kernel_table_avx2()
+void enter_kernels_avx2(KernelTable& table)
 {
-    static const KernelTable table = make_table();
-    return table;
+    enter_kernels(table);
 }
 
 }  // namespace motley

@@ -14,10 +14,9 @@ using Arch = xsimd::avx512f;
 
 }  // namespace
 
-const KernelTable& kernel_table_avx512()
+void enter_kernels_avx512(KernelTable& table)
 {
-    static const KernelTable table = make_table();
-    return table;
+    enter_kernels(table);
 }
 
 }  // namespace motley

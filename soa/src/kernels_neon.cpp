@@ -14,10 +14,9 @@ using Arch = xsimd::neon64;
 
 }  // namespace
 
-const KernelTable& kernel_table_neon()
+void enter_kernels_neon(KernelTable& table)
 {
-    static const KernelTable table = make_table();
-    return table;
+    enter_kernels(table);
 }
 
 }  // namespace motley

@@ -12,10 +12,9 @@ using Lanes = float;
 
 }  // namespace
 
-const KernelTable& kernel_table_scalar()
+void enter_kernels_scalar(KernelTable& table)
 {
-    static const KernelTable table = make_table();
-    return table;
+    enter_kernels(table);
 }
 
 }  // namespace motley

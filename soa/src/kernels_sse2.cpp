@@ -14,10 +14,9 @@ using Arch = xsimd::sse2;
 
 }  // namespace
 
-const KernelTable& kernel_table_sse2()
+void enter_kernels_sse2(KernelTable& table)
 {
-    static const KernelTable table = make_table();
-    return table;
+    enter_kernels(table);
 }
 
 }  // namespace motley
