@@ -76,7 +76,8 @@ std::unique_ptr<Net> make_net(Tie kind, BodyModel model, int side)
         } else if (kind == Tie::swing_limit) {
             net->scene.add_joint(SwingLimitDefinition{.body_a = a, .body_b = b, .max_angle = 0.5F});
         } else if (kind == Tie::rod) {
-            net->scene.add_joint(DistanceDefinition{.body_a = a, .body_b = b, .length = 0.4F});
+            net->scene.add_joint(
+                DistanceDefinition{.body_a = a, .body_b = b, .min_length = 0.4F, .max_length = 0.4F});
         } else {
             Contact contact;
             contact.body_a = a;

@@ -68,10 +68,13 @@ class MixedScene {
             DistanceDefinition distance;
             distance.body_a = a;
             distance.body_b = b;
-            distance.mode = static_cast<DistanceMode>((i / 4) % 3);
-            distance.length = 0.6F;
-            distance.hertz = 3;
-            distance.damping_ratio = 0.2F;
+            // Rods, ropes, and springs with stops.
+            const int mode = (i / 4) % 3;
+            distance.min_length = mode == 0 ? 0.6F : mode == 1 ? 0 : 0.3F;
+            distance.max_length = mode == 2 ? 0.9F : 0.6F;
+            distance.spring_hertz = mode == 2 ? 3 : 0;
+            distance.spring_damping_ratio = 0.2F;
+            distance.rest_length = 0.6F;
             joints.push_back(scene.add_joint(distance));
         }
         for (int i = 1; i + 1 < 3 * count; i += 5) {

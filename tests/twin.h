@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "mixed_scene.h"
+#include "motley/reference/joint_models.h"
 #include "motley/reference/world.h"
 
 namespace motley::testing {
@@ -18,6 +19,17 @@ struct Twin {
         ids.push_back(scene.add_body(definition));
         world.bodies.push_back(reference::Body::from(definition));
         return static_cast<int>(ids.size()) - 1;
+    }
+    /// Adds a joint between bodies of this twin.
+    template <class Definition>
+    ConstraintId add_joint(const Definition& joint)
+    {
+        world.joints.push_back({index_of(joint.body_a), index_of(joint.body_b), reference::model_of(joint)});
+        return scene.add_joint(joint);
+    }
+    [[nodiscard]] int index_of(BodyId body) const
+    {
+        return static_cast<int>(std::find(ids.begin(), ids.end(), body) - ids.begin());
     }
     /// The largest difference of positions and velocities.
     [[nodiscard]] double difference() const

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -118,39 +119,28 @@ double World::step_directly(double dt, const SolverSettings& settings,
     for (Body& body : bodies) body.accelerate(gravity, h);
 
     System system;
-    std::vector<JointRow> joint_rows;
-    std::vector<int> first_row;
+    std::vector<BlockRow> rows_of_joints;
     for (Joint& joint : joints) {
-        joint.impulse.setZero();
-        joint_rows.push_back(begin_joint(joint, h, settings));
-        const JointRow& row = joint_rows.back();
+        for (Eigen::VectorXd& impulse : joint.impulses) impulse.setZero();
+        begin_joint(joint, h, settings, rows_of_joints);
+    }
+    std::vector<int> first_row;
+    for (const BlockRow& row : rows_of_joints) {
+        const Block& block = row.block;
+        const int a = row.joint->a, b = row.joint->b;
         first_row.push_back(system.size());
-        const Eigen::MatrixXd k = row.jacobian *
-                                  pair_inverse_mass(bodies[static_cast<std::size_t>(joint.a)],
-                                                    bodies[static_cast<std::size_t>(joint.b)]) *
-                                  row.jacobian.transpose();
-        if (joint.kind == Joint::Kind::drive) {
-            const Eigen::Matrix<double, 1, 12> j = row.jacobian.row(0);
-            const bool spring = joint.hertz > 0;
-            const int s = system.add(joint.a, joint.b, j, row.soft.rate * (row.value - joint.spring_target),
-                                     spring ? -unbounded : 0, spring ? unbounded : 0);
-            if (spring)
-                system.softness.emplace_back(s, s, row.soft.impulse_scale / row.soft.mass_scale * k(0, 0));
-            const double most = h * joint.motor_max_force;
-            system.add(joint.a, joint.b, j, -joint.motor_speed, -most, most);
-            const double above = row.value - joint.lower, below = joint.upper - row.value;
-            const bool lock = joint.lower == joint.upper, lower = lock || above < below;
-            const double c = lower ? above : below;
-            double bias = c > 0 && !lock ? c / h : row.limit_soft.rate * c;
-            if (!lock) bias = std::max(bias, -row.push_out_speed);
-            system.add(joint.a, joint.b, j, lower ? bias : -bias, lower && !lock ? 0 : -unbounded,
-                       lower ? unbounded : 0);
-            continue;
-        }
-        for (Eigen::Index i = 0; i < row.jacobian.rows(); ++i) {
-            system.add(joint.a, joint.b, row.jacobian.row(i), row.bias(i), -unbounded,
-                       row.upper == 0 ? 0 : unbounded);
-            for (Eigen::Index m = 0; m < row.jacobian.rows(); ++m) {
+        const bool limit = block.kind == Block::Kind::limit;
+        if (block.jacobian.rows() > 1 && std::isfinite(row.most))
+            throw std::invalid_argument("step_directly: bounded servos of several rows are not solved");
+        const double low = limit && block.side > 0 ? 0 : -row.most,
+                     high = limit && block.side < 0 ? 0 : row.most;
+        const Eigen::MatrixXd k =
+            block.jacobian *
+            pair_inverse_mass(bodies[static_cast<std::size_t>(a)], bodies[static_cast<std::size_t>(b)]) *
+            block.jacobian.transpose();
+        for (Eigen::Index i = 0; i < block.jacobian.rows(); ++i) {
+            system.add(a, b, block.jacobian.row(i), block.side * row.bias(i), low, high);
+            for (Eigen::Index m = 0; m < block.jacobian.rows(); ++m) {
                 system.softness.emplace_back(first_row.back() + i, first_row.back() + m,
                                              row.soft.impulse_scale / row.soft.mass_scale * k(i, m));
             }
@@ -195,9 +185,11 @@ double World::step_directly(double dt, const SolverSettings& settings,
         bodies[i].velocity = after.segment<6>(static_cast<Eigen::Index>(6 * i));
         if (bodies[i].motion != BodyMotion::static_body) bodies[i].advance(bodies[i].velocity, h);
     }
-    for (std::size_t i = 0; i < joints.size(); ++i)
-        joints[i].impulse = solution.lambda.segment(first_row[i], joints[i].impulse.size());
-    last_substep_ = h;
+    for (std::size_t i = 0; i < rows_of_joints.size(); ++i) {
+        Eigen::VectorXd& impulse = rows_of_joints[i].impulse();
+        impulse = solution.lambda.segment(first_row[i], impulse.size());
+    }
+    end_step(h);
     return solution.violation;
 }
 

@@ -12,13 +12,6 @@ Eigen::Vector3d eigen(const Vec3<float>& v)
     return {v.x, v.y, v.z};
 }
 
-/// C <= 0: it only pulls back.
-bool is_one_sided(const Joint& joint)
-{
-    return joint.kind == Joint::Kind::swing_limit ||
-           (joint.kind == Joint::Kind::distance && joint.mode == DistanceMode::rope);
-}
-
 }  // namespace
 
 World::Soft World::softness(double hertz, double damping_ratio, double h)
@@ -57,150 +50,65 @@ Eigen::VectorXd World::speed(int a, int b, const Jacobian& jacobian) const
     return jacobian * v;
 }
 
-Jacobian World::jacobian_of(const Joint& joint) const
+std::vector<Block> World::blocks_of(const Joint& joint) const
 {
-    const Body& a = bodies[static_cast<std::size_t>(joint.a)];
-    const Body& b = bodies[static_cast<std::size_t>(joint.b)];
-    switch (joint.kind) {
-        case Joint::Kind::distance:
-            return distance_jacobian(a, b, joint.local_a, joint.local_b);
-        case Joint::Kind::frames:
-            return frame_jacobian(a, b, joint.frame_a, joint.frame_b, joint.linear, joint.angular);
-        case Joint::Kind::swing_limit:
-            return swing_jacobian(a, b, joint.frame_a, joint.frame_b);
-        case Joint::Kind::drive:
-            return drive_jacobian(a, b, joint.frame_a, joint.frame_b, joint.axis);
-        case Joint::Kind::ball_socket:
-            break;
-    }
-    return point_jacobian(a, b, joint.local_a, joint.local_b)
-        .topRows(is_planar_pair(joint.a, joint.b) ? 2 : 3);
+    const auto a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+    const double travelled =
+        joint.travelled + joint.model->travel(start_[a], start_[b], bodies[a], bodies[b]);
+    return joint.model->blocks(bodies[a], bodies[b], is_planar_pair(joint.a, joint.b), travelled);
 }
 
-Eigen::VectorXd World::error_of(const Joint& joint) const
+void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows)
 {
-    const Body& a = bodies[static_cast<std::size_t>(joint.a)];
-    const Body& b = bodies[static_cast<std::size_t>(joint.b)];
-    switch (joint.kind) {
-        case Joint::Kind::distance:
-            return Eigen::VectorXd::Constant(
-                1, distance_error(a, b, joint.local_a, joint.local_b, joint.length));
-        case Joint::Kind::frames:
-            return frame_error(a, b, joint.frame_a, joint.frame_b, joint.linear, joint.angular);
-        case Joint::Kind::swing_limit:
-            return Eigen::VectorXd::Constant(1,
-                                             swing_angle(a, b, joint.frame_a, joint.frame_b) - joint.length);
-        case Joint::Kind::drive: {
-            // What a position solve mends: how far the coordinate is beyond its limits.
-            const double value = drive_value(a, b, joint.frame_a, joint.frame_b, joint.axis);
-            return Eigen::VectorXd::Constant(
-                1, std::min(value - joint.lower, 0.0) + std::max(value - joint.upper, 0.0));
-        }
-        case Joint::Kind::ball_socket:
-            break;
-    }
-    return point_error(a, b, joint.local_a, joint.local_b).head(is_planar_pair(joint.a, joint.b) ? 2 : 3);
-}
-
-World::JointRow World::begin_joint(Joint& joint, double h, const SolverSettings& settings)
-{
-    const bool substeps = settings.method == Method::soft_step;
     const double beta =
         settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
     const Soft rigid{0, 1, 0};
-    Soft soft =
-        substeps ? softness(settings.joint_hertz, settings.joint_damping_ratio, h) : Soft{beta / h, 1, 0};
-    const bool spring = joint.hertz > 0;
-    if (spring) soft = softness(joint.hertz, joint.damping_ratio, h);
-    const Eigen::VectorXd error = error_of(joint);
-    JointRow row{&joint,
-                 jacobian_of(joint),
-                 {},
-                 soft.rate * error,
-                 {},
-                 soft,
-                 spring ? soft : rigid,
-                 std::numeric_limits<double>::max()};
-    row.relax_bias = row.relax_soft.rate * error;
-    if (is_one_sided(joint)) {
-        row.upper = 0;
-        if (error(0) < 0) {  // slack: it may tighten within the substep and no further
-            row.soft = rigid;
-            row.bias = row.relax_bias = error / h;
+    const Soft usual = settings.method == Method::soft_step
+                           ? softness(settings.joint_hertz, settings.joint_damping_ratio, h)
+                           : Soft{beta / h, 1, 0};
+    std::vector<Block> blocks = blocks_of(joint);
+    joint.impulses.resize(blocks.size());
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        Block& block = blocks[i];
+        BlockRow row{&joint, i, block, {}, {}, {}, usual, rigid, h * block.most};
+        row.mass = effective_mass(block.jacobian, bodies[static_cast<std::size_t>(joint.a)],
+                                  bodies[static_cast<std::size_t>(joint.b)]);
+        if (block.kind == Block::Kind::motor) row.soft = rigid;
+        if (block.hertz > 0) row.soft = row.relax_soft = softness(block.hertz, block.damping_ratio, h);
+        row.bias = row.soft.rate * block.error;
+        row.relax_bias = row.relax_soft.rate * block.error;
+        if (block.kind == Block::Kind::limit) {
+            if (block.error(0) > 0) {  // room: it may be used up within the substep and no further
+                row.soft = rigid;
+                row.bias = row.relax_bias = block.error / h;
+            } else {
+                row.bias = row.bias.cwiseMax(-static_cast<double>(settings.push_out_speed));
+            }
         }
+        if (block.speed.size() > 0) {
+            row.bias -= block.speed;
+            row.relax_bias -= block.speed;
+        }
+        if (row.impulse().size() != block.error.size()) row.impulse() = 0 * block.error;
+        apply(joint.a, joint.b, block.jacobian, row.impulse());
+        rows.push_back(row);
     }
-    row.mass = effective_mass(row.jacobian, bodies[static_cast<std::size_t>(joint.a)],
-                              bodies[static_cast<std::size_t>(joint.b)]);
-    const bool drive = joint.kind == Joint::Kind::drive;
-    const Eigen::Index impulses = drive ? 3 : row.jacobian.rows();
-    if (joint.impulse.size() != impulses) joint.impulse = Eigen::VectorXd::Zero(impulses);
-    if (drive) {
-        row.value =
-            drive_value(bodies[static_cast<std::size_t>(joint.a)], bodies[static_cast<std::size_t>(joint.b)],
-                        joint.frame_a, joint.frame_b, joint.axis);
-        row.h = h;
-        row.push_out_speed = settings.push_out_speed;
-        row.limit_soft =
-            substeps ? softness(settings.joint_hertz, settings.joint_damping_ratio, h) : Soft{beta / h, 1, 0};
-        apply(joint.a, joint.b, row.jacobian, Eigen::VectorXd::Constant(1, joint.impulse.sum()));
-    } else {
-        apply(joint.a, joint.b, row.jacobian, joint.impulse);
-    }
-    return row;
 }
 
-void World::solve_joint(JointRow& row, bool relax)
+void World::solve_block(BlockRow& row, bool relax)
 {
-    Joint& joint = *row.joint;
-    if (joint.kind == Joint::Kind::drive) {
-        solve_drive(row, relax);
-        return;
-    }
+    const Joint& joint = *row.joint;
     const Soft& soft = relax ? row.relax_soft : row.soft;
-    const Eigen::VectorXd bias = relax ? row.relax_bias : row.bias;
-    Eigen::VectorXd impulse = joint.impulse -
-                              soft.mass_scale * row.mass * (speed(joint.a, joint.b, row.jacobian) + bias) -
-                              soft.impulse_scale * joint.impulse;
-    if (impulse.size() == 1) impulse(0) = std::min(impulse(0), row.upper);
-    apply(joint.a, joint.b, row.jacobian, impulse - joint.impulse);
-    joint.impulse = impulse;
-}
-
-/// Spring, motor and limit one after another, each an impulse of its own along the one row.
-void World::solve_drive(JointRow& row, bool relax)
-{
-    Joint& joint = *row.joint;
-    const double mass = row.mass(0, 0);
-    const auto change_to = [&](Eigen::Index which, double wanted) {
-        apply(joint.a, joint.b, row.jacobian, Eigen::VectorXd::Constant(1, wanted - joint.impulse(which)));
-        joint.impulse(which) = wanted;
-    };
-    const auto v = [&] { return speed(joint.a, joint.b, row.jacobian)(0); };
-    if (joint.hertz > 0) {
-        change_to(0,
-                  joint.impulse(0) -
-                      row.soft.mass_scale * mass * (v() + row.soft.rate * (row.value - joint.spring_target)) -
-                      row.soft.impulse_scale * joint.impulse(0));
-    }
-    const double most = row.h * joint.motor_max_force;
-    change_to(1, std::clamp(joint.impulse(1) - mass * (v() - joint.motor_speed), -most, most));
-
-    // The nearer limit, as C >= 0 along `side`; both at once when there is no room between them.
-    const double above = row.value - joint.lower, below = joint.upper - row.value;
-    const bool lock = joint.lower == joint.upper;
-    const double side = lock || above < below ? 1 : -1, c = side > 0 ? above : below;
-    Soft soft = relax ? Soft{0, 1, 0} : row.limit_soft;
-    double bias = soft.rate * c;
-    if (!lock) {
-        bias = std::max(bias, -row.push_out_speed);
-        if (c > 0) {
-            soft = {0, 1, 0};
-            bias = c / row.h;
-        }
-    }
-    const double held = side * joint.impulse(2);
-    const double wanted = held - soft.mass_scale * mass * (side * v() + bias) - soft.impulse_scale * held;
-    change_to(2, side * (lock ? wanted : std::max(wanted, 0.0)));
+    const Eigen::VectorXd& bias = relax ? row.relax_bias : row.bias;
+    const Eigen::VectorXd held = row.impulse();
+    const double side = row.block.side;
+    Eigen::VectorXd wanted =
+        held - soft.mass_scale * row.mass * (speed(joint.a, joint.b, row.block.jacobian) + side * bias) -
+        soft.impulse_scale * held;
+    if (row.block.kind == Block::Kind::limit) wanted(0) = side * std::max(side * wanted(0), 0.0);
+    if (wanted.norm() > row.most) wanted *= row.most / wanted.norm();
+    apply(joint.a, joint.b, row.block.jacobian, wanted - held);
+    row.impulse() = wanted;
 }
 
 World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
@@ -301,15 +209,18 @@ void World::project(std::vector<ContactRow>& contacts, const SolverSettings& set
         body_b.advance(change.tail<6>(), 1);
     };
     for (Joint& joint : joints) {
-        // Springs are forces, not positions.
-        if (joint.hertz > 0 && joint.kind != Joint::Kind::drive) continue;
-        Eigen::VectorXd error = error_of(joint);
-        if (is_one_sided(joint)) error = error.cwiseMax(0.0);
-        const Jacobian j = jacobian_of(joint);
-        move(joint.a, joint.b, j,
-             -effective_mass(j, bodies[static_cast<std::size_t>(joint.a)],
-                             bodies[static_cast<std::size_t>(joint.b)]) *
-                 error);
+        const std::size_t count = joint.impulses.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            const Block block = blocks_of(joint)[i];
+            // Springs and motors are forces, not positions.
+            if (block.hertz > 0 || block.kind == Block::Kind::motor) continue;
+            Eigen::VectorXd error = block.error;
+            if (block.kind == Block::Kind::limit) error = block.side * error.cwiseMin(0.0);
+            move(joint.a, joint.b, block.jacobian,
+                 -effective_mass(block.jacobian, bodies[static_cast<std::size_t>(joint.a)],
+                                 bodies[static_cast<std::size_t>(joint.b)]) *
+                     error);
+        }
     }
     for (ContactRow& row : contacts) {
         const double deep = std::min(separation(row) + static_cast<double>(settings.penetration_slop), 0.0);
@@ -324,20 +235,22 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
     const double warm = settings.warm_start && last_substep_ > 0 ? h / last_substep_ : 0;
     const bool soft_step = settings.method == Method::soft_step;
     start_ = bodies;
-    for (Joint& joint : joints) joint.impulse *= warm;
+    for (Joint& joint : joints) {
+        for (Eigen::VectorXd& impulse : joint.impulses) impulse *= warm;
+    }
     std::vector<ContactRow> contacts;
     for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, warm));
 
     for (int substep = 0; substep < settings.substeps; ++substep) {
         for (Body& body : bodies) body.accelerate(eigen(settings.gravity), h);
-        std::vector<JointRow> rows;
-        for (Joint& joint : joints) rows.push_back(begin_joint(joint, h, settings));
+        std::vector<BlockRow> rows;
+        for (Joint& joint : joints) begin_joint(joint, h, settings, rows);
         for (ContactRow& row : contacts) {
             apply(row.point->a, row.point->b, row.normal, Eigen::VectorXd::Constant(1, row.impulse));
             apply(row.point->a, row.point->b, row.tangents, row.friction);
         }
         for (int i = 0; i < settings.iterations; ++i) {
-            for (JointRow& row : rows) solve_joint(row, false);
+            for (BlockRow& row : rows) solve_block(row, false);
             for (ContactRow& row : contacts) solve_contact(row, h, settings, false);
         }
         for (Body& body : bodies) {
@@ -347,7 +260,7 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
             for (int i = 0; i < settings.projections; ++i) project(contacts, settings);
         }
         for (int i = 0; soft_step && i < settings.relaxations; ++i) {
-            for (JointRow& row : rows) solve_joint(row, true);
+            for (BlockRow& row : rows) solve_block(row, true);
             for (ContactRow& row : contacts) solve_contact(row, h, settings, true);
         }
     }
@@ -366,6 +279,15 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
         // The tangents' linear part on b is the direction itself.
         kept.friction = row.tangents.middleCols<3>(6).transpose() * row.friction;
         memory_[row.point->contact.key] = kept;
+    }
+    end_step(h);
+}
+
+void World::end_step(double h)
+{
+    for (Joint& joint : joints) {
+        const auto a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+        joint.travelled += joint.model->travel(start_[a], start_[b], bodies[a], bodies[b]);
     }
     last_substep_ = h;
 }

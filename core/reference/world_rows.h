@@ -5,15 +5,16 @@
 
 namespace motley::reference {
 
-struct World::JointRow {
+struct World::BlockRow {
     Joint* joint;
-    Jacobian jacobian;
+    std::size_t index;  ///< of the block in its joint
+    Block block;
     Eigen::MatrixXd mass;
     Eigen::VectorXd bias, relax_bias;
     Soft soft, relax_soft;
-    double upper;                                 ///< largest impulse: 0 of a rope
-    double value = 0, h = 0, push_out_speed = 0;  ///< of a drive
-    Soft limit_soft{};
+    double most;  ///< largest norm of the impulse
+
+    [[nodiscard]] Eigen::VectorXd& impulse() const { return joint->impulses[index]; }
 };
 
 struct World::ContactRow {

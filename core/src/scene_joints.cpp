@@ -37,6 +37,15 @@ ConstraintId Scene::take_joint_slot(int type, std::size_t index)
     return {slot, entry.generation};
 }
 
+std::size_t Scene::index_of_joint(ConstraintId joint, int type) const
+{
+    if (!is_alive(joint))
+        refuse("joint", joint.generation == 0 ? "null" : "removed", "a joint of this scene");
+    const JointStores::Slot& slot = joints_.slots[joint.slot];
+    if (slot.type != type) refuse("set_joint.definition", "of another type", "the type of the joint");
+    return slot.index;
+}
+
 bool Scene::is_alive(ConstraintId joint) const
 {
     return joint.slot < joints_.slots.size() && joints_.slots[joint.slot].live &&

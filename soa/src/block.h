@@ -9,6 +9,7 @@
 
 #include "motley/core/body_store.h"
 #include "motley/core/constraint_types.h"
+#include "motley/core/joint_pose.h"
 #include "motley/core/step_constants.h"
 #include "motley/soa/isa.h"
 
@@ -47,6 +48,7 @@ struct ConstraintData {
         nullptr;                     ///< entry of memory_in by constraint; null: the constraint's own
     float* memory_out = nullptr;     ///< by constraint
     std::int64_t memory_stride = 0;  ///< floats
+    const WorldPoints* world_points = nullptr;  ///< by constraint; null for types without
 };
 
 /// Rows of one kind as the kernels see them.

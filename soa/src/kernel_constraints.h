@@ -56,6 +56,21 @@ void scatter_struct(const Struct& value, float* table, std::int64_t stride, cons
     for (int q = 0; q < quads; ++q) store_quads(table + 4 * q, stride, index, padded[q], count);
 }
 
+/// x - point, in double, narrowed a lane at a time.
+template <class Point>
+Vec3<Lanes> from_points(const BodyArrays& arrays, const std::int32_t* rows, const Point& point_of)
+{
+    alignas(64) float x[Lanes_width], y[Lanes_width], z[Lanes_width];
+    for (int lane = 0; lane < Lanes_width; ++lane) {
+        const Vec3<double>& at = arrays.pose[rows[lane]].position;
+        const Vec3<double>& point = point_of(lane);
+        x[lane] = static_cast<float>(at.x - point.x);
+        y[lane] = static_cast<float>(at.y - point.y);
+        z[lane] = static_cast<float>(at.z - point.z);
+    }
+    return {load_lanes(x), load_lanes(y), load_lanes(z)};
+}
+
 /// Impulses that are not finite are forgotten: a contained body must not poison the step that revives it.
 template <class Struct>
 Struct only_finite(Struct value)
@@ -179,8 +194,22 @@ struct Kernels {
                         between_bodies(bundle.arrays_a, bundle.rows_a, bundle.arrays_b, bundle.rows_b),
                         load_orientation<kind_a>(bundle.arrays_a, bundle.rows_a),
                         load_orientation<kind_b>(bundle.arrays_b, bundle.rows_b)};
-                    store_row(Type::prepare(context.step, parameters, memory, pose, a, b, impulse),
-                              bundle.row);
+                    if constexpr (requires { &Type::world_points; }) {
+                        const auto points = [&](int lane) -> const WorldPoints& {
+                            return data.world_points[bundle.constraint[lane]];
+                        };
+                        const WorldPose<Lanes, kind_a, kind_b> in_world{
+                            pose,
+                            from_points(bundle.arrays_a, bundle.rows_a,
+                                        [&](int lane) -> const Vec3<double>& { return points(lane).a; }),
+                            from_points(bundle.arrays_b, bundle.rows_b,
+                                        [&](int lane) -> const Vec3<double>& { return points(lane).b; })};
+                        store_row(Type::prepare(context.step, parameters, memory, in_world, a, b, impulse),
+                                  bundle.row);
+                    } else {
+                        store_row(Type::prepare(context.step, parameters, memory, pose, a, b, impulse),
+                                  bundle.row);
+                    }
                 } else {
                     store_row(Type::prepare(context.step, parameters, memory, a, b, impulse), bundle.row);
                 }
@@ -275,9 +304,17 @@ struct Kernels {
     {
         for (std::int32_t block = begin; block < end; ++block) {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
-                const Memory memory = only_finite(Type::template remember<Lanes>(
-                    load_row<Row>(bundle.row), load_row<Impulse>(bundle.impulse)));
-                scatter_struct(memory, data.memory_out, data.memory_stride, bundle.constraint, bundle.count);
+                const auto row = load_row<Row>(bundle.row);
+                const auto impulse = load_row<Impulse>(bundle.impulse);
+                Memory memory;
+                // Some remember how far their bodies have gone.
+                if constexpr (requires(A a, B b) { Type::template remember<Lanes>(row, impulse, a, b); }) {
+                    memory = Type::template remember<Lanes>(row, impulse, bundle.load_a(), bundle.load_b());
+                } else {
+                    memory = Type::template remember<Lanes>(row, impulse);
+                }
+                scatter_struct(only_finite(memory), data.memory_out, data.memory_stride, bundle.constraint,
+                               bundle.count);
             });
         }
     }

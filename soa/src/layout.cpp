@@ -97,6 +97,7 @@ void Layout::point_at_data(Scene& scene, std::span<const Contact> list)
         data.memory_in = store.memory.data();
         data.memory_out = store.memory.data();
         data.memory_stride = quad_floats<typename Store::Memory>;
+        data.world_points = store.world_points.data();
     });
 }
 

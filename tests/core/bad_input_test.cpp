@@ -235,34 +235,26 @@ TEST(BadInput, EveryFieldOfAJointIsChecked)
         distance(
             "anchor b", [](auto& j, Fixture&) { j.local_anchor_b.y = nan; }, "local_anchor_b.y", "nan"),
         distance(
-            "length negative", [](auto& j, Fixture&) { j.length = -0.3F; }, "DistanceDefinition.length",
-            "-0.3"),
+            "length negative", [](auto& j, Fixture&) { j.min_length = -0.3F; },
+            "DistanceDefinition.min_length", "-0.3"),
         distance(
-            "length NaN", [](auto& j, Fixture&) { j.length = nan; }, "DistanceDefinition.length", "nan"),
+            "length NaN", [](auto& j, Fixture&) { j.max_length = nan; }, "DistanceDefinition.max_length",
+            "nan"),
         distance(
-            "mode", [](auto& j, Fixture&) { j.mode = static_cast<DistanceMode>(5); },
-            "DistanceDefinition.mode", "5"),
+            "lengths crossed", [](auto& j, Fixture&) { j.min_length = 2; }, "DistanceDefinition.min_length",
+            "2"),
         distance(
-            "hertz zero",
-            [](auto& j, Fixture&) {
-                j.mode = DistanceMode::spring;
-                j.hertz = 0;
-            },
-            "DistanceDefinition.hertz", "0"),
+            "hertz", [](auto& j, Fixture&) { j.spring_hertz = nan; }, "DistanceDefinition.spring_hertz",
+            "nan"),
         distance(
-            "hertz NaN",
-            [](auto& j, Fixture&) {
-                j.mode = DistanceMode::spring;
-                j.hertz = nan;
-            },
-            "DistanceDefinition.hertz", "nan"),
+            "damping", [](auto& j, Fixture&) { j.spring_damping_ratio = -1; },
+            "DistanceDefinition.spring_damping_ratio", "-1"),
         distance(
-            "damping",
-            [](auto& j, Fixture&) {
-                j.mode = DistanceMode::spring;
-                j.damping_ratio = -1;
-            },
-            "DistanceDefinition.damping_ratio", "-1"),
+            "rest length", [](auto& j, Fixture&) { j.rest_length = -2; }, "DistanceDefinition.rest_length",
+            "-2"),
+        distance(
+            "spring force", [](auto& j, Fixture&) { j.spring_max_force = -1; },
+            "DistanceDefinition.spring_max_force", "-1"),
     };
     for (const Case& c : cases) expect_refused(c);
 }

@@ -80,7 +80,7 @@ TEST(Pendulum, PeriodMatchesClosedFormWithinOnePercent)
     DistanceDefinition rod;
     rod.body_a = scene.ground();
     rod.body_b = bob;
-    rod.length = static_cast<float>(length);
+    rod.min_length = rod.max_length = static_cast<float>(length);
     scene.add_joint(rod);
     SolverSettings settings = soft({0, -9.81F, 0});
     settings.substeps = 16;
@@ -112,10 +112,11 @@ TEST(Spring, FrequencyAndDecayMatchClosedForm)
     DistanceDefinition spring;
     spring.body_a = scene.ground();
     spring.body_b = bob;
-    spring.mode = DistanceMode::spring;
-    spring.length = 1;
-    spring.hertz = hertz;
-    spring.damping_ratio = zeta;
+    spring.min_length = 0;
+    spring.max_length = std::numeric_limits<float>::infinity();
+    spring.rest_length = 1;
+    spring.spring_hertz = hertz;
+    spring.spring_damping_ratio = zeta;
     scene.add_joint(spring);
     SolverSettings settings = soft();
     settings.substeps = 32;
@@ -187,8 +188,8 @@ TEST(Rope, SlackHasNoForceAndTautHoldsTheWeight)
     DistanceDefinition rope;
     rope.body_a = scene.ground();
     rope.body_b = bob;
-    rope.mode = DistanceMode::rope;
-    rope.length = 1;
+    rope.min_length = 0;
+    rope.max_length = 1;
     const ConstraintId joint = scene.add_joint(rope);
     Solver solver(soft({0, -10, 0}));
     solver.step(scene, 1.0F / 60);

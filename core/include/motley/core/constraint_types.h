@@ -7,7 +7,10 @@
 #include "motley/core/constraints/distance.h"
 #include "motley/core/constraints/drive.h"
 #include "motley/core/constraints/frame_joint.h"
+#include "motley/core/constraints/pulley.h"
+#include "motley/core/constraints/servo.h"
 #include "motley/core/constraints/swing_limit.h"
+#include "motley/core/constraints/transmission.h"
 
 namespace motley {
 
@@ -29,7 +32,8 @@ using JointTypes =
              FrameJointOf<SliderDefinition>::type, FrameJointOf<PointOnPlaneDefinition>::type,
              FrameJointOf<PointOnLineDefinition>::type, FrameJointOf<RotationLockDefinition>::type,
              FrameJointOf<ParallelAxesDefinition>::type, FrameJointOf<PerpendicularAxesDefinition>::type,
-             Drive<DriveAxis::slide>, Drive<DriveAxis::twist>, SwingLimit>;
+             Drive<DriveAxis::slide>, Drive<DriveAxis::twist>, SwingLimit, PointServo, AngularServo, Gear,
+             RackAndPinion, Pulley>;
 
 /// Types of constraint in all: contacts first, then joints, each at its place in the lists.
 inline constexpr int contact_type_count = ContactTypes::size;

@@ -11,6 +11,7 @@
 #include "motley/core/constraint_types.h"
 #include "motley/core/contact_cache.h"
 #include "motley/core/ids.h"
+#include "motley/core/joint_pose.h"
 
 namespace motley {
 
@@ -27,22 +28,32 @@ struct JointStore {
     using Memory = typename Type::template Memory<float>;
 
     std::vector<typename Type::Definition> definitions;
-    AlignedVector<float> parameters;    ///< quad_floats<Parameters> a joint
-    AlignedVector<float> memory;        ///< quad_floats<Memory> a joint: impulses of the last substep
-    std::vector<std::uint8_t> colours;  ///< no_colour until the first step
-    std::vector<std::uint32_t> slots;   ///< handle slot of each joint
+    AlignedVector<float> parameters;        ///< quad_floats<Parameters> a joint
+    AlignedVector<float> memory;            ///< quad_floats<Memory> a joint: impulses of the last substep
+    std::vector<WorldPoints> world_points;  ///< of types that have any
+    std::vector<std::uint8_t> colours;      ///< no_colour until the first step
+    std::vector<std::uint32_t> slots;       ///< handle slot of each joint
 
+    static constexpr bool has_world_points = requires { &Type::world_points; };
     [[nodiscard]] std::size_t size() const { return definitions.size(); }
 
     void push_back(const typename Type::Definition& definition, std::uint32_t slot)
     {
-        const Parameters packed = Type::parameters(definition);
         definitions.push_back(definition);
         parameters.resize(parameters.size() + quad_floats<Parameters>);
-        std::memcpy(&parameters[parameters.size() - quad_floats<Parameters>], &packed, sizeof packed);
+        if constexpr (has_world_points) world_points.emplace_back();
+        define(size() - 1, definition);
         memory.resize(memory.size() + quad_floats<Memory>);
         colours.push_back(no_colour);
         slots.push_back(slot);
+    }
+    /// Says a joint anew; what it remembers stays.
+    void define(std::size_t index, const typename Type::Definition& definition)
+    {
+        const Parameters packed = Type::parameters(definition);
+        definitions[index] = definition;
+        std::memcpy(&parameters[index * quad_floats<Parameters>], &packed, sizeof packed);
+        if constexpr (has_world_points) world_points[index] = Type::world_points(definition);
     }
     void forget_impulse(std::size_t index)
     {
@@ -62,6 +73,10 @@ struct JointStore {
                     quad_floats<Parameters> * sizeof(float));
         std::memcpy(&memory[index * quad_floats<Memory>], &memory[last * quad_floats<Memory>],
                     quad_floats<Memory> * sizeof(float));
+        if constexpr (has_world_points) {
+            world_points[index] = world_points[last];
+            world_points.pop_back();
+        }
         colours[index] = colours[last];
         slots[index] = slots[last];
         definitions.pop_back();

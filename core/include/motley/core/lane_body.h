@@ -321,6 +321,15 @@ Vector translation(const Body& body)
     return to_space<Vector>(to_three(body.delta));
 }
 
+/// p_b - p_a now, from what it was when the step began: only differences, so nothing is lost far from the origin.
+template <class Vector, class A, class B>
+Vector anchor_error(const Vector& start_error, const Vector& start_arm_a, const Vector& start_arm_b,
+                    const Vector& arm_a, const Vector& arm_b, const A& a, const B& b)
+{
+    return start_error + (translation<Vector>(b) - translation<Vector>(a)) + (arm_b - start_arm_b) -
+           (arm_a - start_arm_a);
+}
+
 // ---- inverses of effective masses: zero where a direction cannot move, never a division by zero
 // --------------
 

@@ -1,6 +1,7 @@
-// One side of a limit, and a lock: what an accumulated impulse wants to be.
+// Limits, locks, springs and bounds on one row: what an accumulated impulse wants to be.
 #pragma once
 
+#include "motley/core/lane_softness.h"
 #include "motley/core/scalar.h"
 #include "motley/core/step_constants.h"
 
@@ -32,6 +33,37 @@ Real lock_impulse(const StepConstants& step, const Real& c, const Real& speed, c
         return held - Real(step.joint.mass_scale) * mass * (speed + Real(step.joint.rate) * c) -
                Real(step.joint.impulse_scale) * held;
     }
+}
+
+/// Of lower <= C <= upper. One limit at a time, the nearer one; a coordinate without room between them is held from
+/// both sides.
+template <bool relax, class Real>
+Real range_impulse(const StepConstants& step, const Real& c, const Real& lower, const Real& upper,
+                   const Real& speed, const Real& mass, const Real& held)
+{
+    const Real above = c - lower, below = upper - c;
+    const Real at_lower = maximum(limit_impulse<relax>(step, above, speed, mass, held), Real(0));
+    // The upper limit is the lower one of the mirrored coordinate.
+    const Real at_upper = -maximum(limit_impulse<relax>(step, below, -speed, mass, -held), Real(0));
+    return select(lower < upper, select(above < below, at_lower, at_upper),
+                  lock_impulse<relax>(step, above, speed, mass, held));
+}
+
+/// How far C is beyond lower (negative) or upper.
+template <class Real>
+Real beyond_range(const Real& c, const Real& lower, const Real& upper)
+{
+    return minimum(c - lower, Real(0)) + maximum(c - upper, Real(0));
+}
+
+/// Of a soft C = 0, bounded. A spring is physics: relaxation leaves it as it is.
+template <class Real>
+Real spring_impulse(const LaneSoftness<Real>& spring, const Real& c, const Real& speed, const Real& mass,
+                    const Real& held, const Real& most)
+{
+    const Real wanted =
+        held - spring.mass_scale * mass * (speed + spring.rate * c) - spring.impulse_scale * held;
+    return maximum(minimum(wanted, most), -most);
 }
 
 }  // namespace motley

@@ -67,6 +67,11 @@ class Scene {
     /// Adds a joint of any registered type: add_joint(BallSocketDefinition{...}).
     template <class Definition>
     ConstraintId add_joint(const Definition& definition);
+    /// Says a joint anew: a motor's speed, a servo's target, a limit. Type and bodies stay as they are, and so does what
+    /// the joint remembers from the last step. Refuses what add_joint refuses, and a definition of another type or of
+    /// other bodies.
+    template <class Definition>
+    void set_joint(ConstraintId joint, const Definition& definition);
     void remove_joint(ConstraintId joint);
     [[nodiscard]] bool is_alive(ConstraintId joint) const;
     [[nodiscard]] std::size_t joint_count() const;
@@ -108,6 +113,7 @@ class Scene {
     void require_alive(std::span<const BodyId> bodies, const char* what) const;
     JointBodies check_joint_bodies(BodyId a, BodyId b) const;
     ConstraintId take_joint_slot(int type, std::size_t index);
+    std::size_t index_of_joint(ConstraintId joint, int type) const;
     void remove_joints_of(std::span<const BodyId> bodies);
     void remove_joint_at(int type, std::size_t index);
     void write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular);
@@ -127,6 +133,20 @@ ConstraintId Scene::add_joint(const Definition& definition)
     ++bodies_.joint_counts[definition.body_b.slot];
     joints_.version.reset();
     return id;
+}
+
+template <class Definition>
+void Scene::set_joint(ConstraintId joint, const Definition& definition)
+{
+    constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
+    auto& store = std::get<static_cast<std::size_t>(type)>(joints_.stores);
+    using Type = typename std::remove_cvref_t<decltype(store)>::Type;
+    const std::size_t index = index_of_joint(joint, type);
+    const Definition& now = store.definitions[index];
+    if (definition.body_a != now.body_a || definition.body_b != now.body_b)
+        refuse("set_joint.definition", "other bodies", "the bodies of the joint");
+    Type::validate(definition, check_joint_bodies(definition.body_a, definition.body_b));
+    store.define(index, definition);
 }
 
 }  // namespace motley

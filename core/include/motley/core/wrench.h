@@ -107,6 +107,22 @@ void apply_wrench(LaneBody<Real, BodyKind::fixed>&, const Vec3<Real>&, const Vec
 {
 }
 
+/// The same without a linear part.
+template <class Real>
+void apply_turn(LaneBody<Real, BodyKind::rigid>& body, const Vec3<Real>& angular)
+{
+    body.angular = body.angular + over_inertia(body, angular);
+}
+template <class Real>
+void apply_turn(LaneBody<Real, BodyKind::planar>& body, const Vec3<Real>& angular)
+{
+    body.yaw_rate = body.yaw_rate + body.inverse_inertia * angular.z;
+}
+template <class Real>
+void apply_turn(LaneBody<Real, BodyKind::fixed>&, const Vec3<Real>&)
+{
+}
+
 /// The same to positions: the displacement of an impulse of a position solve.
 template <class Real>
 void displace(LaneBody<Real, BodyKind::rigid>& body, const Vec3<Real>& linear, const Vec3<Real>& angular)
@@ -176,6 +192,23 @@ template <class Real>
 Vec3<Real> axis_z(const Quat<Real>& frame)
 {
     return rotate(frame, Vec3<Real>{Real(0), Real(0), Real(1)});
+}
+
+/// The rows of a lock of all rotations.
+template <class Real>
+struct RotationRows {
+    Vec3<Real> axis[3];  ///< the rows of G: J = [0, -G, 0, G]
+};
+/// C = 2 vec(q_a* q_b), w >= 0, and G = (w I - [v]x) F_a^T.
+template <class Real>
+RotationRows<Real> rotation_rows(const Quat<Real>& frame_a, const Quat<Real>& frame_b, Real* error)
+{
+    const Quat<Real> q = relative_rotation(frame_a, frame_b);
+    error[0] = q.x + q.x;
+    error[1] = q.y + q.y;
+    error[2] = q.z + q.z;
+    return {{rotate(frame_a, Vec3<Real>{q.w, q.z, -q.y}), rotate(frame_a, Vec3<Real>{-q.z, q.w, q.x}),
+             rotate(frame_a, Vec3<Real>{q.y, -q.x, q.w})}};
 }
 
 }  // namespace motley

@@ -6,29 +6,11 @@
 #include <map>
 #include <vector>
 
-#include "motley/core/constraints/ball_socket_definition.h"
 #include "motley/core/constraints/contact_definition.h"
-#include "motley/core/constraints/distance_definition.h"
 #include "motley/core/settings.h"
-#include "motley/reference/constraints.h"
+#include "motley/reference/joint.h"
 
 namespace motley::reference {
-
-/// A joint between bodies of the world by index, of any kind.
-struct Joint {
-    enum class Kind { ball_socket, distance, frames, drive, swing_limit } kind = Kind::ball_socket;
-    int a = 0, b = 0;
-    Eigen::Vector3d local_a = Eigen::Vector3d::Zero(), local_b = Eigen::Vector3d::Zero();
-    DistanceMode mode = DistanceMode::rod;
-    double length = 1;                    ///< m; of a swing limit the largest angle, rad
-    double hertz = 0, damping_ratio = 0;  ///< hertz > 0: a spring, also a drive's
-    Frame frame_a{}, frame_b{};
-    LinearLock linear = LinearLock::none;
-    AngularLock angular = AngularLock::none;
-    DriveAxis axis = DriveAxis::slide;
-    double lower = 0, upper = 0, motor_speed = 0, motor_max_force = 0, spring_target = 0;
-    Eigen::VectorXd impulse{};  ///< carried from step to step; of a drive: spring, motor, limit
-};
 
 /// A contact of one step between bodies by index.
 struct ContactPoint {
@@ -55,7 +37,7 @@ class World {
     struct Soft {
         double rate, mass_scale, impulse_scale;
     };
-    struct JointRow;
+    struct BlockRow;
     struct ContactRow;
     struct Remembered {
         double normal = 0;
@@ -70,15 +52,14 @@ class World {
     void apply(int a, int b, const Jacobian& jacobian, const Eigen::VectorXd& impulse);
     [[nodiscard]] Eigen::VectorXd speed(int a, int b, const Jacobian& jacobian) const;
 
-    [[nodiscard]] Jacobian jacobian_of(const Joint& joint) const;
-    [[nodiscard]] Eigen::VectorXd error_of(const Joint& joint) const;
-    JointRow begin_joint(Joint& joint, double h, const SolverSettings& settings);
-    void solve_joint(JointRow& row, bool relax);
-    void solve_drive(JointRow& row, bool relax);
+    [[nodiscard]] std::vector<Block> blocks_of(const Joint& joint) const;
+    void begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows);
+    void solve_block(BlockRow& row, bool relax);
     ContactRow begin_contact(const ContactPoint& point, double warm);
     void solve_contact(ContactRow& row, double h, const SolverSettings& settings, bool relax);
     [[nodiscard]] double separation(const ContactRow& row) const;
     void project(std::vector<ContactRow>& contacts, const SolverSettings& settings);
+    void end_step(double h);
 };
 
 }  // namespace motley::reference

@@ -78,7 +78,8 @@ struct BallSocket {
         substep.arm_a = turned(a, row.start_arm_a);
         substep.arm_b = turned(b, row.start_arm_b);
         substep.mass = inverse(inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b));
-        substep.bias = Real(step.joint.rate) * error_now(row, substep.arm_a, substep.arm_b, a, b);
+        substep.bias = Real(step.joint.rate) * anchor_error(row.start_error, row.start_arm_a, row.start_arm_b,
+                                                            substep.arm_a, substep.arm_b, a, b);
         apply_impulse(a, substep.arm_a, -impulse.push);
         apply_impulse(b, substep.arm_b, impulse.push);
     }
@@ -104,7 +105,8 @@ struct BallSocket {
         const auto arm_a = turned(a, row.start_arm_a);
         const auto arm_b = turned(b, row.start_arm_b);
         const auto mass = inverse(inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b));
-        const auto push = -(mass * error_now(row, arm_a, arm_b, a, b));
+        const auto push =
+            -(mass * anchor_error(row.start_error, row.start_arm_a, row.start_arm_b, arm_a, arm_b, a, b));
         apply_displacement(a, arm_a, -push);
         apply_displacement(b, arm_b, push);
     }
@@ -125,15 +127,6 @@ struct BallSocket {
                 static_cast<float>(std::sqrt(dot(d, d))),
                 0,
                 JointState::active};
-    }
-
-  private:
-    /// C = C_0 + (x_b - x_a moved) + (arms turned): only differences, so nothing is lost far from the origin.
-    template <class Row, class Vector, class A, class B>
-    static Vector error_now(const Row& row, const Vector& arm_a, const Vector& arm_b, const A& a, const B& b)
-    {
-        return row.start_error + (translation<Vector>(b) - translation<Vector>(a)) +
-               (arm_b - row.start_arm_b) - (arm_a - row.start_arm_a);
     }
 };
 

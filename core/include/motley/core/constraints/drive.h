@@ -42,7 +42,7 @@ struct Drive {
         Quat<Real> rotation_b;
         Real motor_speed, motor_max_force;
         Real spring_hertz, spring_damping_ratio;
-        Real spring_target;
+        Real spring_target, spring_max_force;
     };
     template <class Real>
     struct Memory {
@@ -54,8 +54,8 @@ struct Drive {
         Quat<Real> start_frame_a, start_frame_b;
         Real lower, upper;
         Real motor_speed, motor_max_impulse;
-        Real spring_target;
-        LaneSoftness<Real> spring;  ///< mass_scale and impulse_scale 0 where there is none
+        Real spring_target, spring_max_impulse;
+        LaneSoftness<Real> spring;  ///< mass_scale 0 and impulse_scale 1 where there is none
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -84,6 +84,7 @@ struct Drive {
         check_range("spring_damping_ratio", drive.spring_damping_ratio, 0, 1e6F, "0 to 1e6");
         check_range("spring_target", drive.spring_target, -most, most,
                     slides ? "-1e9 to 1e9 (m)" : "-pi to pi (rad)");
+        check_bound("spring_max_force", drive.spring_max_force);
     }
     static Parameters<float> parameters(const Definition& drive)
     {
@@ -97,7 +98,8 @@ struct Drive {
                 drive.motor_max_force,
                 drive.spring_hertz,
                 drive.spring_damping_ratio,
-                drive.spring_target};
+                drive.spring_target,
+                std::fmin(drive.spring_max_force, largest_force)};
     }
 
     template <class Real, class A, class B>
@@ -116,6 +118,7 @@ struct Drive {
         row.motor_speed = drive.motor_speed;
         row.motor_max_impulse = Real(step.substep) * drive.motor_max_force;
         row.spring_target = drive.spring_target;
+        row.spring_max_impulse = Real(step.substep) * drive.spring_max_force;
         // Without a spring nothing is wanted and nothing is kept: impulse_scale 1 forgets.
         row.spring = softness_or(step, drive.spring_hertz, drive.spring_damping_ratio, Softness{0, 0, 1});
         const Real warm(step.warm_start_scale);
@@ -139,32 +142,18 @@ struct Drive {
                       A& a, B& b)
     {
         const Real before = impulse.motor + impulse.spring + impulse.limit;
-        Real speed = dot(substep.axis, linear_of(b) - linear_of(a)) + dot(substep.lever_b, angular_of(b)) -
-                     dot(substep.lever_a, angular_of(a));
-        if constexpr (!slides) speed = dot(substep.axis, angular_of(b) - angular_of(a));
+        Real speed = speed_of(substep, a, b);
 
         const auto change_to = [&](Real& held, const Real& wanted) {
             speed = speed + substep.inverse_mass * (wanted - held);
             held = wanted;
         };
-        // A spring is physics: relaxation leaves it as it is.
-        change_to(impulse.spring, impulse.spring -
-                                      row.spring.mass_scale * substep.mass *
-                                          (speed + row.spring.rate * (substep.value - row.spring_target)) -
-                                      row.spring.impulse_scale * impulse.spring);
+        change_to(impulse.spring, spring_impulse(row.spring, substep.value - row.spring_target, speed,
+                                                 substep.mass, impulse.spring, row.spring_max_impulse));
         const Real motor = impulse.motor - substep.mass * (speed - row.motor_speed);
         change_to(impulse.motor, maximum(minimum(motor, row.motor_max_impulse), -row.motor_max_impulse));
-
-        const Real above = substep.value - row.lower, below = row.upper - substep.value;
-        const Real at_lower =
-            maximum(limit_impulse<relax>(step, above, speed, substep.mass, impulse.limit), Real(0));
-        // The upper limit is the lower one of the mirrored coordinate.
-        const Real at_upper =
-            -maximum(limit_impulse<relax>(step, below, -speed, substep.mass, -impulse.limit), Real(0));
-        // One limit at a time, the nearer one; a coordinate without room between them is held from both sides.
-        const Real both = select(row.lower < row.upper, select(above < below, at_lower, at_upper),
-                                 lock_impulse<relax>(step, above, speed, substep.mass, impulse.limit));
-        change_to(impulse.limit, both);
+        change_to(impulse.limit, range_impulse<relax>(step, substep.value, row.lower, row.upper, speed,
+                                                      substep.mass, impulse.limit));
 
         push(substep, impulse.motor + impulse.spring + impulse.limit - before, a, b);
     }
@@ -174,8 +163,7 @@ struct Drive {
     {
         Substep now;
         build<Real>(row, now, a, b);
-        const Real wrong = minimum(now.value - row.lower, Real(0)) + maximum(now.value - row.upper, Real(0));
-        const Real lambda = -(now.mass * wrong);
+        const Real lambda = -(now.mass * beyond_range(now.value, row.lower, row.upper));
         if constexpr (slides) {
             displace(a, -(lambda * now.axis), -(lambda * now.lever_a));
             displace(b, lambda * now.axis, lambda * now.lever_b);
@@ -226,8 +214,8 @@ struct Drive {
         if constexpr (slides) {
             const Vec3<Real> arm_a = rotate(turn_of(a), row.start_arm_a),
                              arm_b = rotate(turn_of(b), row.start_arm_b);
-            const Vec3<Real> d = row.start_separation + (to_three(b.delta) - to_three(a.delta)) +
-                                 (arm_b - row.start_arm_b) - (arm_a - row.start_arm_a);
+            const Vec3<Real> d =
+                anchor_error(row.start_separation, row.start_arm_a, row.start_arm_b, arm_a, arm_b, a, b);
             substep.axis = axis_x(frame_a);
             substep.lever_a = cross(arm_a + d, substep.axis);
             substep.lever_b = cross(arm_b, substep.axis);
@@ -253,6 +241,17 @@ struct Drive {
         substep.mass = select(usable, inverse_or_zero(substep.inverse_mass), Real(0));
     }
 
+    template <class Substep, class A, class B>
+    static auto speed_of(const Substep& substep, const A& a, const B& b)
+    {
+        if constexpr (slides) {
+            return dot(substep.axis, linear_of(b) - linear_of(a)) + dot(substep.lever_b, angular_of(b)) -
+                   dot(substep.lever_a, angular_of(a));
+        } else {
+            return dot(substep.axis, angular_of(b) - angular_of(a));
+        }
+    }
+
     template <class Real, class Substep, class A, class B>
     static void push(const Substep& substep, const Real& lambda, A& a, B& b)
     {
@@ -260,9 +259,8 @@ struct Drive {
             apply_wrench(a, -(lambda * substep.axis), -(lambda * substep.lever_a));
             apply_wrench(b, lambda * substep.axis, lambda * substep.lever_b);
         } else {
-            const Vec3<Real> none{Real(0), Real(0), Real(0)};
-            apply_wrench(a, none, -(lambda * substep.axis));
-            apply_wrench(b, none, lambda * substep.axis);
+            apply_turn(a, -(lambda * substep.axis));
+            apply_turn(b, lambda * substep.axis);
         }
     }
 };

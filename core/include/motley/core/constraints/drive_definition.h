@@ -34,6 +34,7 @@ struct DriveDefinition {
     float spring_hertz = 0;          ///< 0: no spring; to 1e6 (Hz), on the drive's own effective mass
     float spring_damping_ratio = 0;  ///< 0 to 1e6
     float spring_target = 0;         ///< m or rad, finite; twist: -pi to pi
+    float spring_max_force = std::numeric_limits<float>::infinity();  ///< N or N m, >= 0
 };
 
 using SlideDriveDefinition = DriveDefinition<DriveAxis::slide>;

@@ -228,13 +228,8 @@ struct FrameJoint {
                                 Real* error)
     {
         if constexpr (angular_lock == AngularLock::all) {
-            const Quat<Real> q = relative_rotation(frame_a, frame_b);
-            g[0] = rotate(frame_a, Vec3<Real>{q.w, q.z, -q.y});
-            g[1] = rotate(frame_a, Vec3<Real>{-q.z, q.w, q.x});
-            g[2] = rotate(frame_a, Vec3<Real>{q.y, -q.x, q.w});
-            error[0] = q.x + q.x;
-            error[1] = q.y + q.y;
-            error[2] = q.z + q.z;
+            const RotationRows<Real> lock = rotation_rows(frame_a, frame_b, error);
+            for (int i = 0; i < 3; ++i) g[i] = lock.axis[i];
         } else if constexpr (angular_lock == AngularLock::swing) {
             const Vec3<Real> x_b = axis_x(frame_b), y_a = axis_y(frame_a), z_a = axis_z(frame_a);
             g[0] = cross(x_b, y_a);
@@ -259,9 +254,8 @@ struct FrameJoint {
         if constexpr (has_arms) {
             const Vec3<Real> arm_a = rotate(turn_of(a), row.start.arm_a);
             substep.arm.b = rotate(turn_of(b), row.start.arm_b);
-            // Only differences, so nothing is lost far from the origin.
-            const Vec3<Real> d = row.start.separation + (to_three(b.delta) - to_three(a.delta)) +
-                                 (substep.arm.b - row.start.arm_b) - (arm_a - row.start.arm_a);
+            const Vec3<Real> d = anchor_error(row.start.separation, row.start.arm_a, row.start.arm_b, arm_a,
+                                              substep.arm.b, a, b);
             substep.arm.a = linear_lock == LinearLock::point ? arm_a : arm_a + d;
             linear_rows_of(frame_a, d, e, substep.error);
             for (int i = 0; i < linear_rows; ++i) {

@@ -150,9 +150,8 @@ struct SwingLimit {
     template <class Real, class Substep, class A, class B>
     static void push(const Substep& substep, const Real& lambda, A& a, B& b)
     {
-        const Vec3<Real> none{Real(0), Real(0), Real(0)};
-        apply_wrench(a, none, lambda * substep.normal);
-        apply_wrench(b, none, -(lambda * substep.normal));
+        apply_turn(a, lambda * substep.normal);
+        apply_turn(b, -(lambda * substep.normal));
     }
 };
 

@@ -1,0 +1,186 @@
+// Pulley: one rope over two wheels that are fixed in the world.
+//
+//   C = |s_a| + ratio |s_b|, s = p - wheel, u = s / |s|     J = [u_a, r_a x u_a, ratio u_b, ratio r_b x u_b]
+//   min <= C <= max as inequalities, C = min where they are equal
+//
+// lambda lengthens the rope: taut, it is negative and both bodies are pulled to their wheels, b `ratio` times as hard.
+#pragma once
+
+#include <cmath>
+
+#include "motley/core/constraints/pulley_definition.h"
+#include "motley/core/invalid_input.h"
+#include "motley/core/joint_checks.h"
+#include "motley/core/joint_pose.h"
+#include "motley/core/joint_report.h"
+#include "motley/core/limit.h"
+
+namespace motley {
+
+struct Pulley {
+    using Definition = PulleyDefinition;
+    static constexpr bool has_restitution = false;
+    static constexpr bool recomputes_each_substep = true;
+    static constexpr float far_away = 1e12F;
+
+    template <class Real>
+    struct Parameters {
+        Vec3<Real> anchor_a;
+        Real ratio;
+        Vec3<Real> anchor_b;
+        Real min_length, max_length;
+    };
+    template <class Real>
+    struct Memory {
+        Real lambda;  ///< N s
+    };
+    /// One end of the rope.
+    template <class Vector>
+    struct End {
+        Vector start_arm, start_rope;  ///< rope: from the wheel to the anchor
+    };
+    template <class Vector>
+    struct EndNow {
+        Vector arm, axis;  ///< b's axis is ratio u_b
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        End<PairVector<Real, a, b>> a_end, b_end;
+        Real ratio, min_length, max_length;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+        EndNow<PairVector<Real, a, b>> a_end, b_end;
+        Real mass, length;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Impulse {
+        Real lambda;
+    };
+
+    static void validate(const Definition& pulley, const JointBodies& bodies)
+    {
+        check_anchor("PulleyDefinition.local_anchor_a", pulley.local_anchor_a, bodies.model_a,
+                     bodies.fixed_a);
+        check_anchor("PulleyDefinition.local_anchor_b", pulley.local_anchor_b, bodies.model_b,
+                     bodies.fixed_b);
+        check_world_point("PulleyDefinition.point_a", pulley.point_a);
+        check_world_point("PulleyDefinition.point_b", pulley.point_b);
+        check_range("PulleyDefinition.ratio", pulley.ratio, 1e-6F, 1e6F, "1e-6 to 1e6");
+        check_length_range("PulleyDefinition", pulley.min_length, pulley.max_length);
+    }
+    static Parameters<float> parameters(const Definition& pulley)
+    {
+        return {pulley.local_anchor_a, pulley.ratio, pulley.local_anchor_b, pulley.min_length,
+                std::fmin(pulley.max_length, far_away)};
+    }
+
+    static WorldPoints world_points(const Definition& pulley) { return {pulley.point_a, pulley.point_b}; }
+
+    template <class Real, class A, class B>
+    static auto prepare(const StepConstants& step, const Parameters<Real>& pulley, const Memory<Real>& memory,
+                        const WorldPose<Real, A::kind, B::kind>& pose, const A&, const B&,
+                        Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        using Vector = PairVector<Real, A::kind, B::kind>;
+        const Vec3<Real> arm_a = to_world(pose.orientation_a, pulley.anchor_a);
+        const Vec3<Real> arm_b = to_world(pose.orientation_b, pulley.anchor_b);
+        impulse.lambda = Real(step.warm_start_scale) * memory.lambda;
+        return Row<Real, A::kind, B::kind>{
+            {to_space<Vector>(arm_a), to_space<Vector>(pose.from_point_a + arm_a)},
+            {to_space<Vector>(arm_b), to_space<Vector>(pose.from_point_b + arm_b)},
+            pulley.ratio,
+            pulley.min_length,
+            pulley.max_length};
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
+                           A& a, B& b)
+    {
+        build<Real>(row, substep, a, b);
+        apply_impulse(a, substep.a_end.arm, impulse.lambda * substep.a_end.axis);
+        apply_impulse(b, substep.b_end.arm, impulse.lambda * substep.b_end.axis);
+    }
+
+    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants& step, const Row& row, const Substep& substep, Impulse& impulse,
+                      A& a, B& b)
+    {
+        const Real speed = dot(substep.a_end.axis, velocity_at(a, substep.a_end.arm)) +
+                           dot(substep.b_end.axis, velocity_at(b, substep.b_end.arm));
+        const Real wanted = range_impulse<relax>(step, substep.length, row.min_length, row.max_length, speed,
+                                                 substep.mass, impulse.lambda);
+        const Real change = wanted - impulse.lambda;
+        impulse.lambda = wanted;
+        apply_impulse(a, substep.a_end.arm, change * substep.a_end.axis);
+        apply_impulse(b, substep.b_end.arm, change * substep.b_end.axis);
+    }
+
+    template <class Real, class Row, class Substep, class A, class B>
+    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    {
+        Substep now;
+        build<Real>(row, now, a, b);
+        const Real push = -(now.mass * beyond_range(now.length, row.min_length, row.max_length));
+        apply_displacement(a, now.a_end.arm, push * now.a_end.axis);
+        apply_displacement(b, now.b_end.arm, push * now.b_end.axis);
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    {
+        return {impulse.lambda};
+    }
+
+    /// The pull on b, and how much too short or too long the rope is, from the poses now, in double.
+    static JointReport report(const Definition& pulley, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b, double inverse_substep)
+    {
+        const Vec3<double> rope_a =
+            a.position + rotate(a.orientation, convert<double>(pulley.local_anchor_a)) - pulley.point_a;
+        const Vec3<double> rope_b =
+            b.position + rotate(b.orientation, convert<double>(pulley.local_anchor_b)) - pulley.point_b;
+        const double length_b = std::sqrt(dot(rope_b, rope_b));
+        const auto ratio = static_cast<double>(pulley.ratio);
+        const double length = std::sqrt(dot(rope_a, rope_a)) + ratio * length_b;
+        const double pull = inverse_substep * ratio * static_cast<double>(memory.lambda);
+        JointReport report;
+        report.force = convert<float>((length_b > 1e-9 ? pull / length_b : 0) * rope_b);
+        report.error =
+            static_cast<float>(std::fmax(0.0, std::fmax(static_cast<double>(pulley.min_length) - length,
+                                                        length - static_cast<double>(pulley.max_length))));
+        if (pulley.min_length == pulley.max_length) {
+            report.state = JointState::active;
+        } else if (memory.lambda != 0) {
+            report.state = memory.lambda > 0 ? JointState::lower : JointState::upper;
+        }
+        return report;
+    }
+
+  private:
+    /// The rope now and its direction, none where the anchor is in the wheel; adds what it resists to k.
+    template <class Real, class Vector, class Body>
+    static Real build_end(const End<Vector>& end, const Real& ratio, const Body& body, EndNow<Vector>& now,
+                          Real& k)
+    {
+        now.arm = turned(body, end.start_arm);
+        const Vector rope = end.start_rope + translation<Vector>(body) + (now.arm - end.start_arm);
+        const Real length2 = dot(rope, rope);
+        const auto distinct = length2 > Real(1e-18F);
+        const Real length = square_root(select(distinct, length2, Real(1)));
+        now.axis = select(distinct, ratio / length, Real(0)) * rope;
+        k = k + dot(now.axis, inverse_point_mass(body, now.arm) * now.axis);
+        return select(distinct, ratio * length, Real(0));
+    }
+    template <class Real, class Row, class Substep, class A, class B>
+    static void build(const Row& row, Substep& substep, const A& a, const B& b)
+    {
+        Real k(0);
+        const Real length_a = build_end(row.a_end, Real(1), a, substep.a_end, k);
+        substep.length = length_a + build_end(row.b_end, row.ratio, b, substep.b_end, k);
+        substep.mass = inverse_or_zero(k);
+    }
+};
+
+}  // namespace motley

@@ -1,0 +1,299 @@
+// Servos: a bounded, soft pull of a point to a point, or turn of a frame into a frame, in all directions at once.
+//
+//   point    C = p_b - p_a            J = [-I, [r_a]x, I, -[r_b]x]
+//   angular  C = 2 vec(q_a* q_b)      J = [0, -G, 0, G], G = (w I - [v]x) F_a^T, w >= 0
+//
+//   lambda -= mass_scale K^-1 (J v - speed + rate C) + impulse_scale lambda, then |lambda| <= h max
+//
+// Without a frequency it is a motor: rate 0, mass_scale 1, impulse_scale 0. A servo is a force, not a position:
+// relaxation and projection leave it as it is. The bound is a ball, the same in every direction.
+#pragma once
+
+#include <cmath>
+
+#include "motley/core/constraints/servo_definition.h"
+#include "motley/core/invalid_input.h"
+#include "motley/core/joint_checks.h"
+#include "motley/core/joint_report.h"
+#include "motley/core/lane_softness.h"
+#include "motley/core/small_system.h"
+#include "motley/core/wrench.h"
+
+namespace motley {
+
+/// The longest vector along `wanted` that is not longer than `most`.
+template <class Vector, class Real>
+Vector within(const Vector& wanted, const Real& most)
+{
+    const Real length2 = dot(wanted, wanted);
+    const auto too_long = length2 > most * most;
+    const Real scale = most / square_root(select(too_long, length2, Real(1)));
+    return select(too_long, scale, Real(1)) * wanted;
+}
+
+/// What the definitions of both servos share.
+template <class Definition>
+void validate_servo(const Definition& servo, float most, const char* bound)
+{
+    check_range("hertz", servo.hertz, 0, 1e6F, "0 (velocity alone) or up to 1e6 (Hz)");
+    check_range("damping_ratio", servo.damping_ratio, 0, 1e6F, "0 to 1e6");
+    const float components[3] = {servo.target_velocity.x, servo.target_velocity.y, servo.target_velocity.z};
+    const char* names[3] = {"target_velocity.x", "target_velocity.y", "target_velocity.z"};
+    for (int i = 0; i < 3; ++i)
+        check_range(names[i], components[i], -1e9F, 1e9F, "a finite value from -1e9 to 1e9");
+    check_bound(bound, most);
+}
+
+struct PointServo {
+    using Definition = PointServoDefinition;
+    static constexpr bool has_restitution = false;
+    static constexpr bool recomputes_each_substep = true;
+
+    template <class Real>
+    struct Parameters {
+        Vec3<Real> anchor_a;
+        Real hertz;
+        Vec3<Real> anchor_b;
+        Real damping_ratio;
+        Vec3<Real> target_velocity;
+        Real max_force;
+    };
+    template <class Real>
+    struct Memory {
+        Vec3<Real> push;  ///< N s on b
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        PairVector<Real, a, b> start_arm_a, start_arm_b, start_error, target_velocity;
+        Real max_impulse;
+        LaneSoftness<Real> soft;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+        PairVector<Real, a, b> arm_a, arm_b;
+        PairSymmetric<Real, a, b> mass;  ///< K^-1
+        PairVector<Real, a, b> bias;     ///< rate C - speed, m/s
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Impulse {
+        PairVector<Real, a, b> push;
+    };
+
+    static void validate(const Definition& servo, const JointBodies& bodies)
+    {
+        check_anchor("PointServoDefinition.local_anchor_a", servo.local_anchor_a, bodies.model_a,
+                     bodies.fixed_a);
+        check_anchor("PointServoDefinition.local_anchor_b", servo.local_anchor_b, bodies.model_b,
+                     bodies.fixed_b);
+        validate_servo(servo, servo.max_force, "max_force");
+    }
+    static Parameters<float> parameters(const Definition& servo)
+    {
+        return {servo.local_anchor_a, servo.hertz,           servo.local_anchor_b,
+                servo.damping_ratio,  servo.target_velocity, std::fmin(servo.max_force, largest_force)};
+    }
+
+    template <class Real, class A, class B>
+    static auto prepare(const StepConstants& step, const Parameters<Real>& servo, const Memory<Real>& memory,
+                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
+                        Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        using Vector = PairVector<Real, A::kind, B::kind>;
+        const Vec3<Real> arm_a = to_world(pose.orientation_a, servo.anchor_a);
+        const Vec3<Real> arm_b = to_world(pose.orientation_b, servo.anchor_b);
+        impulse.push = Real(step.warm_start_scale) * to_space<Vector>(memory.push);
+        return Row<Real, A::kind, B::kind>{
+            to_space<Vector>(arm_a),
+            to_space<Vector>(arm_b),
+            to_space<Vector>(pose.between + arm_b - arm_a),
+            to_space<Vector>(servo.target_velocity),
+            Real(step.substep) * servo.max_force,
+            softness_or(step, servo.hertz, servo.damping_ratio, Softness{0, 1, 0})};
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
+                           A& a, B& b)
+    {
+        substep.arm_a = turned(a, row.start_arm_a);
+        substep.arm_b = turned(b, row.start_arm_b);
+        substep.mass = inverse(inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b));
+        substep.bias = row.soft.rate * anchor_error(row.start_error, row.start_arm_a, row.start_arm_b,
+                                                    substep.arm_a, substep.arm_b, a, b) -
+                       row.target_velocity;
+        apply_impulse(a, substep.arm_a, -impulse.push);
+        apply_impulse(b, substep.arm_b, impulse.push);
+    }
+
+    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants&, const Row& row, const Substep& substep, Impulse& impulse, A& a,
+                      B& b)
+    {
+        const auto speed = velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a) + substep.bias;
+        const auto wanted = within(impulse.push - row.soft.mass_scale * (substep.mass * speed) -
+                                       row.soft.impulse_scale * impulse.push,
+                                   row.max_impulse);
+        const auto change = wanted - impulse.push;
+        impulse.push = wanted;
+        apply_impulse(a, substep.arm_a, -change);
+        apply_impulse(b, substep.arm_b, change);
+    }
+
+    template <class Real, class Row, class Substep, class A, class B>
+    static void project(const StepConstants&, const Row&, const Substep&, A&, B&)
+    {
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    {
+        return {to_three(impulse.push)};
+    }
+
+    /// What it did and how far the anchors are apart, from the poses now, in double.
+    static JointReport report(const Definition& servo, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b, double inverse_substep)
+    {
+        const Vec3<double> d = anchor_separation(a, b, servo.local_anchor_a, servo.local_anchor_b);
+        return {.force = convert<float>(inverse_substep * convert<double>(memory.push)),
+                .error = static_cast<float>(std::sqrt(dot(d, d))),
+                .state = JointState::active};
+    }
+};
+
+struct AngularServo {
+    using Definition = AngularServoDefinition;
+    static constexpr bool has_restitution = false;
+    static constexpr bool recomputes_each_substep = true;
+    static constexpr bool needs_bodies_that_turn = true;
+
+    template <class Real>
+    struct Parameters {
+        Quat<Real> rotation_a, rotation_b;
+        Vec3<Real> target_velocity;
+        Real max_torque, hertz, damping_ratio;
+    };
+    template <class Real>
+    struct Memory {
+        Vec3<Real> turn;  ///< N m s along the rows
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        Quat<Real> start_frame_a, start_frame_b;
+        Vec3<Real> target_velocity;
+        Real max_impulse;
+        LaneSoftness<Real> soft;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+        RotationRows<Real> rows;
+        SmallFactor<Real, 3> mass;
+        Real bias[3];  ///< rate C - speed
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Impulse {
+        Vec3<Real> turn;
+    };
+
+    static void validate(const Definition& servo, const JointBodies& bodies)
+    {
+        check_joint_frame("frame_a", servo.frame_a, bodies.model_a, bodies.fixed_a);
+        check_joint_frame("frame_b", servo.frame_b, bodies.model_b, bodies.fixed_b);
+        validate_servo(servo, servo.max_torque, "max_torque");
+    }
+    static Parameters<float> parameters(const Definition& servo)
+    {
+        return {unit(servo.frame_a.rotation),
+                unit(servo.frame_b.rotation),
+                servo.target_velocity,
+                std::fmin(servo.max_torque, largest_force),
+                servo.hertz,
+                servo.damping_ratio};
+    }
+
+    template <class Real, class A, class B>
+    static auto prepare(const StepConstants& step, const Parameters<Real>& servo, const Memory<Real>& memory,
+                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
+                        Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        impulse.turn = Real(step.warm_start_scale) * memory.turn;
+        return Row<Real, A::kind, B::kind>{
+            to_world(pose.orientation_a, servo.rotation_a), to_world(pose.orientation_b, servo.rotation_b),
+            servo.target_velocity, Real(step.substep) * servo.max_torque,
+            softness_or(step, servo.hertz, servo.damping_ratio, Softness{0, 1, 0})};
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
+                           A& a, B& b)
+    {
+        Real error[3], k[3][3];
+        substep.rows = rotation_rows(turn_of(a) * row.start_frame_a, turn_of(b) * row.start_frame_b, error);
+        for (int i = 0; i < 3; ++i) {
+            const Vec3<Real>& g = substep.rows.axis[i];
+            substep.bias[i] = row.soft.rate * error[i] - dot(g, row.target_velocity);
+            const Vec3<Real> turn = over_inertia(a, g) + over_inertia(b, g);
+            for (int j = 0; j <= i; ++j) k[i][j] = dot(turn, substep.rows.axis[j]);
+        }
+        const Real least = Real(rounding_share) * (angular_size(a) + angular_size(b));
+        const Real floor[3] = {least, least, least};
+        substep.mass = factor(k, floor);
+        push(substep, impulse.turn, a, b);
+    }
+
+    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants&, const Row& row, const Substep& substep, Impulse& impulse, A& a,
+                      B& b)
+    {
+        const Vec3<Real> speed = angular_of(b) - angular_of(a);
+        Real change[3];
+        for (int i = 0; i < 3; ++i) change[i] = dot(substep.rows.axis[i], speed) + substep.bias[i];
+        solve_in_place(substep.mass, change);
+        const Vec3<Real> wanted =
+            within(impulse.turn - row.soft.mass_scale * Vec3<Real>{change[0], change[1], change[2]} -
+                       row.soft.impulse_scale * impulse.turn,
+                   row.max_impulse);
+        push(substep, wanted - impulse.turn, a, b);
+        impulse.turn = wanted;
+    }
+
+    template <class Real, class Row, class Substep, class A, class B>
+    static void project(const StepConstants&, const Row&, const Substep&, A&, B&)
+    {
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    {
+        return {impulse.turn};
+    }
+
+    /// What it did and how far the frames are turned apart, from the poses now, in double.
+    static JointReport report(const Definition& servo, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b, double inverse_substep)
+    {
+        const Quat<double> frame_a = a.orientation * unit(convert<double>(servo.frame_a.rotation));
+        const Quat<double> frame_b = b.orientation * unit(convert<double>(servo.frame_b.rotation));
+        double error[3];
+        const RotationRows<double> rows = rotation_rows(frame_a, frame_b, error);
+        const Vec3<double> lambda = inverse_substep * convert<double>(memory.turn);
+        const Quat<double> q = relative_rotation(frame_a, frame_b);
+        return {.torque = convert<float>(lambda.x * rows.axis[0] + lambda.y * rows.axis[1] +
+                                         lambda.z * rows.axis[2]),
+                .angle_error =
+                    static_cast<float>(2 * std::atan2(std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z), q.w)),
+                .state = JointState::active};
+    }
+
+  private:
+    template <class Real, class Substep, class A, class B>
+    static void push(const Substep& substep, const Vec3<Real>& lambda, A& a, B& b)
+    {
+        const Vec3<Real> turn = lambda.x * substep.rows.axis[0] + lambda.y * substep.rows.axis[1] +
+                                lambda.z * substep.rows.axis[2];
+        apply_turn(a, -turn);
+        apply_turn(b, turn);
+    }
+};
+
+}  // namespace motley

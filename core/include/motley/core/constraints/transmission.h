@@ -1,0 +1,203 @@
+// Transmissions: what b does follows what a turns. Gears (b turns), rack and pinion (b slides).
+//
+//   gear  dC/dt = w_b . e_b - ratio w_a . e_a       J = [0, -ratio e_a, 0, e_b]
+//   rack  dC/dt = v_b . e_b - travel w_a . e_a      J = [0, -travel e_a, e_b, 0]
+//
+// No function of the poses has this derivative over more than a turn, so C is what has piled up: kept in the memory of
+// the joint from step to step, to which a step adds how far each body has gone since it began. Only this small number is
+// rounded, however many turns there were.
+#pragma once
+
+#include <cmath>
+
+#include "motley/core/constraints/transmission_definition.h"
+#include "motley/core/invalid_input.h"
+#include "motley/core/joint_checks.h"
+#include "motley/core/joint_report.h"
+#include "motley/core/wrench.h"
+
+namespace motley {
+
+/// How far a body has turned since the step began about an axis that it carries, in the world of that time; rad.
+template <class Real, BodyKind kind>
+Real turn_about(const LaneBody<Real, kind>& body, const Vec3<Real>& axis)
+{
+    const Quat<Real>& q = body.delta_rotation;
+    return Real(2) * arc_tangent2(dot(axis, Vec3<Real>{q.x, q.y, q.z}), q.w);
+}
+template <class Real>
+Real turn_about(const LaneBody<Real, BodyKind::planar>& body, const Vec3<Real>& axis)
+{
+    return axis.z * body.delta_yaw;
+}
+
+/// Where a transmission's definition keeps its ratio.
+inline float ratio_of(const GearDefinition& gear)
+{
+    return gear.ratio;
+}
+inline float ratio_of(const RackAndPinionDefinition& rack)
+{
+    return rack.travel;
+}
+
+template <class JointDefinition>
+struct Transmission {
+    using Definition = JointDefinition;
+    static constexpr bool has_restitution = false;
+    static constexpr bool recomputes_each_substep = true;
+    static constexpr bool needs_bodies_that_turn = true;
+    static constexpr bool slides = std::is_same_v<Definition, RackAndPinionDefinition>;
+
+    template <class Real>
+    struct Parameters {
+        Vec3<Real> axis_a;  ///< unit, body frames
+        Real ratio;
+        Vec3<Real> axis_b;
+        Real padding;
+    };
+    template <class Real>
+    struct Memory {
+        Real lambda;  ///< N m s of a gear, N s of a rack
+        Real error;   ///< C when the step ended, rad or m
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        Vec3<Real> start_axis_a, start_axis_b;
+        Real ratio, start_error;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+        Vec3<Real> axis_a, axis_b;  ///< axis_a is ratio e_a
+        Real mass, error;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Impulse {
+        Real lambda;
+    };
+
+    static void validate(const Definition& joint, const JointBodies& bodies)
+    {
+        check_turns("body_a", bodies.model_a, bodies.fixed_a);
+        check_turns("body_b", bodies.model_b, bodies.fixed_b);
+        check_direction("axis_a", joint.axis_a);
+        check_direction("axis_b", joint.axis_b);
+        check_range(slides ? "travel" : "ratio", ratio_of(joint), -1e6F, 1e6F,
+                    slides ? "-1e6 to 1e6 (m/rad)" : "-1e6 to 1e6");
+    }
+    static Parameters<float> parameters(const Definition& joint)
+    {
+        return {unit(joint.axis_a), ratio_of(joint), unit(joint.axis_b), 0};
+    }
+
+    template <class Real, class A, class B>
+    static auto prepare(const StepConstants& step, const Parameters<Real>& joint, const Memory<Real>& memory,
+                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
+                        Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        impulse.lambda = Real(step.warm_start_scale) * memory.lambda;
+        return Row<Real, A::kind, B::kind>{to_world(pose.orientation_a, joint.axis_a),
+                                           to_world(pose.orientation_b, joint.axis_b), joint.ratio,
+                                           memory.error};
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
+                           A& a, B& b)
+    {
+        build<Real>(row, substep, a, b);
+        apply_turn(a, -(impulse.lambda * substep.axis_a));
+        push_b(impulse.lambda * substep.axis_b, b);
+    }
+
+    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants& step, const Row&, const Substep& substep, Impulse& impulse, A& a,
+                      B& b)
+    {
+        const Real speed =
+            dot(substep.axis_b, slides ? linear_of(b) : angular_of(b)) - dot(substep.axis_a, angular_of(a));
+        const Real wanted = lock_impulse<relax>(step, substep.error, speed, substep.mass, impulse.lambda);
+        const Real change = wanted - impulse.lambda;
+        impulse.lambda = wanted;
+        apply_turn(a, -(change * substep.axis_a));
+        push_b(change * substep.axis_b, b);
+    }
+
+    template <class Real, class Row, class Substep, class A, class B>
+    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    {
+        Substep now;
+        build<Real>(row, now, a, b);
+        const Real lambda = -(now.mass * now.error);
+        const Vec3<Real> none{Real(0), Real(0), Real(0)};
+        displace(a, none, -(lambda * now.axis_a));
+        if constexpr (slides) {
+            displace(b, lambda * now.axis_b, none);
+        } else {
+            displace(b, none, lambda * now.axis_b);
+        }
+    }
+
+    template <class Real, class Row, class Impulse, class A, class B>
+    static Memory<Real> remember(const Row& row, const Impulse& impulse, const A& a, const B& b)
+    {
+        return {impulse.lambda, error_now<Real>(row, a, b)};
+    }
+
+    /// What it did to b, and by how much b is ahead of a.
+    static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState&,
+                              const BodyState& b, double inverse_substep)
+    {
+        const Vec3<double> axis = rotate(b.orientation, unit(convert<double>(joint.axis_b)));
+        const Vec3<float> effort =
+            convert<float>(inverse_substep * static_cast<double>(memory.lambda) * axis);
+        JointReport report;
+        (slides ? report.force : report.torque) = effort;
+        (slides ? report.error : report.angle_error) = std::abs(memory.error);
+        report.state = JointState::active;
+        return report;
+    }
+
+  private:
+    template <class Real, class Row, class A, class B>
+    static Real error_now(const Row& row, const A& a, const B& b)
+    {
+        Real of_b;
+        if constexpr (slides) {
+            of_b = dot(rotate(turn_of(b), row.start_axis_b), to_three(b.delta));
+        } else {
+            of_b = turn_about(b, row.start_axis_b);
+        }
+        return row.start_error + of_b - row.ratio * turn_about(a, row.start_axis_a);
+    }
+
+    template <class Real, class Row, class Substep, class A, class B>
+    static void build(const Row& row, Substep& substep, const A& a, const B& b)
+    {
+        substep.axis_a = row.ratio * rotate(turn_of(a), row.start_axis_a);
+        substep.axis_b = rotate(turn_of(b), row.start_axis_b);
+        substep.error = error_now<Real>(row, a, b);
+        const Vec3<Real> turn_a = over_inertia(a, substep.axis_a);
+        const Vec3<Real> move_b = slides ? over_mass(b, substep.axis_b) : over_inertia(b, substep.axis_b);
+        const Real k = dot(substep.axis_a, turn_a) + dot(substep.axis_b, move_b);
+        const Real size =
+            row.ratio * row.ratio * angular_size(a) + (slides ? linear_size(b) : angular_size(b));
+        const auto usable = k > Real(rounding_share) * size;
+        substep.mass = select(usable, inverse_or_zero(k), Real(0));
+    }
+
+    template <class Real, class B>
+    static void push_b(const Vec3<Real>& impulse, B& b)
+    {
+        if constexpr (slides) {
+            apply_wrench(b, impulse, Vec3<Real>{Real(0), Real(0), Real(0)});
+        } else {
+            apply_turn(b, impulse);
+        }
+    }
+};
+
+using Gear = Transmission<GearDefinition>;
+using RackAndPinion = Transmission<RackAndPinionDefinition>;
+
+}  // namespace motley

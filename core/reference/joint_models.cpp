@@ -1,0 +1,320 @@
+// What each joint wants of its bodies, written from the formulas of its header and nothing else of it.
+#include "motley/reference/joint_models.h"
+
+namespace motley::reference {
+namespace {
+
+Eigen::Vector3d eigen(const Vec3<float>& v)
+{
+    return {v.x, v.y, v.z};
+}
+Eigen::Vector3d eigen(const Vec3<double>& v)
+{
+    return {v.x, v.y, v.z};
+}
+Frame eigen(const JointFrame& f)
+{
+    return {eigen(f.position),
+            Eigen::Quaterniond(f.rotation.w, f.rotation.x, f.rotation.y, f.rotation.z).normalized()};
+}
+Eigen::VectorXd scalar(double value)
+{
+    return Eigen::VectorXd::Constant(1, value);
+}
+
+/// lower <= C <= upper: the nearer end as an inequality, or both as an equation where there is no room between them.
+Block limit_block(const Jacobian& jacobian, double value, double lower, double upper)
+{
+    const double above = value - lower, below = upper - value;
+    Block block{.jacobian = jacobian, .error = scalar(above)};
+    if (lower == upper) return block;
+    block.kind = Block::Kind::limit;
+    block.side = above < below ? 1 : -1;
+    block.error = scalar(std::min(above, below));
+    return block;
+}
+
+class BallSocketModel : public JointModel {
+  public:
+    explicit BallSocketModel(const BallSocketDefinition& j)
+        : local_a_(eigen(j.local_anchor_a)), local_b_(eigen(j.local_anchor_b))
+    {
+    }
+    [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool in_plane,
+                                            double) const override
+    {
+        const Eigen::Index rows = in_plane ? 2 : 3;
+        return {{.jacobian = point_jacobian(a, b, local_a_, local_b_).topRows(rows),
+                 .error = point_error(a, b, local_a_, local_b_).head(rows)}};
+    }
+
+  private:
+    Eigen::Vector3d local_a_, local_b_;
+};
+
+class DistanceModel : public JointModel {
+  public:
+    explicit DistanceModel(const DistanceDefinition& j) : joint_(j) {}
+    [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool, double) const override
+    {
+        const Eigen::Vector3d local_a = eigen(joint_.local_anchor_a), local_b = eigen(joint_.local_anchor_b);
+        const Jacobian jacobian = distance_jacobian(a, b, local_a, local_b);
+        const double length = distance_error(a, b, local_a, local_b, 0);
+        std::vector<Block> blocks;
+        if (joint_.spring_hertz > 0) {
+            blocks.push_back({.jacobian = jacobian,
+                              .error = scalar(length - static_cast<double>(joint_.rest_length)),
+                              .hertz = joint_.spring_hertz,
+                              .damping_ratio = joint_.spring_damping_ratio,
+                              .most = joint_.spring_max_force});
+        }
+        blocks.push_back(limit_block(jacobian, length, joint_.min_length, joint_.max_length));
+        return blocks;
+    }
+
+  private:
+    DistanceDefinition joint_;
+};
+
+class FrameModel : public JointModel {
+  public:
+    FrameModel(const Frame& a, const Frame& b, const JointStiffness& stiffness, LinearLock linear,
+               AngularLock angular)
+        : frame_a_(a), frame_b_(b), stiffness_(stiffness), linear_(linear), angular_(angular)
+    {
+    }
+    [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool, double) const override
+    {
+        return {{.jacobian = frame_jacobian(a, b, frame_a_, frame_b_, linear_, angular_),
+                 .error = frame_error(a, b, frame_a_, frame_b_, linear_, angular_),
+                 .hertz = stiffness_.hertz,
+                 .damping_ratio = stiffness_.damping_ratio}};
+    }
+
+  private:
+    Frame frame_a_, frame_b_;
+    JointStiffness stiffness_;
+    LinearLock linear_;
+    AngularLock angular_;
+};
+
+class DriveModel : public JointModel {
+  public:
+    DriveModel(const SlideDriveDefinition& drive, DriveAxis axis)
+        : drive_(drive), frame_a_(eigen(drive.frame_a)), frame_b_(eigen(drive.frame_b)), axis_(axis)
+    {
+    }
+    [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool, double) const override
+    {
+        const Jacobian jacobian = drive_jacobian(a, b, frame_a_, frame_b_, axis_);
+        const double value = drive_value(a, b, frame_a_, frame_b_, axis_);
+        std::vector<Block> blocks;
+        if (drive_.spring_hertz > 0) {
+            blocks.push_back({.jacobian = jacobian,
+                              .error = scalar(value - static_cast<double>(drive_.spring_target)),
+                              .hertz = drive_.spring_hertz,
+                              .damping_ratio = drive_.spring_damping_ratio,
+                              .most = drive_.spring_max_force});
+        }
+        blocks.push_back({.kind = Block::Kind::motor,
+                          .jacobian = jacobian,
+                          .error = scalar(0),
+                          .speed = scalar(drive_.motor_speed),
+                          .most = drive_.motor_max_force});
+        blocks.push_back(limit_block(jacobian, value, drive_.lower, drive_.upper));
+        return blocks;
+    }
+
+  private:
+    SlideDriveDefinition drive_;
+    Frame frame_a_, frame_b_;
+    DriveAxis axis_;
+};
+
+class SwingLimitModel : public JointModel {
+  public:
+    explicit SwingLimitModel(const SwingLimitDefinition& limit)
+        : frame_a_(eigen(limit.frame_a)), frame_b_(eigen(limit.frame_b)), max_angle_(limit.max_angle)
+    {
+    }
+    [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool, double) const override
+    {
+        return {{.kind = Block::Kind::limit,
+                 .jacobian = swing_jacobian(a, b, frame_a_, frame_b_),
+                 .error = scalar(max_angle_ - swing_angle(a, b, frame_a_, frame_b_)),
+                 .side = -1}};
+    }
+
+  private:
+    Frame frame_a_, frame_b_;
+    double max_angle_;
+};
+
+/// A pull or turn of its own softness, or of none, towards a velocity.
+Block servo_block(const Jacobian& jacobian, const Eigen::VectorXd& error, const Eigen::VectorXd& speed,
+                  double hertz, double damping_ratio, double most)
+{
+    return {.kind = hertz > 0 ? Block::Kind::equality : Block::Kind::motor,
+            .jacobian = jacobian,
+            .error = error,
+            .speed = speed,
+            .hertz = hertz,
+            .damping_ratio = damping_ratio,
+            .most = most};
+}
+
+class PointServoModel : public JointModel {
+  public:
+    explicit PointServoModel(const PointServoDefinition& servo) : servo_(servo) {}
+    [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool in_plane,
+                                            double) const override
+    {
+        const Eigen::Vector3d local_a = eigen(servo_.local_anchor_a), local_b = eigen(servo_.local_anchor_b);
+        const Eigen::Index rows = in_plane ? 2 : 3;
+        return {servo_block(point_jacobian(a, b, local_a, local_b).topRows(rows),
+                            point_error(a, b, local_a, local_b).head(rows),
+                            eigen(servo_.target_velocity).head(rows), servo_.hertz, servo_.damping_ratio,
+                            servo_.max_force)};
+    }
+
+  private:
+    PointServoDefinition servo_;
+};
+
+class AngularServoModel : public JointModel {
+  public:
+    explicit AngularServoModel(const AngularServoDefinition& servo)
+        : servo_(servo), frame_a_(eigen(servo.frame_a)), frame_b_(eigen(servo.frame_b))
+    {
+    }
+    [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool, double) const override
+    {
+        const Eigen::Vector3d error =
+            frame_error(a, b, frame_a_, frame_b_, LinearLock::none, AngularLock::all);
+        const Jacobian jacobian =
+            frame_jacobian(a, b, frame_a_, frame_b_, LinearLock::none, AngularLock::all);
+        // dC/dt where the angular velocity of b against a is the wanted one.
+        const Eigen::Vector3d speed = jacobian.rightCols<3>() * eigen(servo_.target_velocity);
+        return {servo_block(jacobian, error, speed, servo_.hertz, servo_.damping_ratio, servo_.max_torque)};
+    }
+
+  private:
+    AngularServoDefinition servo_;
+    Frame frame_a_, frame_b_;
+};
+
+/// The angle by which a body has turned about an axis that it carries.
+double turn_about(const Body& start, const Body& now, const Eigen::Vector3d& local_axis)
+{
+    const Eigen::Quaterniond turn = now.orientation * start.orientation.conjugate();
+    const double along = (start.orientation * local_axis).dot(turn.vec());
+    return 2 * std::atan2(turn.w() < 0 ? -along : along, std::abs(turn.w()));
+}
+
+class TransmissionModel : public JointModel {
+  public:
+    TransmissionModel(const Eigen::Vector3d& axis_a, const Eigen::Vector3d& axis_b, double ratio, bool slides)
+        : axis_a_(axis_a.normalized()), axis_b_(axis_b.normalized()), ratio_(ratio), slides_(slides)
+    {
+    }
+    [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool,
+                                            double travelled) const override
+    {
+        Jacobian jacobian = Jacobian::Zero(1, 12);
+        jacobian.block<1, 3>(0, 3) = -ratio_ * (a.orientation * axis_a_).transpose();
+        jacobian.block<1, 3>(0, slides_ ? 6 : 9) = (b.orientation * axis_b_).transpose();
+        return {{.jacobian = jacobian, .error = scalar(travelled)}};
+    }
+    [[nodiscard]] double travel(const Body& start_a, const Body& start_b, const Body& a,
+                                const Body& b) const override
+    {
+        const double of_b = slides_ ? (b.orientation * axis_b_).dot(b.position - start_b.position)
+                                    : turn_about(start_b, b, axis_b_);
+        return of_b - ratio_ * turn_about(start_a, a, axis_a_);
+    }
+
+  private:
+    Eigen::Vector3d axis_a_, axis_b_;
+    double ratio_;
+    bool slides_;
+};
+
+class PulleyModel : public JointModel {
+  public:
+    explicit PulleyModel(const PulleyDefinition& pulley) : pulley_(pulley) {}
+    [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool in_plane,
+                                            double) const override
+    {
+        const Eigen::Vector3d arm_a = a.orientation * eigen(pulley_.local_anchor_a),
+                              arm_b = b.orientation * eigen(pulley_.local_anchor_b);
+        Eigen::Vector3d rope_a = a.position + arm_a - eigen(pulley_.point_a),
+                        rope_b = b.position + arm_b - eigen(pulley_.point_b);
+        if (in_plane) rope_a.z() = rope_b.z() = 0;
+        const double ratio = pulley_.ratio;
+        // A wheel that is not there would turn the row of a joint around: only b's half of [-u, .., u, ..] is used.
+        const auto row = [](const Eigen::Vector3d& rope, const Eigen::Vector3d& arm) {
+            return Eigen::Matrix<double, 1, 6>(
+                direction_jacobian(rope.normalized(), Eigen::Vector3d::Zero(), arm).rightCols<6>());
+        };
+        Jacobian jacobian(1, 12);
+        jacobian << row(rope_a, arm_a), ratio * row(rope_b, arm_b);
+        return {limit_block(jacobian, rope_a.norm() + ratio * rope_b.norm(), pulley_.min_length,
+                            pulley_.max_length)};
+    }
+
+  private:
+    PulleyDefinition pulley_;
+};
+
+}  // namespace
+
+Model model_of(const BallSocketDefinition& joint)
+{
+    return std::make_shared<BallSocketModel>(joint);
+}
+Model model_of(const DistanceDefinition& joint)
+{
+    return std::make_shared<DistanceModel>(joint);
+}
+Model model_of(const SwingLimitDefinition& limit)
+{
+    return std::make_shared<SwingLimitModel>(limit);
+}
+Model model_of(const PointServoDefinition& servo)
+{
+    return std::make_shared<PointServoModel>(servo);
+}
+Model model_of(const AngularServoDefinition& servo)
+{
+    return std::make_shared<AngularServoModel>(servo);
+}
+Model model_of(const GearDefinition& gear)
+{
+    return std::make_shared<TransmissionModel>(eigen(gear.axis_a), eigen(gear.axis_b), gear.ratio, false);
+}
+Model model_of(const RackAndPinionDefinition& rack)
+{
+    return std::make_shared<TransmissionModel>(eigen(rack.axis_a), eigen(rack.axis_b), rack.travel, true);
+}
+Model model_of(const PulleyDefinition& pulley)
+{
+    return std::make_shared<PulleyModel>(pulley);
+}
+Model frame_model(const JointFrame& frame_a, const JointFrame& frame_b, const JointStiffness& stiffness,
+                  LinearLock linear, AngularLock angular)
+{
+    return std::make_shared<FrameModel>(eigen(frame_a), eigen(frame_b), stiffness, linear, angular);
+}
+Model drive_model(const SlideDriveDefinition& drive, DriveAxis axis)
+{
+    return std::make_shared<DriveModel>(drive, axis);
+}
+Model model_of(const TwistDriveDefinition& drive)
+{
+    return drive_model({drive.body_a, drive.body_b, drive.frame_a, drive.frame_b, drive.lower, drive.upper,
+                        drive.motor_speed, drive.motor_max_force, drive.spring_hertz,
+                        drive.spring_damping_ratio, drive.spring_target, drive.spring_max_force},
+                       DriveAxis::twist);
+}
+
+}  // namespace motley::reference

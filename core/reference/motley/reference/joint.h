@@ -1,0 +1,52 @@
+// A joint of the reference: what it wants, as blocks of rows over the velocities of its two bodies.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "motley/reference/constraints.h"
+
+namespace motley::reference {
+
+/// A few rows that share one impulse.
+struct Block {
+    enum class Kind {
+        equality,  ///< C = 0; with a frequency of its own a spring
+        limit,     ///< one row, side * lambda >= 0, and `error` is the room left: C >= 0
+        motor      ///< J v = speed
+    };
+    Kind kind = Kind::equality;
+    Jacobian jacobian{};
+    Eigen::VectorXd error{};
+    Eigen::VectorXd speed{};  ///< what J v shall be; empty is zero
+    double side = 1;          ///< of a limit: along the row, or against it
+    double hertz = 0, damping_ratio = 0;
+    double most = std::numeric_limits<double>::infinity();  ///< largest norm of the force, N or N m
+};
+
+/// A type of joint with its numbers. `in_plane`: the pair cannot leave the plane, and rows across it are left out.
+class JointModel {
+  public:
+    virtual ~JointModel() = default;
+    /// Always as many blocks, of as many rows, in the order in which they are solved. `travelled` is the C that the
+    /// joint has piled up, for those that have no C of the poses alone.
+    [[nodiscard]] virtual std::vector<Block> blocks(const Body& a, const Body& b, bool in_plane,
+                                                    double travelled) const = 0;
+    /// By how much C has grown between two poses of the bodies, for those that pile it up.
+    [[nodiscard]] virtual double travel(const Body& /*start_a*/, const Body& /*start_b*/, const Body& /*a*/,
+                                        const Body& /*b*/) const
+    {
+        return 0;
+    }
+};
+
+/// A joint between bodies of the world by index.
+struct Joint {
+    int a = 0, b = 0;
+    std::shared_ptr<const JointModel> model{};
+    std::vector<Eigen::VectorXd> impulses{};  ///< of each block, carried from step to step
+    double travelled = 0;
+};
+
+}  // namespace motley::reference

@@ -1,0 +1,42 @@
+// The model of each joint that a host may define.
+#pragma once
+
+#include "motley/core/constraints/ball_socket_definition.h"
+#include "motley/core/constraints/distance_definition.h"
+#include "motley/core/constraints/drive_definition.h"
+#include "motley/core/constraints/frame_joint_definition.h"
+#include "motley/core/constraints/pulley_definition.h"
+#include "motley/core/constraints/servo_definition.h"
+#include "motley/core/constraints/swing_limit_definition.h"
+#include "motley/core/constraints/transmission_definition.h"
+#include "motley/reference/joint.h"
+
+namespace motley::reference {
+
+using Model = std::shared_ptr<const JointModel>;
+
+Model model_of(const BallSocketDefinition& joint);
+Model model_of(const DistanceDefinition& joint);
+Model model_of(const SwingLimitDefinition& limit);
+Model model_of(const PointServoDefinition& servo);
+Model model_of(const AngularServoDefinition& servo);
+Model model_of(const GearDefinition& gear);
+Model model_of(const RackAndPinionDefinition& rack);
+Model model_of(const PulleyDefinition& pulley);
+Model frame_model(const JointFrame& frame_a, const JointFrame& frame_b, const JointStiffness& stiffness,
+                  LinearLock linear, AngularLock angular);
+Model drive_model(const SlideDriveDefinition& drive, DriveAxis axis);
+
+template <LinearLock linear, AngularLock angular>
+Model model_of(const FrameJointDefinition<linear, angular>& joint)
+{
+    return frame_model(joint.frame_a, joint.frame_b, joint.stiffness, linear, angular);
+}
+inline Model model_of(const SlideDriveDefinition& drive)
+{
+    return drive_model(drive, DriveAxis::slide);
+}
+/// A twist drive has the very fields of a slide drive.
+Model model_of(const TwistDriveDefinition& drive);
+
+}  // namespace motley::reference
