@@ -305,16 +305,18 @@ void expect_frames_are_checked()
     for (const Case& c : cases) expect_refused(c);
 }
 
-TEST(BadInput, EveryFieldOfAFrameJointADriveAndASwingLimitIsChecked)
+TEST(BadInput, EveryFieldOfAJointBetweenFramesIsChecked)
 {
     expect_frames_are_checked<FixedDefinition>();
     expect_frames_are_checked<PointOnLineDefinition>();
     expect_frames_are_checked<TwistDriveDefinition>();
     expect_frames_are_checked<SwingLimitDefinition>();
+    expect_frames_are_checked<AngularServoDefinition>();
     using Hinge = HingeDefinition;
     using Slide = SlideDriveDefinition;
     using Twist = TwistDriveDefinition;
     using Swing = SwingLimitDefinition;
+    using Servo = AngularServoDefinition;
     const Case cases[] = {
         frames<Hinge>(
             "hertz", [](Hinge& j, Fixture&) { j.stiffness.hertz = -1; }, "stiffness.hertz", "-1"),
@@ -344,6 +346,17 @@ TEST(BadInput, EveryFieldOfAFrameJointADriveAndASwingLimitIsChecked)
             "-1"),
         frames<Slide>(
             "spring target", [](Slide& j, Fixture&) { j.spring_target = infinity; }, "spring_target", "inf"),
+        frames<Slide>(
+            "spring force", [](Slide& j, Fixture&) { j.spring_max_force = nan; }, "spring_max_force", "nan"),
+        frames<Servo>(
+            "hertz", [](Servo& j, Fixture&) { j.hertz = -1; }, "hertz", "-1"),
+        frames<Servo>(
+            "damping", [](Servo& j, Fixture&) { j.damping_ratio = nan; }, "damping_ratio", "nan"),
+        frames<Servo>(
+            "velocity", [](Servo& j, Fixture&) { j.target_velocity.y = infinity; }, "target_velocity.y",
+            "inf"),
+        frames<Servo>(
+            "torque", [](Servo& j, Fixture&) { j.max_torque = -3; }, "max_torque", "-3"),
         frames<Twist>(
             "upper beyond pi", [](Twist& j, Fixture&) { j.upper = 4; }, "upper", "4"),
         frames<Twist>(
@@ -354,6 +367,103 @@ TEST(BadInput, EveryFieldOfAFrameJointADriveAndASwingLimitIsChecked)
             "beyond pi", [](Swing& j, Fixture&) { j.max_angle = 3.5F; }, "max_angle", "3.5"),
         frames<Swing>(
             "NaN", [](Swing& j, Fixture&) { j.max_angle = nan; }, "max_angle", "nan"),
+    };
+    for (const Case& c : cases) expect_refused(c);
+}
+
+/// As frames(), of a joint between a rigid and a planar body that has no frames.
+template <class Definition>
+Case bodies(const char* what, std::function<void(Definition&, Fixture&)> spoil, const char* field,
+            const char* value)
+{
+    return {what,
+            [spoil](Fixture& f) {
+                Definition joint;
+                joint.body_a = f.rigid;
+                joint.body_b = f.planar;
+                spoil(joint, f);
+                f.scene.add_joint(joint);
+            },
+            field, value};
+}
+
+TEST(BadInput, EveryFieldOfAServoATransmissionAndAPulleyIsChecked)
+{
+    using Servo = PointServoDefinition;
+    using Gears = GearDefinition;
+    using Rack = RackAndPinionDefinition;
+    using Rope = PulleyDefinition;
+    const Case cases[] = {
+        bodies<Servo>(
+            "anchor a", [](Servo& j, Fixture&) { j.local_anchor_a.x = nan; }, "local_anchor_a.x", "nan"),
+        bodies<Servo>(
+            "anchor of a particle",
+            [](Servo& j, Fixture& f) { j.body_b = f.particle, j.local_anchor_b.y = 1; }, "local_anchor_b.y",
+            "1"),
+        bodies<Servo>(
+            "hertz", [](Servo& j, Fixture&) { j.hertz = nan; }, "hertz", "nan"),
+        bodies<Servo>(
+            "damping", [](Servo& j, Fixture&) { j.damping_ratio = -1; }, "damping_ratio", "-1"),
+        bodies<Servo>(
+            "velocity", [](Servo& j, Fixture&) { j.target_velocity.z = nan; }, "target_velocity.z", "nan"),
+        bodies<Servo>(
+            "force", [](Servo& j, Fixture&) { j.max_force = -1; }, "max_force", "-1"),
+        bodies<Gears>(
+            "a particle", [](Gears& j, Fixture& f) { j.body_a = f.particle; }, "body_a", "particle"),
+        bodies<Gears>(
+            "b particle", [](Gears& j, Fixture& f) { j.body_b = f.particle; }, "body_b", "particle"),
+        bodies<Gears>(
+            "no axis",
+            [](Gears& j, Fixture&) {
+                j.axis_a = {0, 0, 0};
+            },
+            "axis_a", "0"),
+        bodies<Gears>(
+            "axis NaN", [](Gears& j, Fixture&) { j.axis_b.x = nan; }, "axis_b", "nan"),
+        bodies<Gears>(
+            "ratio", [](Gears& j, Fixture&) { j.ratio = 2e6F; }, "ratio", "2e+06"),
+        bodies<Rack>(
+            "travel", [](Rack& j, Fixture&) { j.travel = nan; }, "travel", "nan"),
+        bodies<Rope>(
+            "anchor b", [](Rope& j, Fixture&) { j.local_anchor_b.x = nan; }, "local_anchor_b.x", "nan"),
+        bodies<Rope>(
+            "point a", [](Rope& j, Fixture&) { j.point_a.z = 2e9; }, "point_a.z", "2e+09"),
+        bodies<Rope>(
+            "point b", [](Rope& j, Fixture&) { j.point_b.x = std::nan(""); }, "point_b.x", "nan"),
+        bodies<Rope>(
+            "ratio", [](Rope& j, Fixture&) { j.ratio = 0; }, "ratio", "0"),
+        bodies<Rope>(
+            "lengths crossed", [](Rope& j, Fixture&) { j.min_length = 3; }, "min_length", "3"),
+        bodies<Rope>(
+            "length NaN", [](Rope& j, Fixture&) { j.max_length = nan; }, "max_length", "nan"),
+    };
+    for (const Case& c : cases) expect_refused(c);
+}
+
+TEST(BadInput, AJointIsSaidAnewOnlyAsWhatItIs)
+{
+    const auto ball_socket = [](Fixture& f) { return BallSocketDefinition{f.rigid, f.planar, {}, {}}; };
+    const Case cases[] = {
+        {"null", [=](Fixture& f) { f.scene.set_joint({}, ball_socket(f)); }, "joint", "null"},
+        {"removed", [=](Fixture& f) { f.scene.set_joint(f.removed_joint, ball_socket(f)); }, "joint",
+         "removed"},
+        {"type",
+         [](Fixture& f) {
+             f.scene.set_joint(f.joint, DistanceDefinition{f.rigid, f.planar});
+         },
+         "set_joint.definition", "another type"},
+        {"bodies",
+         [](Fixture& f) {
+             f.scene.set_joint(f.joint, BallSocketDefinition{f.rigid, f.kinematic, {}, {}});
+         },
+         "set_joint.definition", "other bodies"},
+        {"value",
+         [=](Fixture& f) {
+             BallSocketDefinition joint = ball_socket(f);
+             joint.local_anchor_a.x = nan;
+             f.scene.set_joint(f.joint, joint);
+         },
+         "local_anchor_a.x", "nan"},
     };
     for (const Case& c : cases) expect_refused(c);
 }

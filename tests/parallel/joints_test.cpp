@@ -1,46 +1,16 @@
 // Joints against motions that are known in closed form, and against each other.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "joint_scene.h"
+#include "rig.h"
 
 namespace motley {
 namespace {
 
-constexpr float dt = 1.0F / 60;
+using testing::axis_along;
+using testing::box;
+using testing::run;
+using testing::with_gravity;
+
+constexpr float dt = testing::frame_time;
 constexpr double pi = 3.14159265358979;
-
-SolverSettings with_gravity(Vec3<float> gravity)
-{
-    SolverSettings settings;
-    settings.gravity = gravity;
-    return settings;
-}
-
-BodyDefinition box(Vec3<double> position, float mass = 2)
-{
-    BodyDefinition body;
-    body.position = position;
-    body.mass = mass;
-    body.inertia = {0.1F * mass, 0, 0, 0.2F * mass, 0, 0.25F * mass};
-    return body;
-}
-
-/// x of the frame along `axis`: 0 x, 1 y, 2 z.
-Quat<float> axis_along(int axis)
-{
-    const Quat<float> turns[3] = {
-        {0, 0, 0, 1}, {0, 0, 0.70710678F, 0.70710678F}, {0, -0.70710678F, 0, 0.70710678F}};
-    return turns[axis];
-}
-
-void run(Scene& scene, Solver& solver, double seconds)
-{
-    for (int step = 0; step < static_cast<int>(std::lround(seconds * 60)); ++step) {
-        ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
-    }
-}
 
 TEST(Hinge, TurnsUnderATorqueAsItsInertiaAboutTheAxisSays)
 {
@@ -218,64 +188,6 @@ std::uint64_t thrown(const Tie& tie)
     Solver solver(with_gravity({0, -9.81F, 0}));
     run(scene, solver, 1);
     return scene.state_hash();
-}
-
-/// Momentum, angular momentum about the origin, and kinetic energy of two boxes.
-struct Motion {
-    Vec3<double> momentum{}, angular{};
-    double energy = 0;
-};
-Motion motion_of(const Scene& scene, std::initializer_list<std::pair<BodyId, BodyDefinition>> bodies)
-{
-    Motion sum;
-    for (const auto& [id, definition] : bodies) {
-        const BodyState s = scene.state(id);
-        const double m = definition.mass;
-        const Sym3<float>& i = definition.inertia;
-        const Sym3<double> inertia{i.xx, i.xy, i.xz, i.yy, i.yz, i.zz};
-        const Vec3<double> v = convert<double>(s.linear_velocity);
-        const Vec3<double> w = rotate(conjugate(s.orientation), convert<double>(s.angular_velocity));
-        sum.momentum = sum.momentum + m * v;
-        sum.angular = sum.angular + cross(s.position, m * v) + rotate(s.orientation, inertia * w);
-        sum.energy += 0.5 * (m * dot(v, v) + dot(w, inertia * w));
-    }
-    return sum;
-}
-
-TEST(EveryJoint, KeepsMomentaAndNeverAddsEnergyInFreeFlight)
-{
-    // Two tumbling bodies, no force from outside, one step after another for two seconds. Linear momentum to float
-    // rounding: 480 substeps of relative 6e-8 and a few operations each. Angular momentum: the impulses keep it, the
-    // integration of turning bodies is of first order in h, so it may drift by a few h of itself. Energy: implicit
-    // softness and gyroscopic terms only ever take some out; without a motor none may come in beyond that drift.
-    for (int type = 0; type < testing::frame_joint_types; ++type) {
-        Scene scene;
-        BodyDefinition left = box({-0.4, 0, 0}, 1.5F), right = box({0.4, 0, 0}, 2.5F);
-        left.linear_velocity = {0.3F, 0.2F, -0.4F};
-        left.angular_velocity = {0.5F, -0.8F, 0.7F};
-        right.linear_velocity = {-0.2F, 0.5F, 0.1F};
-        right.angular_velocity = {-0.3F, 0.6F, 0.9F};
-        const BodyId a = scene.add_body(left), b = scene.add_body(right);
-        const JointFrame frame_a{{0.4F, 0, 0}, {0.1F, 0.2F, 0.3F, 1}},
-            frame_b{{-0.4F, 0, 0}, {0.1F, 0.2F, 0.3F, 1}};
-        testing::add_frame_joint(scene, type, a, b, frame_a, frame_b);
-        const Motion before = motion_of(scene, {{a, left}, {b, right}});
-        Solver solver({.substeps = 8});
-        double highest = 0;
-        for (int step = 0; step < 120; ++step) {
-            ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
-            highest = std::max(highest, motion_of(scene, {{a, left}, {b, right}}).energy);
-        }
-        const Motion after = motion_of(scene, {{a, left}, {b, right}});
-        const Vec3<double> lost = after.momentum - before.momentum, turned = after.angular - before.angular;
-        EXPECT_LT(std::sqrt(dot(lost, lost)), 1e-4) << "type " << type;
-        // A motor spins both up, and the drift with them.
-        const bool has_motor = type == 10;
-        const double drift = (has_motor ? 0.06 : 0.03) * std::sqrt(dot(before.angular, before.angular));
-        EXPECT_LT(std::sqrt(dot(turned, turned)), drift) << "type " << type;
-        if (has_motor) continue;
-        EXPECT_LT(highest, 1.01 * before.energy) << "type " << type;
-    }
 }
 
 TEST(SixDof, BecomesTheVeryJointThatItIs)

@@ -1,0 +1,305 @@
+// For each type of joint, definitions between two given bodies that bring out what it can do: wherever a claim must
+// hold for every joint, it is made over the type list with these. A type without cases does not compile.
+#pragma once
+
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "mixed_scene.h"
+
+namespace motley::testing {
+
+inline constexpr float without_end = std::numeric_limits<float>::infinity();
+
+/// Two bodies between which a joint is wanted. Kinds: 0 particle, 1 planar, 2 rigid, 3 static, 4 kinematic.
+class JointPlace {
+  public:
+    BodyId a, b;
+    int kind_a, kind_b;
+
+    JointPlace(const Scene& scene, BodyId body_a, int a_kind, BodyId body_b, int b_kind, Random& random)
+        : a(body_a),
+          b(body_b),
+          kind_a(a_kind),
+          kind_b(b_kind),
+          state_a_(scene.state(body_a)),
+          state_b_(scene.state(body_b)),
+          random_(&random)
+    {
+    }
+    /// With a planar body axes lie in or across the plane, as a host's would: between others rows depend on each other.
+    [[nodiscard]] bool has_planar() const { return kind_a == 1 || kind_b == 1; }
+    [[nodiscard]] double symmetric() const { return random_->symmetric(); }
+
+    /// A random place on a body; the centre of a particle.
+    [[nodiscard]] Vec3<float> anchor_on_a() const { return anchor(kind_a, kind_b); }
+    [[nodiscard]] Vec3<float> anchor_on_b() const { return anchor(kind_b, kind_a); }
+    /// How far two anchors are apart, as the pair sees it.
+    [[nodiscard]] float distance(const Vec3<float>& on_a, const Vec3<float>& on_b) const
+    {
+        Eigen::Vector3d d = at(state_b_, on_b) - at(state_a_, on_a);
+        if (is_in_plane()) d.z() = 0;
+        return static_cast<float>(d.norm());
+    }
+    [[nodiscard]] bool is_in_plane() const
+    {
+        return has_planar() && kind_a != 0 && kind_b != 0 && kind_a != 2 && kind_b != 2;
+    }
+    /// A direction on a body, across the plane of a planar pair or in it.
+    [[nodiscard]] Vec3<float> axis(bool across) const
+    {
+        if (has_planar()) return across ? Vec3<float>{0, 0, 1} : Vec3<float>{0.6F, -0.8F, 0};
+        return narrow(Eigen::Vector3d(symmetric(), symmetric(), symmetric() + 1.5));
+    }
+    [[nodiscard]] Vec3<double> position_a() const { return state_a_.position; }
+    [[nodiscard]] Vec3<double> position_b() const { return state_b_.position; }
+
+    /// Random frames nearly where a joint wants them, 2 cm and 0.02 rad off.
+    [[nodiscard]] std::pair<JointFrame, JointFrame> frames(bool x_across) const
+    {
+        const bool planar = has_planar();
+        const auto vector = [&](double size) {
+            return Eigen::Vector3d(size * symmetric(), size * symmetric(), planar ? 0 : size * symmetric());
+        };
+        const Eigen::Quaterniond turn_a = turn(state_a_), turn_b = turn(state_b_);
+        Eigen::Quaterniond world =
+            Eigen::Quaterniond(symmetric(), symmetric(), symmetric(), symmetric()).normalized();
+        Eigen::Vector3d tilt = vector(0.02);
+        if (planar) {
+            world = Eigen::AngleAxisd(3 * symmetric(), Eigen::Vector3d::UnitZ());
+            if (x_across) world = world * Eigen::AngleAxisd(-EIGEN_PI / 2, Eigen::Vector3d::UnitY());
+            tilt = {0, 0, 0.02 * symmetric()};
+        }
+        const JointFrame frame_a{narrow(vector(0.4)), narrow(turn_a.conjugate() * world)};
+        const Eigen::Vector3d anchor = at(state_a_, frame_a.position) + vector(0.02);
+        const Eigen::Quaterniond tilted =
+            Eigen::Quaterniond(1, tilt.x() / 2, tilt.y() / 2, tilt.z() / 2).normalized();
+        const Eigen::Vector3d centre(state_b_.position.x, state_b_.position.y, state_b_.position.z);
+        return {
+            frame_a,
+            {narrow(turn_b.conjugate() * (anchor - centre)), narrow(turn_b.conjugate() * tilted * world)}};
+    }
+
+  private:
+    BodyState state_a_, state_b_;
+    Random* random_;
+
+    static Eigen::Quaterniond turn(const BodyState& state)
+    {
+        const Quat<double>& q = state.orientation;
+        return Eigen::Quaterniond(q.w, q.x, q.y, q.z);
+    }
+    static Eigen::Vector3d at(const BodyState& state, const Vec3<float>& local)
+    {
+        return Eigen::Vector3d(state.position.x, state.position.y, state.position.z) +
+               turn(state) * Eigen::Vector3d(local.x, local.y, local.z);
+    }
+    static Vec3<float> narrow(const Eigen::Vector3d& v)
+    {
+        return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+    }
+    static Quat<float> narrow(const Eigen::Quaterniond& q)
+    {
+        return {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()),
+                static_cast<float>(q.w())};
+    }
+    [[nodiscard]] Vec3<float> anchor(int kind, int partner) const
+    {
+        const bool planar = (kind == 1 && partner != 0 && partner != 2) || (partner == 1 && kind >= 3);
+        const auto r = [&] { return static_cast<float>(0.5 * symmetric()); };
+        return kind == 0 ? Vec3<float>{} : Vec3<float>{r(), r(), planar ? 0 : r()};
+    }
+};
+
+/// What a type's cases are: `of` gives them; `is_passive` of one tells that it neither stores energy nor brings any in;
+/// `keeps_momentum`, that whatever it does to a it undoes to b.
+template <class Definition>
+struct JointCases;
+
+template <>
+struct JointCases<BallSocketDefinition> {
+    static constexpr bool keeps_momentum = true;
+    static bool is_passive(const BallSocketDefinition&) { return true; }
+    static std::vector<BallSocketDefinition> of(const JointPlace& at)
+    {
+        return {{at.a, at.b, at.anchor_on_a(), at.anchor_on_b()}};
+    }
+};
+
+template <>
+struct JointCases<DistanceDefinition> {
+    static constexpr bool keeps_momentum = true;
+    static bool is_passive(const DistanceDefinition& joint) { return joint.spring_hertz == 0; }
+    static std::vector<DistanceDefinition> of(const JointPlace& at)
+    {
+        DistanceDefinition rod{at.a, at.b, at.anchor_on_a(), at.anchor_on_b()};
+        const float length = at.distance(rod.local_anchor_a, rod.local_anchor_b);
+        rod.min_length = rod.max_length = 0.99F * length;
+        DistanceDefinition rope = rod, spring = rod;
+        rope.min_length = 0;
+        rope.max_length = 1.01F * length;
+        spring.min_length = 0.95F * length;
+        spring.max_length = 1.2F * length;
+        spring.rest_length = 1.1F * length;
+        spring.spring_hertz = 2;
+        spring.spring_damping_ratio = 0.3F;
+        DistanceDefinition weak = spring;
+        weak.max_length = without_end;
+        weak.spring_max_force = 1;
+        return {rod, rope, spring, weak};
+    }
+};
+
+template <LinearLock linear, AngularLock angular>
+struct JointCases<FrameJointDefinition<linear, angular>> {
+    using Definition = FrameJointDefinition<linear, angular>;
+    static constexpr bool keeps_momentum = true;
+    static bool is_passive(const Definition& joint) { return joint.stiffness.hertz == 0; }
+    static std::vector<Definition> of(const JointPlace& at)
+    {
+        const auto [frame_a, frame_b] = at.frames(angular == AngularLock::swing);
+        return {{at.a, at.b, frame_a, frame_b, {}}, {at.a, at.b, frame_a, frame_b, {5, 0.5F}}};
+    }
+};
+
+template <DriveAxis axis>
+struct JointCases<DriveDefinition<axis>> {
+    using Definition = DriveDefinition<axis>;
+    static constexpr bool keeps_momentum = true;
+    static bool is_passive(const Definition& drive)
+    {
+        return drive.spring_hertz == 0 && drive.motor_speed == 0;
+    }
+    static std::vector<Definition> of(const JointPlace& at)
+    {
+        Definition limits{.body_a = at.a, .body_b = at.b};
+        std::tie(limits.frame_a, limits.frame_b) = at.frames(axis == DriveAxis::twist);
+        Definition lock = limits, motor = limits, spring = limits, weak;
+        limits.lower = -0.05F;
+        limits.upper = 0.1F;
+        lock.lower = lock.upper = 0.05F;
+        motor.upper = 0.2F;
+        motor.motor_speed = 2;
+        motor.motor_max_force = axis == DriveAxis::slide ? 5 : 0.5F;
+        spring.motor_max_force = axis == DriveAxis::slide ? 1 : 0.1F;
+        spring.spring_hertz = 3;
+        spring.spring_damping_ratio = 0.4F;
+        spring.spring_target = 0.1F;
+        weak = spring;
+        weak.spring_max_force = 0.2F;
+        return {limits, lock, motor, spring, weak};
+    }
+};
+
+template <>
+struct JointCases<SwingLimitDefinition> {
+    static constexpr bool keeps_momentum = true;
+    static bool is_passive(const SwingLimitDefinition&) { return true; }
+    static std::vector<SwingLimitDefinition> of(const JointPlace& at)
+    {
+        const auto [frame_a, frame_b] = at.frames(false);
+        return {{at.a, at.b, frame_a, frame_b, 0.1F}};
+    }
+};
+
+template <>
+struct JointCases<PointServoDefinition> {
+    static constexpr bool keeps_momentum = true;
+    static bool is_passive(const PointServoDefinition&) { return false; }
+    static std::vector<PointServoDefinition> of(const JointPlace& at)
+    {
+        PointServoDefinition band{at.a, at.b, at.anchor_on_a(), at.anchor_on_b()};
+        PointServoDefinition weak = band, motor = band;
+        band.hertz = 3;
+        band.damping_ratio = 0.4F;
+        weak.max_force = 2;
+        motor.hertz = 0;
+        motor.target_velocity = {0.5F, -0.3F, at.is_in_plane() ? 0 : 0.2F};
+        motor.max_force = 5;
+        return {band, weak, motor};
+    }
+};
+
+template <>
+struct JointCases<AngularServoDefinition> {
+    static constexpr bool keeps_momentum = true;
+    static bool is_passive(const AngularServoDefinition&) { return false; }
+    static std::vector<AngularServoDefinition> of(const JointPlace& at)
+    {
+        const auto [frame_a, frame_b] = at.frames(false);
+        AngularServoDefinition band{at.a, at.b, frame_a, frame_b, 3, 0.4F};
+        AngularServoDefinition weak = band, motor = band;
+        weak.max_torque = 0.3F;
+        motor.hertz = 0;
+        motor.target_velocity = {at.has_planar() ? 0 : 0.5F, at.has_planar() ? 0 : -0.3F, 0.4F};
+        motor.max_torque = 1;
+        return {band, weak, motor};
+    }
+};
+
+template <>
+struct JointCases<GearDefinition> {
+    static constexpr bool keeps_momentum = false;  // what carries the gears takes the rest
+    static bool is_passive(const GearDefinition&) { return true; }
+    static std::vector<GearDefinition> of(const JointPlace& at)
+    {
+        return {{at.a, at.b, at.axis(true), at.axis(true), -0.7F}};
+    }
+};
+
+template <>
+struct JointCases<RackAndPinionDefinition> {
+    static constexpr bool keeps_momentum = false;
+    static bool is_passive(const RackAndPinionDefinition&) { return true; }
+    static std::vector<RackAndPinionDefinition> of(const JointPlace& at)
+    {
+        return {{at.a, at.b, at.axis(true), at.axis(false), 0.3F}};
+    }
+};
+
+template <>
+struct JointCases<PulleyDefinition> {
+    static constexpr bool keeps_momentum = false;  // the wheels are the world's
+    static bool is_passive(const PulleyDefinition&) { return true; }
+    static std::vector<PulleyDefinition> of(const JointPlace& at)
+    {
+        PulleyDefinition rope{at.a, at.b, at.anchor_on_a(), at.anchor_on_b()};
+        // Wheels beyond the anchors, so that the ropes stay well away from their ends.
+        const Vec3<double> up{0.3, 2, at.is_in_plane() ? 0 : 0.4};
+        rope.point_a = at.position_a() + up;
+        rope.point_b = at.position_b() + up;
+        rope.ratio = 1.5F;
+        const auto length = [&](const Vec3<double>& from, const Vec3<double>& to) {
+            const Vec3<double> d = to - from;
+            return std::sqrt(dot(d, d));
+        };
+        // About their length, to within the anchors' half metre: some start slack, some taut.
+        rope.max_length = static_cast<float>(length(rope.point_a, at.position_a()) +
+                                             1.5 * length(rope.point_b, at.position_b()));
+        PulleyDefinition rod = rope;
+        rod.min_length = rod.max_length;
+        return {rope, rod};
+    }
+};
+
+/// Calls visit.template operator()<Definition>() for each type of joint.
+template <class... Types, class Visit>
+void for_each_joint_type(TypeList<Types...>, const Visit& visit)
+{
+    (visit.template operator()<typename Types::Definition>(), ...);
+}
+/// Whether a joint of this definition may stand between these kinds of bodies.
+template <class Definition>
+constexpr bool fits(int kind_a, int kind_b)
+{
+    constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
+    using Store = std::tuple_element_t<static_cast<std::size_t>(type), decltype(JointStores::stores)>;
+    if (kind_a > 2 && kind_b > 2) return false;
+    if constexpr (requires { Store::Type::needs_bodies_that_turn; }) return kind_a != 0 && kind_b != 0;
+    return true;
+}
+
+}  // namespace motley::testing

@@ -1,0 +1,46 @@
+// What tests against closed forms build their scenes from.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "motley/motley.h"
+
+namespace motley::testing {
+
+inline constexpr float frame_time = 1.0F / 60;
+
+inline SolverSettings with_gravity(Vec3<float> gravity)
+{
+    SolverSettings settings;
+    settings.gravity = gravity;
+    return settings;
+}
+
+/// Inertia 0.1, 0.2, 0.25 m2 of its mass about x, y, z.
+inline BodyDefinition box(Vec3<double> position, float mass = 2)
+{
+    BodyDefinition body;
+    body.position = position;
+    body.mass = mass;
+    body.inertia = {0.1F * mass, 0, 0, 0.2F * mass, 0, 0.25F * mass};
+    return body;
+}
+
+/// A frame's rotation with its x along `axis`: 0 x, 1 y, 2 z.
+inline Quat<float> axis_along(int axis)
+{
+    const Quat<float> turns[3] = {
+        {0, 0, 0, 1}, {0, 0, 0.70710678F, 0.70710678F}, {0, -0.70710678F, 0, 0.70710678F}};
+    return turns[axis];
+}
+
+inline void run(Scene& scene, Solver& solver, double seconds)
+{
+    for (int step = 0; step < static_cast<int>(std::lround(seconds * 60)); ++step) {
+        ASSERT_EQ(solver.step(scene, frame_time).status, StepStatus::done);
+    }
+}
+
+}  // namespace motley::testing
