@@ -54,8 +54,16 @@ class JointPlace {
         if (has_planar()) return across ? Vec3<float>{0, 0, 1} : Vec3<float>{0.6F, -0.8F, 0};
         return narrow(Eigen::Vector3d(symmetric(), symmetric(), symmetric() + 1.5));
     }
-    [[nodiscard]] Vec3<double> position_a() const { return state_a_.position; }
-    [[nodiscard]] Vec3<double> position_b() const { return state_b_.position; }
+    /// Where a place on a body is in the world.
+    [[nodiscard]] Vec3<double> where_a(const Vec3<float>& on_a) const { return in_world(state_a_, on_a); }
+    [[nodiscard]] Vec3<double> where_b(const Vec3<float>& on_b) const { return in_world(state_b_, on_b); }
+    /// Places on the two bodies that meet, to 2 cm; of a particle the centre, wherever it is.
+    [[nodiscard]] std::pair<Vec3<float>, Vec3<float>> meeting_anchors() const
+    {
+        if (kind_a == 0 || kind_b == 0) return {anchor_on_a(), anchor_on_b()};
+        const auto [frame_a, frame_b] = frames(false);
+        return {frame_a.position, frame_b.position};
+    }
 
     /// Random frames nearly where a joint wants them, 2 cm and 0.02 rad off.
     [[nodiscard]] std::pair<JointFrame, JointFrame> frames(bool x_across) const
@@ -97,6 +105,11 @@ class JointPlace {
         return Eigen::Vector3d(state.position.x, state.position.y, state.position.z) +
                turn(state) * Eigen::Vector3d(local.x, local.y, local.z);
     }
+    static Vec3<double> in_world(const BodyState& state, const Vec3<float>& local)
+    {
+        const Eigen::Vector3d p = at(state, local);
+        return {p.x(), p.y(), p.z()};
+    }
     static Vec3<float> narrow(const Eigen::Vector3d& v)
     {
         return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
@@ -114,24 +127,27 @@ class JointPlace {
     }
 };
 
-/// What a type's cases are: `of` gives them; `is_passive` of one tells that it neither stores energy nor brings any in;
-/// `keeps_momentum`, that whatever it does to a it undoes to b.
+/// What a joint keeps of the sum over its two bodies.
+enum class Keeps { nothing, linear_momentum, both_momenta };
+
+/// What a type's cases are: `of` gives them; `is_passive` of one tells that it neither stores energy nor brings any in.
 template <class Definition>
 struct JointCases;
 
 template <>
 struct JointCases<BallSocketDefinition> {
-    static constexpr bool keeps_momentum = true;
+    static constexpr Keeps keeps = Keeps::both_momenta;
     static bool is_passive(const BallSocketDefinition&) { return true; }
     static std::vector<BallSocketDefinition> of(const JointPlace& at)
     {
-        return {{at.a, at.b, at.anchor_on_a(), at.anchor_on_b()}};
+        const auto [on_a, on_b] = at.meeting_anchors();
+        return {{at.a, at.b, on_a, on_b}};
     }
 };
 
 template <>
 struct JointCases<DistanceDefinition> {
-    static constexpr bool keeps_momentum = true;
+    static constexpr Keeps keeps = Keeps::both_momenta;
     static bool is_passive(const DistanceDefinition& joint) { return joint.spring_hertz == 0; }
     static std::vector<DistanceDefinition> of(const JointPlace& at)
     {
@@ -156,7 +172,7 @@ struct JointCases<DistanceDefinition> {
 template <LinearLock linear, AngularLock angular>
 struct JointCases<FrameJointDefinition<linear, angular>> {
     using Definition = FrameJointDefinition<linear, angular>;
-    static constexpr bool keeps_momentum = true;
+    static constexpr Keeps keeps = Keeps::both_momenta;
     static bool is_passive(const Definition& joint) { return joint.stiffness.hertz == 0; }
     static std::vector<Definition> of(const JointPlace& at)
     {
@@ -168,7 +184,7 @@ struct JointCases<FrameJointDefinition<linear, angular>> {
 template <DriveAxis axis>
 struct JointCases<DriveDefinition<axis>> {
     using Definition = DriveDefinition<axis>;
-    static constexpr bool keeps_momentum = true;
+    static constexpr Keeps keeps = Keeps::both_momenta;
     static bool is_passive(const Definition& drive)
     {
         return drive.spring_hertz == 0 && drive.motor_speed == 0;
@@ -196,7 +212,7 @@ struct JointCases<DriveDefinition<axis>> {
 
 template <>
 struct JointCases<SwingLimitDefinition> {
-    static constexpr bool keeps_momentum = true;
+    static constexpr Keeps keeps = Keeps::both_momenta;
     static bool is_passive(const SwingLimitDefinition&) { return true; }
     static std::vector<SwingLimitDefinition> of(const JointPlace& at)
     {
@@ -207,7 +223,8 @@ struct JointCases<SwingLimitDefinition> {
 
 template <>
 struct JointCases<PointServoDefinition> {
-    static constexpr bool keeps_momentum = true;
+    static constexpr Keeps keeps =
+        Keeps::linear_momentum;  // a band that is not where it wants to be pulls askew
     static bool is_passive(const PointServoDefinition&) { return false; }
     static std::vector<PointServoDefinition> of(const JointPlace& at)
     {
@@ -225,7 +242,7 @@ struct JointCases<PointServoDefinition> {
 
 template <>
 struct JointCases<AngularServoDefinition> {
-    static constexpr bool keeps_momentum = true;
+    static constexpr Keeps keeps = Keeps::both_momenta;
     static bool is_passive(const AngularServoDefinition&) { return false; }
     static std::vector<AngularServoDefinition> of(const JointPlace& at)
     {
@@ -242,7 +259,7 @@ struct JointCases<AngularServoDefinition> {
 
 template <>
 struct JointCases<GearDefinition> {
-    static constexpr bool keeps_momentum = false;  // what carries the gears takes the rest
+    static constexpr Keeps keeps = Keeps::nothing;  // what carries the gears takes the rest
     static bool is_passive(const GearDefinition&) { return true; }
     static std::vector<GearDefinition> of(const JointPlace& at)
     {
@@ -252,7 +269,7 @@ struct JointCases<GearDefinition> {
 
 template <>
 struct JointCases<RackAndPinionDefinition> {
-    static constexpr bool keeps_momentum = false;
+    static constexpr Keeps keeps = Keeps::nothing;
     static bool is_passive(const RackAndPinionDefinition&) { return true; }
     static std::vector<RackAndPinionDefinition> of(const JointPlace& at)
     {
@@ -262,23 +279,20 @@ struct JointCases<RackAndPinionDefinition> {
 
 template <>
 struct JointCases<PulleyDefinition> {
-    static constexpr bool keeps_momentum = false;  // the wheels are the world's
+    static constexpr Keeps keeps = Keeps::nothing;  // the wheels are the world's
     static bool is_passive(const PulleyDefinition&) { return true; }
     static std::vector<PulleyDefinition> of(const JointPlace& at)
     {
         PulleyDefinition rope{at.a, at.b, at.anchor_on_a(), at.anchor_on_b()};
         // Wheels beyond the anchors, so that the ropes stay well away from their ends.
         const Vec3<double> up{0.3, 2, at.is_in_plane() ? 0 : 0.4};
-        rope.point_a = at.position_a() + up;
-        rope.point_b = at.position_b() + up;
+        const Vec3<double> end_a = at.where_a(rope.local_anchor_a), end_b = at.where_b(rope.local_anchor_b);
+        rope.point_a = end_a + up;
+        rope.point_b = end_b + up;
         rope.ratio = 1.5F;
-        const auto length = [&](const Vec3<double>& from, const Vec3<double>& to) {
-            const Vec3<double> d = to - from;
-            return std::sqrt(dot(d, d));
-        };
-        // About their length, to within the anchors' half metre: some start slack, some taut.
-        rope.max_length = static_cast<float>(length(rope.point_a, at.position_a()) +
-                                             1.5 * length(rope.point_b, at.position_b()));
+        // Taut by a hair from the start: one that is just as long as it may be is told from a slack one by rounding.
+        const double length = std::sqrt(dot(up, up)) * 2.5;
+        rope.max_length = static_cast<float>(length - 1e-3);
         PulleyDefinition rod = rope;
         rod.min_length = rod.max_length;
         return {rope, rod};

@@ -195,7 +195,10 @@ class AngularServoModel : public JointModel {
             frame_jacobian(a, b, frame_a_, frame_b_, LinearLock::none, AngularLock::all);
         // dC/dt where the angular velocity of b against a is the wanted one.
         const Eigen::Vector3d speed = jacobian.rightCols<3>() * eigen(servo_.target_velocity);
-        return {servo_block(jacobian, error, speed, servo_.hertz, servo_.damping_ratio, servo_.max_torque)};
+        Block block =
+            servo_block(jacobian, error, speed, servo_.hertz, servo_.damping_ratio, servo_.max_torque);
+        block.bounds_torque = true;
+        return {block};
     }
 
   private:

@@ -106,7 +106,10 @@ void World::solve_block(BlockRow& row, bool relax)
         held - soft.mass_scale * row.mass * (speed(joint.a, joint.b, row.block.jacobian) + side * bias) -
         soft.impulse_scale * held;
     if (row.block.kind == Block::Kind::limit) wanted(0) = side * std::max(side * wanted(0), 0.0);
-    if (wanted.norm() > row.most) wanted *= row.most / wanted.norm();
+    const double size = row.block.bounds_torque
+                            ? (row.block.jacobian.rightCols<3>().transpose() * wanted).norm()
+                            : wanted.norm();
+    if (size > row.most) wanted *= row.most / size;
     apply(joint.a, joint.b, row.block.jacobian, wanted - held);
     row.impulse() = wanted;
 }

@@ -421,7 +421,7 @@ TEST(BadInput, EveryFieldOfAServoATransmissionAndAPulleyIsChecked)
         bodies<Gears>(
             "axis NaN", [](Gears& j, Fixture&) { j.axis_b.x = nan; }, "axis_b", "nan"),
         bodies<Gears>(
-            "ratio", [](Gears& j, Fixture&) { j.ratio = 2e6F; }, "ratio", "2e+06"),
+            "ratio", [](Gears& j, Fixture&) { j.ratio = infinity; }, "ratio", "inf"),
         bodies<Rack>(
             "travel", [](Rack& j, Fixture&) { j.travel = nan; }, "travel", "nan"),
         bodies<Rope>(

@@ -30,11 +30,6 @@ BodyDefinition link(double x, double y, float mass)
     return body;
 }
 
-Eigen::Vector3d eigen(const Vec3<float>& v)
-{
-    return {v.x, v.y, v.z};
-}
-
 void add_ball_socket(Twin& twin, int a, int b, Vec3<float> at_a, Vec3<float> at_b)
 {
     const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);

@@ -77,7 +77,8 @@ TEST(PointServo, WithoutStiffnessIsDryFrictionOnAFloorSeenFromAbove)
 
 TEST(AngularServo, GivesWayToATorqueAsItsStiffnessSaysAndNoFurtherThanItsBound)
 {
-    // About z alone: 2 sin(theta / 2) = tau / (I (2 pi f)^2); above the bound alpha = (tau - max) / I.
+    // About z alone C = 2 sin(theta / 2) and G = cos(theta / 2), so tau = I (2 pi f)^2 2 tan(theta / 2); above the bound
+    // alpha = (tau - max) / I.
     const double inertia = 0.25 * 2;
     Scene scene;
     const BodyId wheel = scene.add_body(box({0, 0, 0}));
@@ -88,7 +89,7 @@ TEST(AngularServo, GivesWayToATorqueAsItsStiffnessSaysAndNoFurtherThanItsBound)
     scene.set_force(wheel, {}, {0, 0, 4});
     Solver solver;
     run(scene, solver, 6);
-    const double angle = 2 * std::asin(4 / (inertia * 4 * pi * pi) / 2);
+    const double angle = 2 * std::atan(4 / (inertia * 4 * pi * pi) / 2);
     EXPECT_NEAR(scene.joint_report(servo).angle_error, angle, 2e-3 * angle);
     EXPECT_NEAR(scene.joint_report(servo).torque.z, -4, 0.01);
     hold.hertz = 0;

@@ -21,10 +21,12 @@ TEST(Readme, BytesALaneAreWhatTheKernelsStream)
 {
     std::ifstream file(MOTLEY_README);
     ASSERT_TRUE(file) << MOTLEY_README;
-    std::map<std::string, std::string> last_cells;  // of each table row, by the first cell's beginning
+    std::map<std::string, std::string> last_cells;  // of the table's rows, by the first cell's beginning
+    bool in_section = false;
     for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("## ")) in_section = line == "## Bodies and constraints";
         const std::size_t end = line.rfind(" |"), begin = line.rfind("| ", end);
-        if (line.starts_with("| ") && end != std::string::npos && begin != std::string::npos && begin > 0)
+        if (in_section && line.starts_with("| ") && end != std::string::npos && begin > 0)
             last_cells[line.substr(2)] = line.substr(begin + 2, end - begin - 2);
     }
     // The table's rows by their beginnings, in the order of the list of types.
@@ -35,7 +37,9 @@ TEST(Readme, BytesALaneAreWhatTheKernelsStream)
                                 "point on a line", "rotation lock",
                                 "parallel axes",   "perpendicular axes",
                                 "slide drive",     "twist drive",
-                                "swing limit"};
+                                "swing limit",     "point servo",
+                                "angular servo",   "gear",
+                                "rack and pinion", "pulley"};
     static_assert(std::size(rows) == constraint_type_count, "a row for every type");
     for (const Isa isa : available_isas()) {
         const KernelTable& table = kernel_table(isa);

@@ -22,7 +22,8 @@ struct Block {
     Eigen::VectorXd speed{};  ///< what J v shall be; empty is zero
     double side = 1;          ///< of a limit: along the row, or against it
     double hertz = 0, damping_ratio = 0;
-    double most = std::numeric_limits<double>::infinity();  ///< largest norm of the force, N or N m
+    double most = std::numeric_limits<double>::infinity();  ///< largest norm of the force, N or N m...
+    bool bounds_torque = false;                             ///< ...or of the torque that comes of it
 };
 
 /// A type of joint with its numbers. `in_plane`: the pair cannot leave the plane, and rows across it are left out.

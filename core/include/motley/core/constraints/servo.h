@@ -6,7 +6,7 @@
 //   lambda -= mass_scale K^-1 (J v - speed + rate C) + impulse_scale lambda, then |lambda| <= h max
 //
 // Without a frequency it is a motor: rate 0, mass_scale 1, impulse_scale 0. A servo is a force, not a position:
-// relaxation and projection leave it as it is. The bound is a ball, the same in every direction.
+// relaxation and projection leave it as it is. The bound is a ball: force or torque is the same in every direction.
 #pragma once
 
 #include <cmath>
@@ -21,14 +21,13 @@
 
 namespace motley {
 
-/// The longest vector along `wanted` that is not longer than `most`.
+/// What makes a vector no longer than `most`: 1, or less.
 template <class Vector, class Real>
-Vector within(const Vector& wanted, const Real& most)
+Real scale_within(const Vector& v, const Real& most)
 {
-    const Real length2 = dot(wanted, wanted);
+    const Real length2 = dot(v, v);
     const auto too_long = length2 > most * most;
-    const Real scale = most / square_root(select(too_long, length2, Real(1)));
-    return select(too_long, scale, Real(1)) * wanted;
+    return select(too_long, most / square_root(select(too_long, length2, Real(1))), Real(1));
 }
 
 /// What the definitions of both servos share.
@@ -130,9 +129,9 @@ struct PointServo {
                       B& b)
     {
         const auto speed = velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a) + substep.bias;
-        const auto wanted = within(impulse.push - row.soft.mass_scale * (substep.mass * speed) -
-                                       row.soft.impulse_scale * impulse.push,
-                                   row.max_impulse);
+        const auto free = impulse.push - row.soft.mass_scale * (substep.mass * speed) -
+                          row.soft.impulse_scale * impulse.push;
+        const auto wanted = scale_within(free, row.max_impulse) * free;
         const auto change = wanted - impulse.push;
         impulse.push = wanted;
         apply_impulse(a, substep.arm_a, -change);
@@ -249,10 +248,11 @@ struct AngularServo {
         Real change[3];
         for (int i = 0; i < 3; ++i) change[i] = dot(substep.rows.axis[i], speed) + substep.bias[i];
         solve_in_place(substep.mass, change);
-        const Vec3<Real> wanted =
-            within(impulse.turn - row.soft.mass_scale * Vec3<Real>{change[0], change[1], change[2]} -
-                       row.soft.impulse_scale * impulse.turn,
-                   row.max_impulse);
+        const Vec3<Real> free = impulse.turn -
+                                row.soft.mass_scale * Vec3<Real>{change[0], change[1], change[2]} -
+                                row.soft.impulse_scale * impulse.turn;
+        // The bound is on the torque, which is shorter than lambda where the frames are far apart.
+        const Vec3<Real> wanted = scale_within(torque_of(substep, free), row.max_impulse) * free;
         push(substep, wanted - impulse.turn, a, b);
         impulse.turn = wanted;
     }
@@ -286,11 +286,16 @@ struct AngularServo {
     }
 
   private:
+    template <class Real, class Substep>
+    static Vec3<Real> torque_of(const Substep& substep, const Vec3<Real>& lambda)
+    {
+        return lambda.x * substep.rows.axis[0] + lambda.y * substep.rows.axis[1] +
+               lambda.z * substep.rows.axis[2];
+    }
     template <class Real, class Substep, class A, class B>
     static void push(const Substep& substep, const Vec3<Real>& lambda, A& a, B& b)
     {
-        const Vec3<Real> turn = lambda.x * substep.rows.axis[0] + lambda.y * substep.rows.axis[1] +
-                                lambda.z * substep.rows.axis[2];
+        const Vec3<Real> turn = torque_of(substep, lambda);
         apply_turn(a, -turn);
         apply_turn(b, turn);
     }
