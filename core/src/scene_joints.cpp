@@ -34,6 +34,8 @@ ConstraintId Scene::take_joint_slot(int type, std::size_t index)
     entry.index = static_cast<std::uint32_t>(index);
     entry.type = static_cast<std::uint8_t>(type);
     entry.live = true;
+    entry.watched = false;
+    entry.break_limit = {};
     return {slot, entry.generation};
 }
 
@@ -96,6 +98,39 @@ void Scene::remove_joints_of(std::span<const BodyId> bodies)
                 remove_joint_at(type, i);
         }
     });
+}
+
+void Scene::set_break_limit(ConstraintId joint, const BreakLimit& limit)
+{
+    if (!is_alive(joint)) {
+        refuse("set_break_limit.joint", "slot " + std::to_string(joint.slot) + ", not alive",
+               "a joint of this scene");
+    }
+    if (!(limit.force > 0)) refuse("BreakLimit.force", limit.force, "> 0 (N), infinite for none");
+    if (!(limit.torque > 0)) refuse("BreakLimit.torque", limit.torque, "> 0 (N m), infinite for none");
+    JointStores::Slot& slot = joints_.slots[joint.slot];
+    if (!slot.watched) joints_.watched.push_back(joint);
+    slot.watched = true;
+    slot.break_limit = limit;
+}
+
+void Scene::find_break_events()
+{
+    break_events_.clear();
+    std::erase_if(joints_.watched, [&](ConstraintId joint) {
+        if (!is_alive(joint)) return true;
+        JointStores::Slot& slot = joints_.slots[joint.slot];
+        slot.watched = !std::isinf(slot.break_limit.force) || !std::isinf(slot.break_limit.torque);
+        return !slot.watched;
+    });
+    break_events_.reserve(joints_.watched.size());
+    for (const ConstraintId joint : joints_.watched) {
+        const BreakLimit& limit = joints_.slots[joint.slot].break_limit;
+        const JointReport report = joint_report(joint);
+        const float force = std::sqrt(dot(report.force, report.force));
+        const float torque = std::sqrt(dot(report.torque, report.torque));
+        if (force > limit.force || torque > limit.torque) break_events_.push_back({joint, force, torque});
+    }
 }
 
 JointReport Scene::joint_report(ConstraintId joint) const

@@ -37,13 +37,12 @@ Rotations rotations_of(const SixDofDefinition& joint)
 {
     if (!(joint.max_swing >= 0 && joint.max_swing <= half_turn * 1.0001F))
         refuse("SixDofDefinition.max_swing", joint.max_swing, "0 to pi (rad)");
-    const bool twist_locked = is_locked(joint.twist);
-    if (joint.max_swing == 0) return twist_locked ? Rotations::all_locked : Rotations::twist_loose;
-    if (twist_locked) {
-        refuse("SixDofDefinition.twist", "locked while the swing is loose",
-               "a loose twist, or limits close to each other");
+    if (joint.max_swing > 0) return Rotations::all_loose;
+    if (joint.locks_swing_about_z) {
+        refuse("SixDofDefinition.locks_swing_about_z", "true while max_swing is 0",
+               "false: all of the swing is locked");
     }
-    return Rotations::all_loose;
+    return is_locked(joint.twist) ? Rotations::all_locked : Rotations::twist_loose;
 }
 
 /// Adds the joints one by one, and takes them back when one is refused.
@@ -64,6 +63,7 @@ class Assembler {
                 ids_.push_back(scene_.add_joint(SwingLimitDefinition{
                     joint_.body_a, joint_.body_b, joint_.frame_a, joint_.frame_b, joint_.max_swing}));
             }
+            if (joint_.locks_swing_about_z) add_locks<LinearLock::none, AngularLock::perpendicular>();
             if (ids_.empty())
                 refuse("SixDofDefinition", "free in every coordinate", "something to hold or to drive");
         } catch (...) {
@@ -125,6 +125,7 @@ class Assembler {
         drive.spring_hertz = axis.spring_hertz;
         drive.spring_damping_ratio = axis.spring_damping_ratio;
         drive.spring_target = axis.spring_target;
+        drive.spring_max_force = axis.spring_max_force;
         ids_.push_back(scene_.add_joint(drive));
     }
 };

@@ -167,6 +167,7 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     move_bodies(scene, report);
     scene.contact_cache().accept_staged();
     scene.last_substep = layout.context.step.substep;
+    scene.find_break_events();
 
     layout.report(report);
     report.sweeps = settings.substeps * (1 + settings.iterations + (soft ? settings.relaxations : 0) +

@@ -1,4 +1,6 @@
 // Joints against motions that are known in closed form, and against each other.
+#include <algorithm>
+
 #include "rig.h"
 
 namespace motley {
@@ -256,6 +258,53 @@ TEST(SixDof, LimitsEachPositionWithinItsBox)
     }
 }
 
+TEST(SixDof, AUniversalJointTurnsAboutTwoAxesAndCarriesATorqueAboutTheThird)
+{
+    // Position and rotation about z locked: y of the body stays across x of the ground, whatever turns it.
+    Scene scene;
+    const BodyId body = scene.add_body(box({0, 0, 0}));
+    SixDofDefinition six;
+    six.body_a = scene.ground();
+    six.body_b = body;
+    six.twist = AxisSetup::free();
+    six.max_swing = static_cast<float>(pi);
+    six.locks_swing_about_z = true;
+    const std::vector<ConstraintId> parts = add_six_dof(scene, six);
+    ASSERT_EQ(parts.size(), 2U);  // a ball-socket and perpendicular axes: 4 rows
+    scene.set_force(body, {}, {0.05F, 0.1F, 2});
+    Solver solver;
+    run(scene, solver, 0.1);
+    EXPECT_NEAR(scene.joint_report(parts[1]).torque.z, -2, 0.01);
+    run(scene, solver, 0.9);
+    const Quat<double> q = scene.state(body).orientation;
+    const Vec3<double> y = rotate(q, Vec3<double>{0, 1, 0});
+    EXPECT_LT(std::abs(y.x), 1e-3);
+    const Vec3<double> turned{2 * q.x, 2 * q.y, 2 * q.z};
+    EXPECT_GT(turned.x, 0.05);  // tau t^2 / 2 I = 0.125 and 0.125
+    EXPECT_GT(turned.y, 0.05);
+}
+
+TEST(SixDof, ALockedTwistStaysWhileTheSwingIsLoose)
+{
+    // A constant-velocity joint: swings in its cone and does not twist.
+    Scene scene;
+    const BodyId body = scene.add_body(box({0, 0, 0}));
+    SixDofDefinition six;
+    six.body_a = scene.ground();
+    six.body_b = body;
+    six.max_swing = 0.8F;
+    ASSERT_EQ(add_six_dof(scene, six).size(), 3U);  // ball-socket, twist lock, cone
+    scene.set_force(body, {}, {1, 0.3F, 0.4F});
+    Solver solver;
+    for (int step = 0; step < 120; ++step) {
+        solver.step(scene, dt);
+        const Quat<double> q = scene.state(body).orientation;
+        const Vec3<double> x = rotate(q, Vec3<double>{1, 0, 0});
+        EXPECT_LT(std::abs(2 * std::atan2(q.x, q.w)), 2e-3);
+        EXPECT_LT(std::acos(std::clamp(x.x, -1.0, 1.0)), 0.81);
+    }
+}
+
 TEST(SixDof, WhatItRefusesLeavesNothingBehind)
 {
     Scene scene;
@@ -265,9 +314,10 @@ TEST(SixDof, WhatItRefusesLeavesNothingBehind)
     six.body_b = body;
     six.twist = AxisSetup::limited(1, -1);
     EXPECT_THROW(add_six_dof(scene, six), InvalidInput);
-    six.twist = AxisSetup::locked();
-    six.max_swing = 1;
+    six.twist = AxisSetup::free();
+    six.locks_swing_about_z = true;
     EXPECT_THROW(add_six_dof(scene, six), InvalidInput);
+    six.locks_swing_about_z = false;
     six.max_swing = -1;
     EXPECT_THROW(add_six_dof(scene, six), InvalidInput);
     six.max_swing = static_cast<float>(pi);

@@ -240,5 +240,113 @@ TEST(Distance, ASpringBetweenStopsRestsOnTheOneThatItsLoadReaches)
     EXPECT_EQ(scene.joint_report(joint).state, JointState::lower);
 }
 
+TEST(BreakLimit, TellsTheHostOnceTheLoadIsAboveItAndLetsItDecide)
+{
+    // A weight of 2 g N hangs from a ball-socket; what breaks at 15 N is told in every step until the host removes it.
+    Scene scene;
+    const BodyId weight = scene.add_body(box({0, 0, 0}));
+    const ConstraintId joint = scene.add_joint(BallSocketDefinition{scene.ground(), weight, {}, {}});
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    scene.set_break_limit(joint, {.force = 21});
+    run(scene, solver, 1);
+    EXPECT_TRUE(scene.break_events().empty());
+    EXPECT_THROW(scene.set_break_limit(joint, {.force = 0}), InvalidInput);
+    EXPECT_THROW(scene.set_break_limit(joint, {.torque = -1}), InvalidInput);
+    EXPECT_THROW(scene.set_break_limit({}, {.force = 1}), InvalidInput);
+    scene.set_break_limit(joint, {.force = 15});
+    run(scene, solver, 0.1);
+    ASSERT_EQ(scene.break_events().size(), 1U);
+    EXPECT_EQ(scene.break_events()[0].joint, joint);
+    EXPECT_NEAR(scene.break_events()[0].force, 2 * g, 0.05);
+    EXPECT_LT(scene.state(weight).position.y, 1e-3);  // it holds on
+    scene.remove_joint(scene.break_events()[0].joint);
+    run(scene, solver, 1);
+    EXPECT_TRUE(scene.break_events().empty());
+    EXPECT_NEAR(scene.state(weight).linear_velocity.y, -g, 1e-3);
+}
+
+TEST(BreakLimit, AHingeTellsOfItsTorque)
+{
+    // An arm held level by a weld bears its weight's moment.
+    Scene scene;
+    const BodyId arm = scene.add_body(box({0.5, 0, 0}));
+    const ConstraintId weld = scene.add_joint(FixedDefinition{scene.ground(), arm, {}, {{-0.5F, 0, 0}}});
+    scene.set_break_limit(weld, {.torque = 9});
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    run(scene, solver, 2);
+    ASSERT_EQ(scene.break_events().size(), 1U);
+    EXPECT_NEAR(scene.break_events()[0].torque, 2 * g * 0.5, 0.05);
+    scene.set_break_limit(weld, {});
+    run(scene, solver, 0.1);
+    EXPECT_TRUE(scene.break_events().empty());
+}
+
+/// A wheel of 1 kg on a rail in the world; y up.
+WheelDefinition wheel_on_ground(Scene& scene)
+{
+    WheelDefinition wheel;
+    wheel.chassis = scene.ground();
+    wheel.wheel = scene.add_body(box({0.3, 0, 0}, 1));
+    wheel.position = {0.3F, 0, 0};
+    return wheel;
+}
+
+TEST(Wheel, ItsSuspensionGivesWayByItsFrequencyAndItsMotorSpinsItUp)
+{
+    // Sag g / (2 pi f)^2; alpha = tau / I about the axle, until the speed is reached.
+    Scene scene;
+    WheelDefinition definition = wheel_on_ground(scene);
+    definition.spring_hertz = 2;
+    definition.lower = -0.5F;
+    definition.motor_speed = 12;
+    definition.motor_max_torque = 1;
+    const Wheel wheel = add_wheel(scene, definition);
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    run(scene, solver, 1);
+    EXPECT_NEAR(scene.state(definition.wheel).angular_velocity.z, 1 / 0.25, 0.05);
+    run(scene, solver, 4);
+    const BodyState state = scene.state(definition.wheel);
+    EXPECT_NEAR(state.angular_velocity.z, 12, 1e-2);
+    EXPECT_NEAR(state.position.x, 0.3, 1e-3);
+    EXPECT_NEAR(state.position.y, -g / std::pow(2 * pi * 2, 2), 1e-3);
+    EXPECT_LT(scene.joint_report(wheel.axle).angle_error, 1e-3F);
+}
+
+TEST(Wheel, SteeringTurnsItsAxle)
+{
+    Scene scene;
+    const WheelDefinition definition = wheel_on_ground(scene);
+    const Wheel wheel = add_wheel(scene, definition);
+    Solver solver;
+    for (int step = 0; step < 60; ++step) {
+        steer(scene, wheel, definition, 0.01F * static_cast<float>(std::min(step, 50)));
+        solver.step(scene, testing::frame_time);
+    }
+    run(scene, solver, 0.5);
+    const Vec3<double> axle = rotate(scene.state(definition.wheel).orientation, Vec3<double>{0, 0, 1});
+    EXPECT_NEAR(axle.x, std::sin(0.5), 2e-3);
+    EXPECT_NEAR(axle.z, std::cos(0.5), 2e-3);
+}
+
+TEST(Wheel, WhatItRefusesLeavesNothingBehind)
+{
+    Scene scene;
+    const WheelDefinition good = wheel_on_ground(scene);
+    WheelDefinition bad = good;
+    bad.axle = {0.1F, 1, 0};
+    EXPECT_THROW(add_wheel(scene, bad), InvalidInput);
+    bad = good;
+    bad.suspension = {0, 0, 0};
+    EXPECT_THROW(add_wheel(scene, bad), InvalidInput);
+    bad = good;
+    bad.spring_hertz = -1;
+    bad.lower = 0;
+    EXPECT_THROW(add_wheel(scene, bad), InvalidInput);
+    bad = good;
+    bad.motor_max_torque = -2;
+    EXPECT_THROW(add_wheel(scene, bad), InvalidInput);
+    EXPECT_EQ(scene.joint_count(), 0U);
+}
+
 }  // namespace
 }  // namespace motley

@@ -5,6 +5,7 @@
 #include "motley/core/settings.h"
 #include "motley/core/six_dof.h"
 #include "motley/core/step_report.h"
+#include "motley/core/wheel.h"
 #include "motley/parallel/executor.h"
 #include "motley/parallel/parallel_for.h"
 #include "motley/parallel/solver.h"

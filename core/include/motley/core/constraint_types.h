@@ -1,5 +1,5 @@
-// The one list of constraint types. Storage, batches, kernel tables and typed tests follow from it:
-// to add a joint, write its header and put its name into JointTypes.
+// The one list of constraint types. Storage, batches, kernel tables and typed tests follow from it: to add a joint, write
+// its header as joint_type.h says and put its name into JointTypes.
 #pragma once
 
 #include "motley/core/constraints/ball_socket.h"

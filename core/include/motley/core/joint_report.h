@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
+#include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
 namespace motley {
@@ -22,6 +24,19 @@ struct JointReport {
     float error = 0;        ///< m: the length of the linear part of C, of a limit only what it is beyond it
     float angle_error = 0;  ///< rad, of the angular part
     JointState state = JointState::inactive;
+};
+
+/// What a joint bears before the host is told.
+struct BreakLimit {
+    float force = std::numeric_limits<float>::infinity();   ///< N, > 0
+    float torque = std::numeric_limits<float>::infinity();  ///< N m, > 0
+};
+
+/// A joint that bore more than its BreakLimit in the last substep of the last step.
+struct BreakEvent {
+    ConstraintId joint{};
+    float force = 0;   ///< N
+    float torque = 0;  ///< N m
 };
 
 }  // namespace motley

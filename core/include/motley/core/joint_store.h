@@ -12,6 +12,8 @@
 #include "motley/core/contact_cache.h"
 #include "motley/core/ids.h"
 #include "motley/core/joint_pose.h"
+#include "motley/core/joint_report.h"
+#include "motley/core/joint_type.h"
 
 namespace motley {
 
@@ -21,9 +23,9 @@ inline constexpr std::size_t quad_floats = (sizeof(T) / sizeof(float) + 3) / 4 *
 
 /// Joints of one type, dense. The order decides blocks and so bits; removal moves the last joint into the
 /// gap.
-template <class JointType>
+template <JointType JointInList>
 struct JointStore {
-    using Type = JointType;
+    using Type = JointInList;
     using Parameters = typename Type::template Parameters<float>;
     using Memory = typename Type::template Memory<float>;
 
@@ -101,10 +103,13 @@ struct JointStores {
         std::uint32_t index = 0;
         std::uint8_t type = 0;
         bool live = false;
+        bool watched = false;  ///< stands in the list below
+        BreakLimit break_limit{};
     };
     typename StoresOf<JointTypes>::type stores;
     std::vector<Slot> slots{Slot{}};  ///< slot 0 is null
     std::vector<std::uint32_t> free_slots;
+    std::vector<ConstraintId> watched;  ///< joints with a break limit, and some that had one
     /// Names this set of joints: null after a change, given by the next step, shared by copies of the scene.
     /// A layout that holds the same token was made from the same joints.
     std::shared_ptr<const char> version;

@@ -78,6 +78,12 @@ class Scene {
     /// The force and torque that a joint applied in the last substep of the last step, and its error now.
     [[nodiscard]] JointReport joint_report(ConstraintId joint) const;
 
+    /// Asks to be told when a joint bears more than this; infinite limits ask no more. The joint holds on: whether it
+    /// breaks, the host decides, by removing it. Refuses limits that are not above 0.
+    void set_break_limit(ConstraintId joint, const BreakLimit& limit);
+    /// Joints that bore more than their limit in the last step, in the order in which they were first watched.
+    [[nodiscard]] std::span<const BreakEvent> break_events() const { return break_events_; }
+
     // ---- contacts -----------------------------------------------------------------------------------------
     /// What the contacts of the last step did, in the order of its list.
     [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const { return contacts_.impulses(); }
@@ -95,6 +101,8 @@ class Scene {
     [[nodiscard]] JointStores& joints() { return joints_; }
     [[nodiscard]] ContactCache& contact_cache() { return contacts_; }
     [[nodiscard]] const ContactCache& contact_cache() const { return contacts_; }
+    /// Looks for joints that bore more than their limit, once a step is done.
+    void find_break_events();
     /// Seconds of the last substep: turns impulses into forces. 0 before the first step.
     float last_substep = 0;
 
@@ -102,6 +110,7 @@ class Scene {
     BodyStore bodies_;
     JointStores joints_;
     ContactCache contacts_;
+    std::vector<BreakEvent> break_events_;  ///< with room for every watched joint
     BodyId ground_{};
     std::size_t body_count_ = 0;
 

@@ -1,6 +1,7 @@
 // Six degrees of freedom, each free, limited or locked: one definition that becomes the fewest rows that do it.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "motley/core/scene.h"
@@ -15,7 +16,8 @@ struct AxisSetup {
     float motor_max_force = 0;  ///< N or N m; 0: no motor
     float spring_hertz = 0;     ///< 0: no spring
     float spring_damping_ratio = 0;
-    float spring_target = 0;  ///< m or rad
+    float spring_target = 0;                                          ///< m or rad
+    float spring_max_force = std::numeric_limits<float>::infinity();  ///< N or N m
 
     static AxisSetup locked() { return {}; }
     static AxisSetup free();
@@ -24,9 +26,10 @@ struct AxisSetup {
 
 /// Frame b in frame a: three positions along the axes of a, a twist about x, and a swing of x away from x.
 ///
-/// Positions may each be locked, limited, driven or free. Of rotations: all locked; only the twist loose (a hinge, with
-/// limits, motor and spring); or all loose, the swing free or within a cone. Others are refused: two rotations locked
-/// about different axes are a hinge about the third, which the frames can be turned to.
+/// Positions may each be locked, limited, driven or free. Of rotations: all locked; the swing locked and the twist loose
+/// (a hinge); the swing loose, free or within a cone, and the twist locked, limited, driven or free; or the swing loose
+/// about y alone (with the position locked a universal joint). Two rotations locked about other axes are a hinge about
+/// the third, which the frames can be turned to.
 struct SixDofDefinition {
     BodyId body_a{};
     BodyId body_b{};
@@ -36,7 +39,8 @@ struct SixDofDefinition {
     AxisSetup twist;        ///< about x
     /// rad, 0 to pi: 0 locks the swing, pi leaves it free, between is a cone.
     float max_swing = 0;
-    JointStiffness stiffness{};  ///< of the locked coordinates
+    bool locks_swing_about_z = false;  ///< y of b stays across x of a; the swing must be loose
+    JointStiffness stiffness{};        ///< of the locked coordinates
 };
 
 /// Adds the joints that a definition needs, and nothing more: locked coordinates become one joint of as many rows (the

@@ -1,0 +1,128 @@
+// A toy type of joint, as a stranger would add one: two centres stay at one height, y_a = y_b.
+//
+//   C = y_b - y_a,   J = [-e_y, 0, e_y, 0]
+//
+// One file, and one name in the list of types: tests/CMakeLists.txt puts it there, in a copy of the list.
+#pragma once
+
+#include "motley/core/constraints/ball_socket_definition.h"
+#include "motley/core/joint_checks.h"
+#include "motley/core/joint_pose.h"
+#include "motley/core/joint_report.h"
+#include "motley/core/limit.h"
+
+namespace motley {
+
+struct LevelRodDefinition {
+    BodyId body_a{};
+    BodyId body_b{};
+    float offset = 0;  ///< m: how far b is above a, finite
+};
+
+struct LevelRod {
+    using Definition = LevelRodDefinition;
+    static constexpr bool has_restitution = false;
+    static constexpr bool recomputes_each_substep = true;
+
+    template <class Real>
+    struct Parameters {
+        Real offset;
+    };
+    template <class Real>
+    struct Memory {
+        Real lambda;  ///< N s on b, up
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        Real start_error;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+        Real mass, error;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Impulse {
+        Real lambda;
+    };
+
+    static void validate(const Definition& joint, const JointBodies&)
+    {
+        check_range("offset", joint.offset, -largest_length, largest_length, "-1e9 to 1e9 (m)");
+    }
+    static Parameters<float> parameters(const Definition& joint) { return {joint.offset}; }
+
+    template <class Real, class A, class B>
+    static auto prepare(const StepConstants& step, const Parameters<Real>& joint, const Memory<Real>& memory,
+                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
+                        Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        impulse.lambda = Real(step.warm_start_scale) * memory.lambda;
+        return Row<Real, A::kind, B::kind>{pose.between.y - joint.offset};
+    }
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
+                           A& a, B& b)
+    {
+        build<Real>(row, substep, a, b);
+        apply_impulse(a, at_centre<A, B, Real>(), -up<A, B>(impulse.lambda));
+        apply_impulse(b, at_centre<A, B, Real>(), up<A, B>(impulse.lambda));
+    }
+    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants& step, const Row&, const Substep& substep, Impulse& impulse, A& a,
+                      B& b)
+    {
+        const Real speed = b.linear.y - a.linear.y;
+        const Real wanted = lock_impulse<relax>(step, substep.error, speed, substep.mass, impulse.lambda);
+        const Real change = wanted - impulse.lambda;
+        impulse.lambda = wanted;
+        apply_impulse(a, at_centre<A, B, Real>(), -up<A, B>(change));
+        apply_impulse(b, at_centre<A, B, Real>(), up<A, B>(change));
+    }
+    template <class Real, class Row, class Substep, class A, class B>
+    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    {
+        Substep now;
+        build<Real>(row, now, a, b);
+        const Real push = -(now.mass * now.error);
+        apply_displacement(a, at_centre<A, B, Real>(), -up<A, B>(push));
+        apply_displacement(b, at_centre<A, B, Real>(), up<A, B>(push));
+    }
+    template <class Real, class Row, class Impulse>
+    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    {
+        return {impulse.lambda};
+    }
+    static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b, double inverse_substep)
+    {
+        JointReport report;
+        report.force.y = static_cast<float>(inverse_substep * static_cast<double>(memory.lambda));
+        report.error =
+            static_cast<float>(std::abs(b.position.y - a.position.y - static_cast<double>(joint.offset)));
+        report.state = JointState::active;
+        return report;
+    }
+
+  private:
+    template <class A, class B, class Real>
+    static auto up(const Real& y)
+    {
+        return to_space<PairVector<Real, A::kind, B::kind>>(Vec3<Real>{Real(0), y, Real(0)});
+    }
+    template <class A, class B, class Real>
+    static auto at_centre()
+    {
+        return up<A, B>(Real(0));
+    }
+    template <class Real, class Row, class Substep, class A, class B>
+    static void build(const Row& row, Substep& substep, const A& a, const B& b)
+    {
+        const auto e = up<A, B>(Real(1));
+        const auto centre = at_centre<A, B, Real>();
+        substep.mass =
+            inverse_or_zero(dot(e, (inverse_point_mass(a, centre) + inverse_point_mass(b, centre)) * e));
+        substep.error = row.start_error + b.delta.y - a.delta.y;
+    }
+};
+
+}  // namespace motley
