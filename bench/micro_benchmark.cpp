@@ -42,63 +42,145 @@ struct Net {
     }
 };
 
-enum class Tie {
-    smooth_contact,
-    friction_contact,
-    ball_socket,
-    rod,
-    fixed,
-    hinge,
-    slider,
-    twist_drive,
-    swing_limit
-};
+/// What ties two bodies; the arm leads from the centre of a to the point between them.
+using Tie = std::function<void(Net&, BodyId a, BodyId b, Vec3<float> arm)>;
 
-std::unique_ptr<Net> make_net(Tie kind, BodyModel model, int side)
+std::unique_ptr<Net> make_net(const Tie& tie, BodyModel model, int side)
 {
     auto net = std::make_unique<Net>(side, model);
-    std::uint64_t key = 0;
-    net->for_each_pair(side, [&](BodyId a, BodyId b, Vec3<float> arm) {
-        if (kind == Tie::ball_socket) {
-            net->scene.add_joint(BallSocketDefinition{a, b, arm, -arm});
-        } else if (kind == Tie::fixed) {
-            net->scene.add_joint(FixedDefinition{a, b, {arm}, {-arm}});
-        } else if (kind == Tie::hinge) {
-            net->scene.add_joint(HingeDefinition{a, b, {arm}, {-arm}});
-        } else if (kind == Tie::slider) {
-            net->scene.add_joint(SliderDefinition{a, b, {arm}, {-arm}});
-        } else if (kind == Tie::twist_drive) {
-            TwistDriveDefinition drive{.body_a = a, .body_b = b, .lower = -1, .upper = 1};
-            drive.motor_speed = 1;
-            drive.motor_max_force = 1;
-            drive.spring_hertz = 2;
-            net->scene.add_joint(drive);
-        } else if (kind == Tie::swing_limit) {
-            net->scene.add_joint(SwingLimitDefinition{.body_a = a, .body_b = b, .max_angle = 0.5F});
-        } else if (kind == Tie::rod) {
-            net->scene.add_joint(
-                DistanceDefinition{.body_a = a, .body_b = b, .min_length = 0.4F, .max_length = 0.4F});
-        } else {
-            Contact contact;
-            contact.body_a = a;
-            contact.body_b = b;
-            contact.key = key++;
-            contact.normal = 5.0F * arm;
-            contact.separation = -0.001F;
-            contact.arm_a = arm;
-            contact.arm_b = -arm;
-            contact.friction = kind == Tie::friction_contact ? 0.5F : 0;
-            net->contacts.push_back(contact);
-        }
-    });
+    net->for_each_pair(side, [&](BodyId a, BodyId b, Vec3<float> arm) { tie(*net, a, b, arm); });
     return net;
+}
+
+Tie contact(float friction)
+{
+    return [friction](Net& net, BodyId a, BodyId b, Vec3<float> arm) {
+        Contact contact;
+        contact.body_a = a;
+        contact.body_b = b;
+        contact.key = net.contacts.size();
+        contact.normal = 5.0F * arm;
+        contact.separation = -0.001F;
+        contact.arm_a = arm;
+        contact.arm_b = -arm;
+        contact.friction = friction;
+        net.contacts.push_back(contact);
+    };
+}
+
+/// A joint between frames where the bodies meet; `fill` sets what is its own.
+template <class Definition>
+Tie frames(void (*fill)(Definition&) = [](Definition&) {})
+{
+    return [fill](Net& net, BodyId a, BodyId b, Vec3<float> arm) {
+        Definition joint;
+        joint.body_a = a;
+        joint.body_b = b;
+        joint.frame_a.position = arm;
+        joint.frame_b.position = -arm;
+        fill(joint);
+        net.scene.add_joint(joint);
+    };
+}
+
+/// A joint between two bodies; `fill` sets what is its own.
+template <class Definition>
+Tie joint(void (*fill)(Definition&, Vec3<float> arm) = [](Definition&, Vec3<float>) {})
+{
+    return [fill](Net& net, BodyId a, BodyId b, Vec3<float> arm) {
+        Definition joint;
+        joint.body_a = a;
+        joint.body_b = b;
+        fill(joint, arm);
+        net.scene.add_joint(joint);
+    };
+}
+
+template <class Definition>
+void everything(Definition& drive)
+{
+    drive.lower = -1;
+    drive.upper = 1;
+    drive.motor_speed = 1;
+    drive.motor_max_force = 1;
+    drive.spring_hertz = 2;
+}
+
+template <class Definition>
+void at_anchors(Definition& joint, Vec3<float> arm)
+{
+    joint.local_anchor_a = arm;
+    joint.local_anchor_b = -arm;
+}
+
+/// Six degrees of freedom set up as a hinge.
+void six_dof_hinge(Net& net, BodyId a, BodyId b, Vec3<float> arm)
+{
+    SixDofDefinition six;
+    six.body_a = a;
+    six.body_b = b;
+    six.frame_a.position = arm;
+    six.frame_b.position = -arm;
+    six.twist = AxisSetup::free();
+    add_six_dof(net.scene, six);
+}
+
+struct NamedTie {
+    const char* name;
+    BodyModel model;
+    Tie tie;
+};
+
+std::vector<NamedTie> every_tie()
+{
+    const auto planar = BodyModel::planar, rigid = BodyModel::rigid;
+    const Tie rod = joint<DistanceDefinition>(
+        [](DistanceDefinition& j, Vec3<float>) { j.min_length = j.max_length = 0.4F; });
+    const Tie strut = joint<DistanceDefinition>([](DistanceDefinition& j, Vec3<float>) {
+        j.min_length = 0.3F;
+        j.max_length = 0.5F;
+        j.rest_length = 0.4F;
+        j.spring_hertz = 2;
+    });
+    return {{"smooth_contact/planar", planar, contact(0)},
+            {"smooth_contact/particle", BodyModel::particle, contact(0)},
+            {"smooth_contact/rigid", rigid, contact(0)},
+            {"contact/planar", planar, contact(0.5F)},
+            {"contact/rigid", rigid, contact(0.5F)},
+            {"ball_socket/planar", planar, joint<BallSocketDefinition>(at_anchors<BallSocketDefinition>)},
+            {"ball_socket/rigid", rigid, joint<BallSocketDefinition>(at_anchors<BallSocketDefinition>)},
+            {"rod/planar", planar, rod},
+            {"rod/rigid", rigid, rod},
+            {"strut/rigid", rigid, strut},
+            {"fixed/rigid", rigid, frames<FixedDefinition>()},
+            {"hinge/rigid", rigid, frames<HingeDefinition>()},
+            {"six_dof_hinge/rigid", rigid, six_dof_hinge},
+            {"slider/rigid", rigid, frames<SliderDefinition>()},
+            {"point_on_plane/rigid", rigid, frames<PointOnPlaneDefinition>()},
+            {"point_on_line/rigid", rigid, frames<PointOnLineDefinition>()},
+            {"rotation_lock/rigid", rigid, frames<RotationLockDefinition>()},
+            {"parallel_axes/rigid", rigid, frames<ParallelAxesDefinition>()},
+            {"perpendicular_axes/rigid", rigid, frames<PerpendicularAxesDefinition>()},
+            {"slide_drive/rigid", rigid, frames<SlideDriveDefinition>(everything<SlideDriveDefinition>)},
+            {"twist_drive/rigid", rigid, frames<TwistDriveDefinition>(everything<TwistDriveDefinition>)},
+            {"swing_limit/rigid", rigid, frames<SwingLimitDefinition>()},
+            {"point_servo/rigid", rigid, joint<PointServoDefinition>(at_anchors<PointServoDefinition>)},
+            {"angular_servo/rigid", rigid, frames<AngularServoDefinition>()},
+            {"gear/rigid", rigid, joint<GearDefinition>()},
+            {"rack_and_pinion/rigid", rigid, joint<RackAndPinionDefinition>()},
+            {"pulley/rigid", rigid, joint<PulleyDefinition>([](PulleyDefinition& pulley, Vec3<float> arm) {
+                 at_anchors(pulley, arm);
+                 pulley.point_a = {-1, 30, 0};
+                 pulley.point_b = {1, 30, 0};
+                 pulley.max_length = 40;
+             })}};
 }
 
 /// One sweep of `solve` over every constraint, from the solver's own clock: the maths, gathers and scatters, and the
 /// hand-over between colours.
-void sweep(benchmark::State& state, Tie kind, BodyModel model, Isa isa, int threads, int side)
+void sweep(benchmark::State& state, const NamedTie& kind, Isa isa, int threads, int side)
 {
-    const auto net = make_net(kind, model, side);
+    const auto net = make_net(kind.tie, kind.model, side);
     constexpr int iterations = 32;
     Solver solver({.substeps = 1, .iterations = iterations, .relaxations = 0},
                   {.threads = threads, .isa = isa});
@@ -120,13 +202,13 @@ void sweep(benchmark::State& state, Tie kind, BodyModel model, Isa isa, int thre
 /// The colour stage, intake included: of a scene never seen, or of the same contacts again.
 void colour(benchmark::State& state, bool again, int threads, int side)
 {
-    auto net = make_net(Tie::smooth_contact, BodyModel::planar, side);
+    auto net = make_net(contact(0), BodyModel::planar, side);
     Solver solver({}, {.threads = threads});
     solver.step(net->scene, 1e-3F, net->contacts);
     for (auto _ : state) {
         if (!again) {
             state.PauseTiming();
-            net = make_net(Tie::smooth_contact, BodyModel::planar, side);
+            net = make_net(contact(0), BodyModel::planar, side);
             state.ResumeTiming();
         }
         const StepReport report = solver.step(net->scene, 1e-3F, net->contacts);
@@ -157,35 +239,14 @@ void hand_over(benchmark::State& state)
 
 void enter_all()
 {
-    struct Named {
-        const char* name;
-        Tie tie;
-        BodyModel model;
-    };
-    const Named kinds[] = {{"smooth_contact/planar", Tie::smooth_contact, BodyModel::planar},
-                           {"smooth_contact/particle", Tie::smooth_contact, BodyModel::particle},
-                           {"smooth_contact/rigid", Tie::smooth_contact, BodyModel::rigid},
-                           {"contact/planar", Tie::friction_contact, BodyModel::planar},
-                           {"contact/rigid", Tie::friction_contact, BodyModel::rigid},
-                           {"ball_socket/planar", Tie::ball_socket, BodyModel::planar},
-                           {"ball_socket/rigid", Tie::ball_socket, BodyModel::rigid},
-                           {"rod/planar", Tie::rod, BodyModel::planar},
-                           {"rod/rigid", Tie::rod, BodyModel::rigid},
-                           {"fixed/rigid", Tie::fixed, BodyModel::rigid},
-                           {"hinge/rigid", Tie::hinge, BodyModel::rigid},
-                           {"slider/rigid", Tie::slider, BodyModel::rigid},
-                           {"twist_drive/rigid", Tie::twist_drive, BodyModel::rigid},
-                           {"swing_limit/rigid", Tie::swing_limit, BodyModel::rigid}};
     // 4,000 constraints stay in a second level cache, 320,000 do not.
     const std::pair<const char*, int> sizes[] = {{"in_cache", 45}, {"streaming", 400}};
     for (const auto& [place, side] : sizes) {
-        for (const Named& kind : kinds) {
+        for (const NamedTie& kind : every_tie()) {
             for (const Isa isa : available_isas()) {
                 benchmark::RegisterBenchmark(
                     fmt::format("sweep/{}/{}/{}", kind.name, place, isa_name(isa)).c_str(),
-                    [kind, isa, size = side](benchmark::State& s) {
-                        sweep(s, kind.tie, kind.model, isa, 1, size);
-                    })
+                    [kind, isa, size = side](benchmark::State& s) { sweep(s, kind, isa, 1, size); })
                     ->UseManualTime()
                     ->Unit(benchmark::kMicrosecond);
             }

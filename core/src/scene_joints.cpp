@@ -1,4 +1,4 @@
-// Joints that come and go, and what they did.
+// Joints that come and go, and what they and contacts did.
 #include "motley/core/scene.h"
 
 #include <cmath>
@@ -150,6 +150,25 @@ JointReport Scene::joint_report(ConstraintId joint) const
                               state(definition.body_b), inverse_substep);
     });
     return result;
+}
+
+JointReport Scene::contact_report(std::span<const Contact> contacts, std::size_t index) const
+{
+    const ContactList& list = contacts_.current();
+    if (index >= list.count || index >= contacts.size()) {
+        refuse("contact_report.index", static_cast<double>(index),
+               "below the length of the last step's list and of `contacts`");
+    }
+    const Contact& contact = contacts[index];
+    if (list.entries[index].key != contact.key)
+        refuse("contact_report.contacts", "another list", "the list of the last step");
+    const ContactImpulse& impulse = contacts_.impulses()[index];
+    JointReport report;
+    if (last_substep > 0)
+        report.force = (1 / last_substep) * (impulse.normal * contact.normal + impulse.friction);
+    report.error = std::fmax(0.0F, -contact.separation);
+    report.state = impulse.normal > 0 ? JointState::active : JointState::inactive;
+    return report;
 }
 
 }  // namespace motley

@@ -82,6 +82,83 @@ TEST(Fixed, TwoBodiesFlyAsOne)
     EXPECT_NEAR(centre.y, 0.5 * 2, 1e-4);
 }
 
+TEST(PointOnPlane, ABeadSlidesDownAnInclinedPlaneAndTurnsAsItLikes)
+{
+    // a = g sin(theta) along the plane, nothing along its normal; no torque, so the spin stays.
+    Scene scene;
+    const double theta = 0.5;
+    BodyDefinition bead = box({0, 0, 0});
+    bead.inertia = {0.3F, 0, 0, 0.3F, 0, 0.3F};
+    bead.angular_velocity = {1, 2, -0.5F};
+    bead.linear_velocity = {0, 0, 1};
+    const BodyId body = scene.add_body(bead);
+    // The frame's x is the plane's normal: y turned by theta about z.
+    const double turn = (pi / 2 + theta) / 2;
+    const Quat<float> normal{0, 0, static_cast<float>(std::sin(turn)), static_cast<float>(std::cos(turn))};
+    const ConstraintId joint =
+        scene.add_joint(PointOnPlaneDefinition{scene.ground(), body, {{}, normal}, {}});
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    run(scene, solver, 1);
+    const BodyState s = scene.state(body);
+    const double v = 9.81 * std::sin(theta);
+    EXPECT_NEAR(s.linear_velocity.x, -v * std::cos(theta), 0.01);
+    EXPECT_NEAR(s.linear_velocity.y, -v * std::sin(theta), 0.01);
+    EXPECT_NEAR(s.linear_velocity.z, 1, 1e-4);
+    EXPECT_NEAR(s.angular_velocity.y, 2, 1e-3);
+    const Vec3<float> f = scene.joint_report(joint).force;
+    EXPECT_NEAR(std::sqrt(dot(f, f)), 2 * 9.81 * std::cos(theta), 0.02);
+}
+
+TEST(PointOnLine, ABeadOnAWireKeepsItsSpeedAlongItAndTheWireBearsTheWeight)
+{
+    Scene scene;
+    BodyDefinition bead = box({0, 0, 0});
+    bead.linear_velocity = {1.5F, 0, 0};
+    bead.angular_velocity = {0, 2, 0};
+    const BodyId body = scene.add_body(bead);
+    const ConstraintId wire = scene.add_joint(PointOnLineDefinition{scene.ground(), body, {}, {}});
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    run(scene, solver, 1);
+    const BodyState s = scene.state(body);
+    EXPECT_NEAR(s.position.x, 1.5, 1e-3);
+    EXPECT_LT(std::hypot(s.position.y, s.position.z), 1e-3);
+    EXPECT_NEAR(s.angular_velocity.y, 2, 1e-3);
+    EXPECT_NEAR(scene.joint_report(wire).force.y, 2 * 9.81, 0.02);
+}
+
+TEST(RotationLock, ABodyUnderATorqueFallsAndDoesNotTurn)
+{
+    Scene scene;
+    const BodyId body = scene.add_body(box({0, 0, 0}));
+    const ConstraintId lock = scene.add_joint(RotationLockDefinition{scene.ground(), body, {}, {}});
+    scene.set_force(body, {}, {1, -2, 3});
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    run(scene, solver, 1);
+    EXPECT_NEAR(scene.state(body).linear_velocity.y, -9.81, 1e-3);
+    const JointReport report = scene.joint_report(lock);
+    EXPECT_NEAR(report.torque.x, -1, 1e-2);
+    EXPECT_NEAR(report.torque.y, 2, 2e-2);
+    EXPECT_NEAR(report.torque.z, -3, 3e-2);
+    EXPECT_LT(report.angle_error, 1e-3F);
+}
+
+TEST(ParallelAxes, ABodySpinsUpAboutTheAxisAndNotAcrossIt)
+{
+    // alpha = tau / I about x; the rest of the torque is the joint's.
+    Scene scene;
+    const BodyId body = scene.add_body(box({0, 0, 0}));
+    const ConstraintId joint = scene.add_joint(ParallelAxesDefinition{scene.ground(), body, {}, {}});
+    scene.set_force(body, {}, {0.6F, 1, -2});
+    Solver solver;
+    run(scene, solver, 1);
+    const BodyState s = scene.state(body);
+    EXPECT_NEAR(s.angular_velocity.x, 0.6 / 0.2, 0.01);
+    EXPECT_LT(std::hypot(s.angular_velocity.y, s.angular_velocity.z), 0.01);
+    const JointReport report = scene.joint_report(joint);
+    EXPECT_NEAR(report.torque.y, -1, 0.05);
+    EXPECT_NEAR(report.torque.z, 2, 0.05);
+}
+
 TEST(SlideDrive, AMotorBelowTheWeightStallsAndOneAboveItLifts)
 {
     // On a vertical rail: a = F/m - g until the speed is reached.

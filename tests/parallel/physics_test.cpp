@@ -208,11 +208,17 @@ TEST(Contact, AStandingBallIsHeldByItsWeight)
             SolverSettings settings =
                 method == Method::soft_step ? soft({0, -10, 0}) : iterative({0, -10, 0});
             Solver solver(settings);
+            Contact contact;
             for (int step = 0; step < 120; ++step) {
-                const Contact contact = on_floor(scene, body, 0.5);
+                contact = on_floor(scene, body, 0.5);
                 solver.step(scene, 1.0F / 60, {&contact, 1});
             }
             EXPECT_NEAR(scene.contact_impulses()[0].normal / scene.last_substep, 40, 0.4);
+            const JointReport report = scene.contact_report({&contact, 1}, 0);
+            EXPECT_NEAR(dot(report.force, contact.normal), 40, 0.4);
+            EXPECT_EQ(report.state, JointState::active);
+            EXPECT_LT(report.error, 1e-3F);
+            EXPECT_THROW((void)scene.contact_report({&contact, 1}, 1), InvalidInput);
             // At rest soft contacts sag by about g / omega^2; speculative ones leave rounding.
             EXPECT_NEAR(scene.state(body).position.y, 0.5, 1e-3);
             EXPECT_NEAR(scene.state(body).linear_velocity.y, 0, 1e-3);

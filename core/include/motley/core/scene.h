@@ -88,6 +88,10 @@ class Scene {
     /// What the contacts of the last step did, in the order of its list.
     [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const { return contacts_.impulses(); }
 
+    /// What contact `index` of the list of the last step did, as a joint tells it: the force on b at the point, the depth
+    /// that the host gave, active when it pushed. Refuses an index beyond the last list, or another contact's.
+    [[nodiscard]] JointReport contact_report(std::span<const Contact> contacts, std::size_t index) const;
+
     // ---- whole scene --------------------------------------------------------------------------------------
     /// 64-bit hash of every body's position, orientation and velocity bits, in slot order.
     [[nodiscard]] std::uint64_t state_hash() const;
