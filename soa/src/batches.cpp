@@ -222,9 +222,7 @@ BatchSet::Count BatchSet::count(const KernelTable& table) const
         std::int64_t constraints = pool.overflow;
         for (const std::int32_t some : pool.constraints) constraints += some;
         const ConstraintKernels& kernels = table.constraints[static_cast<std::size_t>(first_class_) + p];
-        // Types that rebuild their row each substep sweep over that one; the others over the step's row.
-        const int row = kernels.substep_floats > 0 ? kernels.substep_floats : kernels.row_floats;
-        const double floats = row + kernels.impulse_floats + 2;  // two body indices
+        const double floats = kernels.swept_floats + kernels.impulse_floats + 2;  // two body indices
         total.blocks += pool.block_count();
         total.constraints += constraints;
         total.overflow += pool.overflow;

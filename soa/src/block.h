@@ -82,6 +82,7 @@ struct ConstraintKernels {
     Sweep project = nullptr;
     Transfer store = nullptr;  ///< impulses -> memory
     int row_floats = 0, substep_floats = 0, impulse_floats = 0;
+    int swept_floats = 0;  ///< of row and substep row, what a sweep reads
 };
 
 /// The kernels of one kind of body, over rows begin ... end - 1.

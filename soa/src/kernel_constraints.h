@@ -128,6 +128,21 @@ Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays, const std::i
 
 // ---- the kernels -------------------------------------------------------------------------------------------
 
+/// The part of a row that a sweep reads: all of it where there is no substep row; else what the type has set apart.
+struct NothingInSweep {};
+template <bool recomputes, class Row>
+const auto& swept(const Row& row)
+{
+    if constexpr (!recomputes) {
+        return row;
+    } else if constexpr (requires { row.in_sweep; }) {
+        return row.in_sweep;
+    } else {
+        static constexpr NothingInSweep nothing;
+        return nothing;
+    }
+}
+
 template <class Type, BodyKind kind_a, BodyKind kind_b>
 struct Kernels {
     using A = Body<kind_a>;
@@ -137,6 +152,7 @@ struct Kernels {
     using Impulse = typename Type::template Impulse<Lanes, kind_a, kind_b>;
     using Parameters = typename Type::template Parameters<Lanes>;
     using Memory = typename Type::template Memory<Lanes>;
+    using Swept = std::remove_cvref_t<decltype(swept<Type::recomputes_each_substep>(std::declval<Row>()))>;
     static constexpr int row_stride = fields_of<Row> * block_lanes;
     static constexpr int substep_stride = fields_of<Substep> * block_lanes;
     static constexpr int impulse_stride = fields_of<Impulse> * block_lanes;
@@ -257,7 +273,8 @@ struct Kernels {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
                 auto impulse = load_row<Impulse>(bundle.impulse);
-                Type::template solve<relax, Lanes>(context.step, load_row<Row>(bundle.row),
+                const auto row = load_row<Row>(bundle.row);
+                Type::template solve<relax, Lanes>(context.step, swept<Type::recomputes_each_substep>(row),
                                                    load_row<Substep>(bundle.substep), impulse, a, b);
                 store_row(impulse, bundle.impulse);
                 store_velocity(bundle.arrays_a, bundle.rows_a, a, bundle.count);
@@ -329,6 +346,7 @@ struct Kernels {
         kernels.project = project;
         kernels.store = store;
         kernels.row_floats = fields_of<Row>;
+        kernels.swept_floats = fields_of<Swept> + fields_of<Substep>;
         kernels.substep_floats = fields_of<Substep>;
         kernels.impulse_floats = fields_of<Impulse>;
     }

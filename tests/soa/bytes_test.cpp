@@ -3,7 +3,9 @@
 
 #include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "block.h"
 
@@ -13,21 +15,23 @@ namespace {
 int bytes(const KernelTable& table, int type, BodyKind kind)
 {
     const ConstraintKernels& kernels = table.constraints[class_of(type, kind, kind)];
-    const int row = kernels.substep_floats > 0 ? kernels.substep_floats : kernels.row_floats;
-    return 4 * (row + kernels.impulse_floats + 2);  // two body indices
+    return 4 * (kernels.swept_floats + kernels.impulse_floats + 2);  // two body indices
 }
 
 TEST(Readme, BytesALaneAreWhatTheKernelsStream)
 {
     std::ifstream file(MOTLEY_README);
     ASSERT_TRUE(file) << MOTLEY_README;
-    std::map<std::string, std::string> last_cells;  // of the table's rows, by the first cell's beginning
+    std::map<std::string, std::string> bytes_cells;  // of the table's rows, by their first cell
     bool in_section = false;
     for (std::string line; std::getline(file, line);) {
         if (line.starts_with("## ")) in_section = line == "## Bodies and constraints";
-        const std::size_t end = line.rfind(" |"), begin = line.rfind("| ", end);
-        if (in_section && line.starts_with("| ") && end != std::string::npos && begin > 0)
-            last_cells[line.substr(2)] = line.substr(begin + 2, end - begin - 2);
+        if (!in_section || !line.starts_with("| ")) continue;
+        std::vector<std::string> cells;
+        std::istringstream cut(line.substr(1));
+        for (std::string cell; std::getline(cut, cell, '|');)
+            cells.push_back(cell.substr(1, cell.size() > 1 ? cell.size() - 2 : 0));
+        if (cells.size() > 3) bytes_cells[cells[0]] = cells[3];
     }
     // The table's rows by their beginnings, in the order of the list of types.
     const char* const rows[] = {"contact, smooth", "contact with friction",
@@ -47,8 +51,8 @@ TEST(Readme, BytesALaneAreWhatTheKernelsStream)
             const char* const name = rows[type];
             const std::string measured = std::to_string(bytes(table, type, BodyKind::planar)) + " / " +
                                          std::to_string(bytes(table, type, BodyKind::rigid));
-            const auto row = last_cells.lower_bound(name);
-            ASSERT_TRUE(row != last_cells.end() && row->first.starts_with(name)) << name;
+            const auto row = bytes_cells.lower_bound(name);
+            ASSERT_TRUE(row != bytes_cells.end() && row->first.starts_with(name)) << name;
             EXPECT_EQ(row->second, measured) << name << " on " << isa_name(isa);
         }
     }

@@ -40,12 +40,17 @@ struct Distance {
     struct Memory {
         Real spring, limit;  ///< N s along u on b
     };
-    template <class Real, BodyKind a, BodyKind b>
-    struct Row {
-        PairVector<Real, a, b> start_arm_a, start_arm_b, start_between;
+    /// What a sweep reads of a row.
+    template <class Real>
+    struct InSweep {
         Real min_length, max_length;
         Real rest_length, spring_max_impulse;
         LaneSoftness<Real> spring;  ///< mass_scale 0 and impulse_scale 1 where there is none
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        PairVector<Real, a, b> start_arm_a, start_arm_b, start_between;
+        InSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -92,11 +97,12 @@ struct Distance {
         row.start_arm_a = to_space<Vector>(arm_a);
         row.start_arm_b = to_space<Vector>(arm_b);
         row.start_between = to_space<Vector>(pose.between + arm_b - arm_a);
-        row.min_length = joint.min_length;
-        row.max_length = joint.max_length;
-        row.rest_length = joint.rest_length;
-        row.spring_max_impulse = Real(step.substep) * joint.spring_max_force;
-        row.spring = softness_or(step, joint.spring_hertz, joint.spring_damping_ratio, Softness{0, 0, 1});
+        row.in_sweep.min_length = joint.min_length;
+        row.in_sweep.max_length = joint.max_length;
+        row.in_sweep.rest_length = joint.rest_length;
+        row.in_sweep.spring_max_impulse = Real(step.substep) * joint.spring_max_force;
+        row.in_sweep.spring =
+            softness_or(step, joint.spring_hertz, joint.spring_damping_ratio, Softness{0, 0, 1});
         impulse.spring = Real(step.warm_start_scale) * memory.spring;
         impulse.limit = Real(step.warm_start_scale) * memory.limit;
         return row;
@@ -111,17 +117,17 @@ struct Distance {
     }
 
     template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void solve(const StepConstants& step, const Row& row, const Substep& substep, Impulse& impulse,
-                      A& a, B& b)
+    static void solve(const StepConstants& step, const Row& in_sweep, const Substep& substep,
+                      Impulse& impulse, A& a, B& b)
     {
         const Real before = impulse.spring + impulse.limit;
         Real speed = dot(substep.axis, velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a));
-        const Real spring = spring_impulse(row.spring, substep.length - row.rest_length, speed, substep.mass,
-                                           impulse.spring, row.spring_max_impulse);
+        const Real spring = spring_impulse(in_sweep.spring, substep.length - in_sweep.rest_length, speed,
+                                           substep.mass, impulse.spring, in_sweep.spring_max_impulse);
         speed = speed + substep.inverse_mass * (spring - impulse.spring);
         impulse.spring = spring;
-        impulse.limit = range_impulse<relax>(step, substep.length, row.min_length, row.max_length, speed,
-                                             substep.mass, impulse.limit);
+        impulse.limit = range_impulse<relax>(step, substep.length, in_sweep.min_length, in_sweep.max_length,
+                                             speed, substep.mass, impulse.limit);
         push((impulse.spring + impulse.limit - before) * substep.axis, substep, a, b);
     }
 
@@ -130,7 +136,9 @@ struct Distance {
     {
         Substep now;
         build<Real>(row, now, a, b);
-        const auto push = -(now.mass * beyond_range(now.length, row.min_length, row.max_length)) * now.axis;
+        const auto push =
+            -(now.mass * beyond_range(now.length, row.in_sweep.min_length, row.in_sweep.max_length)) *
+            now.axis;
         apply_displacement(a, now.arm_a, -push);
         apply_displacement(b, now.arm_b, push);
     }

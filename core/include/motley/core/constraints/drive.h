@@ -48,14 +48,19 @@ struct Drive {
     struct Memory {
         Real motor, spring, limit;  ///< N s or N m s
     };
-    template <class Real, BodyKind a, BodyKind b>
-    struct Row {
-        Vec3<Real> start_arm_a, start_arm_b, start_separation;
-        Quat<Real> start_frame_a, start_frame_b;
+    /// What a sweep reads of a row.
+    template <class Real>
+    struct InSweep {
         Real lower, upper;
         Real motor_speed, motor_max_impulse;
         Real spring_target, spring_max_impulse;
         LaneSoftness<Real> spring;  ///< mass_scale 0 and impulse_scale 1 where there is none
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        Vec3<Real> start_arm_a, start_arm_b, start_separation;
+        Quat<Real> start_frame_a, start_frame_b;
+        InSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -113,14 +118,15 @@ struct Drive {
         row.start_separation = pose.between + row.start_arm_b - row.start_arm_a;
         row.start_frame_a = to_world(pose.orientation_a, drive.rotation_a);
         row.start_frame_b = to_world(pose.orientation_b, drive.rotation_b);
-        row.lower = drive.lower;
-        row.upper = drive.upper;
-        row.motor_speed = drive.motor_speed;
-        row.motor_max_impulse = Real(step.substep) * drive.motor_max_force;
-        row.spring_target = drive.spring_target;
-        row.spring_max_impulse = Real(step.substep) * drive.spring_max_force;
+        row.in_sweep.lower = drive.lower;
+        row.in_sweep.upper = drive.upper;
+        row.in_sweep.motor_speed = drive.motor_speed;
+        row.in_sweep.motor_max_impulse = Real(step.substep) * drive.motor_max_force;
+        row.in_sweep.spring_target = drive.spring_target;
+        row.in_sweep.spring_max_impulse = Real(step.substep) * drive.spring_max_force;
         // Without a spring nothing is wanted and nothing is kept: impulse_scale 1 forgets.
-        row.spring = softness_or(step, drive.spring_hertz, drive.spring_damping_ratio, Softness{0, 0, 1});
+        row.in_sweep.spring =
+            softness_or(step, drive.spring_hertz, drive.spring_damping_ratio, Softness{0, 0, 1});
         const Real warm(step.warm_start_scale);
         impulse.motor = warm * memory.motor;
         impulse.spring = warm * memory.spring;
@@ -138,8 +144,8 @@ struct Drive {
     }
 
     template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void solve(const StepConstants& step, const Row& row, const Substep& substep, Impulse& impulse,
-                      A& a, B& b)
+    static void solve(const StepConstants& step, const Row& in_sweep, const Substep& substep,
+                      Impulse& impulse, A& a, B& b)
     {
         const Real before = impulse.motor + impulse.spring + impulse.limit;
         Real speed = speed_of(substep, a, b);
@@ -148,12 +154,14 @@ struct Drive {
             speed = speed + substep.inverse_mass * (wanted - held);
             held = wanted;
         };
-        change_to(impulse.spring, spring_impulse(row.spring, substep.value - row.spring_target, speed,
-                                                 substep.mass, impulse.spring, row.spring_max_impulse));
-        const Real motor = impulse.motor - substep.mass * (speed - row.motor_speed);
-        change_to(impulse.motor, maximum(minimum(motor, row.motor_max_impulse), -row.motor_max_impulse));
-        change_to(impulse.limit, range_impulse<relax>(step, substep.value, row.lower, row.upper, speed,
-                                                      substep.mass, impulse.limit));
+        change_to(impulse.spring,
+                  spring_impulse(in_sweep.spring, substep.value - in_sweep.spring_target, speed, substep.mass,
+                                 impulse.spring, in_sweep.spring_max_impulse));
+        const Real motor = impulse.motor - substep.mass * (speed - in_sweep.motor_speed);
+        change_to(impulse.motor,
+                  maximum(minimum(motor, in_sweep.motor_max_impulse), -in_sweep.motor_max_impulse));
+        change_to(impulse.limit, range_impulse<relax>(step, substep.value, in_sweep.lower, in_sweep.upper,
+                                                      speed, substep.mass, impulse.limit));
 
         push(substep, impulse.motor + impulse.spring + impulse.limit - before, a, b);
     }
@@ -163,7 +171,7 @@ struct Drive {
     {
         Substep now;
         build<Real>(row, now, a, b);
-        const Real lambda = -(now.mass * beyond_range(now.value, row.lower, row.upper));
+        const Real lambda = -(now.mass * beyond_range(now.value, row.in_sweep.lower, row.in_sweep.upper));
         if constexpr (slides) {
             displace(a, -(lambda * now.axis), -(lambda * now.lever_a));
             displace(b, lambda * now.axis, lambda * now.lever_b);

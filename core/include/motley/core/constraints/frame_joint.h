@@ -82,7 +82,7 @@ struct FrameJoint {
         [[no_unique_address]] IfNeeded<has_arms, 0, Anchors<Real>> start;
         [[no_unique_address]] IfNeeded<has_axes || has_turns, 1, Quat<Real>> start_frame_a;
         [[no_unique_address]] IfNeeded<has_turns, 2, Quat<Real>> start_frame_b;
-        LaneSoftness<Real> soft;
+        LaneSoftness<Real> in_sweep;  ///< what a sweep reads of a row
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -125,7 +125,7 @@ struct FrameJoint {
         if constexpr (has_axes || has_turns)
             row.start_frame_a = to_world(pose.orientation_a, joint.rotation_a);
         if constexpr (has_turns) row.start_frame_b = to_world(pose.orientation_b, joint.rotation_b);
-        row.soft = softness_or(step, joint.hertz, joint.damping_ratio, step.joint);
+        row.in_sweep = softness_or(step, joint.hertz, joint.damping_ratio, step.joint);
         for (int i = 0; i < rows; ++i) impulse.lambda[i] = Real(step.warm_start_scale) * memory.lambda[i];
         return row;
     }
@@ -141,10 +141,10 @@ struct FrameJoint {
     }
 
     template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void solve(const StepConstants&, const Row& row, const Substep& substep, Impulse& impulse, A& a,
-                      B& b)
+    static void solve(const StepConstants&, const Row& in_sweep, const Substep& substep, Impulse& impulse,
+                      A& a, B& b)
     {
-        const LaneSoftness<Real> soft = relax ? relaxed(row.soft) : row.soft;
+        const LaneSoftness<Real> soft = relax ? relaxed(in_sweep) : in_sweep;
         Real change[rows];
         speeds(substep, a, b, change);
         for (int i = 0; i < rows; ++i) change[i] = -(change[i] + soft.rate * substep.error[i]);
@@ -164,7 +164,7 @@ struct FrameJoint {
         Substep now;
         build(row, now, a, b);
         // Springs are forces, not positions.
-        const auto own = row.soft.is_own > Real(0);
+        const auto own = row.in_sweep.is_own > Real(0);
         Real change[rows];
         for (int i = 0; i < rows; ++i) change[i] = select(own, Real(0), -now.error[i]);
         solve_in_place(now.mass, change);
@@ -247,7 +247,7 @@ struct FrameJoint {
     template <class Row, class Substep, class A, class B>
     static void build(const Row& row, Substep& substep, const A& a, const B& b)
     {
-        using Real = std::remove_cvref_t<decltype(row.soft.rate)>;
+        using Real = std::remove_cvref_t<decltype(row.in_sweep.rate)>;
         Quat<Real> frame_a{};
         if constexpr (has_axes || has_turns) frame_a = turn_of(a) * row.start_frame_a;
         Vec3<Real> e[3], lever_a[rows], lever_b[rows];

@@ -43,10 +43,16 @@ struct Pulley {
     struct EndNow {
         Vector arm, axis;  ///< b's axis is ratio u_b
     };
+    /// What a sweep reads of a row.
+    template <class Real>
+    struct InSweep {
+        Real min_length, max_length;
+    };
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
         End<PairVector<Real, a, b>> a_end, b_end;
-        Real ratio, min_length, max_length;
+        Real ratio;
+        InSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -90,8 +96,7 @@ struct Pulley {
             {to_space<Vector>(arm_a), to_space<Vector>(pose.from_point_a + arm_a)},
             {to_space<Vector>(arm_b), to_space<Vector>(pose.from_point_b + arm_b)},
             pulley.ratio,
-            pulley.min_length,
-            pulley.max_length};
+            {pulley.min_length, pulley.max_length}};
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
@@ -104,13 +109,13 @@ struct Pulley {
     }
 
     template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void solve(const StepConstants& step, const Row& row, const Substep& substep, Impulse& impulse,
-                      A& a, B& b)
+    static void solve(const StepConstants& step, const Row& in_sweep, const Substep& substep,
+                      Impulse& impulse, A& a, B& b)
     {
         const Real speed = dot(substep.a_end.axis, velocity_at(a, substep.a_end.arm)) +
                            dot(substep.b_end.axis, velocity_at(b, substep.b_end.arm));
-        const Real wanted = range_impulse<relax>(step, substep.length, row.min_length, row.max_length, speed,
-                                                 substep.mass, impulse.lambda);
+        const Real wanted = range_impulse<relax>(step, substep.length, in_sweep.min_length,
+                                                 in_sweep.max_length, speed, substep.mass, impulse.lambda);
         const Real change = wanted - impulse.lambda;
         impulse.lambda = wanted;
         apply_impulse(a, substep.a_end.arm, change * substep.a_end.axis);
@@ -122,7 +127,8 @@ struct Pulley {
     {
         Substep now;
         build<Real>(row, now, a, b);
-        const Real push = -(now.mass * beyond_range(now.length, row.min_length, row.max_length));
+        const Real push =
+            -(now.mass * beyond_range(now.length, row.in_sweep.min_length, row.in_sweep.max_length));
         apply_displacement(a, now.a_end.arm, push * now.a_end.axis);
         apply_displacement(b, now.b_end.arm, push * now.b_end.axis);
     }

@@ -30,6 +30,13 @@ Real scale_within(const Vector& v, const Real& most)
     return select(too_long, most / square_root(select(too_long, length2, Real(1))), Real(1));
 }
 
+/// What a sweep reads of a servo's row.
+template <class Real>
+struct ServoInSweep {
+    Real max_impulse;
+    LaneSoftness<Real> soft;
+};
+
 /// What the definitions of both servos share.
 template <class Definition>
 void validate_servo(const Definition& servo, float most, const char* bound)
@@ -64,8 +71,7 @@ struct PointServo {
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
         PairVector<Real, a, b> start_arm_a, start_arm_b, start_error, target_velocity;
-        Real max_impulse;
-        LaneSoftness<Real> soft;
+        ServoInSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -106,8 +112,8 @@ struct PointServo {
             to_space<Vector>(arm_b),
             to_space<Vector>(pose.between + arm_b - arm_a),
             to_space<Vector>(servo.target_velocity),
-            Real(step.substep) * servo.max_force,
-            softness_or(step, servo.hertz, servo.damping_ratio, Softness{0, 1, 0})};
+            {Real(step.substep) * servo.max_force,
+             softness_or(step, servo.hertz, servo.damping_ratio, Softness{0, 1, 0})}};
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
@@ -117,21 +123,22 @@ struct PointServo {
         substep.arm_a = turned(a, row.start_arm_a);
         substep.arm_b = turned(b, row.start_arm_b);
         substep.mass = inverse(inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b));
-        substep.bias = row.soft.rate * anchor_error(row.start_error, row.start_arm_a, row.start_arm_b,
-                                                    substep.arm_a, substep.arm_b, a, b) -
-                       row.target_velocity;
+        substep.bias =
+            row.in_sweep.soft.rate * anchor_error(row.start_error, row.start_arm_a, row.start_arm_b,
+                                                  substep.arm_a, substep.arm_b, a, b) -
+            row.target_velocity;
         apply_impulse(a, substep.arm_a, -impulse.push);
         apply_impulse(b, substep.arm_b, impulse.push);
     }
 
     template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void solve(const StepConstants&, const Row& row, const Substep& substep, Impulse& impulse, A& a,
-                      B& b)
+    static void solve(const StepConstants&, const Row& in_sweep, const Substep& substep, Impulse& impulse,
+                      A& a, B& b)
     {
         const auto speed = velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a) + substep.bias;
-        const auto free = impulse.push - row.soft.mass_scale * (substep.mass * speed) -
-                          row.soft.impulse_scale * impulse.push;
-        const auto wanted = scale_within(free, row.max_impulse) * free;
+        const auto free = impulse.push - in_sweep.soft.mass_scale * (substep.mass * speed) -
+                          in_sweep.soft.impulse_scale * impulse.push;
+        const auto wanted = scale_within(free, in_sweep.max_impulse) * free;
         const auto change = wanted - impulse.push;
         impulse.push = wanted;
         apply_impulse(a, substep.arm_a, -change);
@@ -180,8 +187,7 @@ struct AngularServo {
     struct Row {
         Quat<Real> start_frame_a, start_frame_b;
         Vec3<Real> target_velocity;
-        Real max_impulse;
-        LaneSoftness<Real> soft;
+        ServoInSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -217,9 +223,11 @@ struct AngularServo {
     {
         impulse.turn = Real(step.warm_start_scale) * memory.turn;
         return Row<Real, A::kind, B::kind>{
-            to_world(pose.orientation_a, servo.rotation_a), to_world(pose.orientation_b, servo.rotation_b),
-            servo.target_velocity, Real(step.substep) * servo.max_torque,
-            softness_or(step, servo.hertz, servo.damping_ratio, Softness{0, 1, 0})};
+            to_world(pose.orientation_a, servo.rotation_a),
+            to_world(pose.orientation_b, servo.rotation_b),
+            servo.target_velocity,
+            {Real(step.substep) * servo.max_torque,
+             softness_or(step, servo.hertz, servo.damping_ratio, Softness{0, 1, 0})}};
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
@@ -230,7 +238,7 @@ struct AngularServo {
         substep.rows = rotation_rows(turn_of(a) * row.start_frame_a, turn_of(b) * row.start_frame_b, error);
         for (int i = 0; i < 3; ++i) {
             const Vec3<Real>& g = substep.rows.axis[i];
-            substep.bias[i] = row.soft.rate * error[i] - dot(g, row.target_velocity);
+            substep.bias[i] = row.in_sweep.soft.rate * error[i] - dot(g, row.target_velocity);
             const Vec3<Real> turn = over_inertia(a, g) + over_inertia(b, g);
             for (int j = 0; j <= i; ++j) k[i][j] = dot(turn, substep.rows.axis[j]);
         }
@@ -241,18 +249,18 @@ struct AngularServo {
     }
 
     template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void solve(const StepConstants&, const Row& row, const Substep& substep, Impulse& impulse, A& a,
-                      B& b)
+    static void solve(const StepConstants&, const Row& in_sweep, const Substep& substep, Impulse& impulse,
+                      A& a, B& b)
     {
         const Vec3<Real> speed = angular_of(b) - angular_of(a);
         Real change[3];
         for (int i = 0; i < 3; ++i) change[i] = dot(substep.rows.axis[i], speed) + substep.bias[i];
         solve_in_place(substep.mass, change);
         const Vec3<Real> free = impulse.turn -
-                                row.soft.mass_scale * Vec3<Real>{change[0], change[1], change[2]} -
-                                row.soft.impulse_scale * impulse.turn;
+                                in_sweep.soft.mass_scale * Vec3<Real>{change[0], change[1], change[2]} -
+                                in_sweep.soft.impulse_scale * impulse.turn;
         // The bound is on the torque, which is shorter than lambda where the frames are far apart.
-        const Vec3<Real> wanted = scale_within(torque_of(substep, free), row.max_impulse) * free;
+        const Vec3<Real> wanted = scale_within(torque_of(substep, free), in_sweep.max_impulse) * free;
         push(substep, wanted - impulse.turn, a, b);
         impulse.turn = wanted;
     }
