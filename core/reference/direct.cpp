@@ -1,110 +1,105 @@
-// Every row of a substep at once: a linear complementarity problem with bounds, by active sets.
+// The whole scene at once: every row of a substep in one complementarity problem.
 //
-//   w = (J M^-1 J^T + Gamma) lambda + J v + bias;   low <= lambda <= high
-//   w = 0 where lambda is between its bounds, w >= 0 at the low one, w <= 0 at the high one
+//   w = (J M^-1 J^T + Gamma) lambda + J v + bias
 //
-// Gamma is what softness comes to: delta = -ms K^-1 (J v + bias) - is lambda rests where J v + bias + (is/ms) K lambda = 0.
+// Gamma is what softness comes to: delta = -ms K^-1 (J v + bias) - is lambda rests where
+// J v + bias + (is / ms) K lambda = 0.
 #include <Eigen/Dense>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
+#include "complementarity.h"
 #include "world_rows.h"
 
 namespace motley::reference {
 namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
+using Eigen::Index;
+using Eigen::VectorXd;
 
-/// One scalar row after another.
-struct System {
-    std::vector<Eigen::Matrix<double, 1, 12>> jacobian;
-    std::vector<std::pair<int, int>> ends;
-    std::vector<double> bias, low, high;
-    std::vector<Eigen::Triplet<double>> softness;  ///< of Gamma
+/// The rows of a problem as they come.
+class Assembly {
+  public:
+    explicit Assembly(const std::vector<Body>& bodies) : bodies_(bodies) {}
 
-    [[nodiscard]] int size() const { return static_cast<int>(bias.size()); }
-    int add(int a, int b, const Eigen::Matrix<double, 1, 12>& row, double b_i, double from, double to)
+    /// Adds rows between two bodies, each within [low, high]. Returns the first.
+    Index add(int a, int b, const Jacobian& rows, const VectorXd& bias, double low, double high)
     {
-        jacobian.push_back(row);
-        ends.push_back({a, b});
-        bias.push_back(b_i);
-        low.push_back(from);
-        high.push_back(to);
-        return size() - 1;
+        const Index first = size();
+        for (Index i = 0; i < rows.rows(); ++i) {
+            for (int side = 0; side < 2; ++side) {
+                for (Index k = 0; k < 6; ++k) {
+                    const double value = rows(i, 6 * side + k);
+                    if (value != 0) entries_.emplace_back(first + i, 6 * (side == 0 ? a : b) + k, value);
+                }
+            }
+            bias_.push_back(bias(i));
+            problem.low.push_back(low);
+            problem.high.push_back(high);
+        }
+        return first;
     }
+    void soften(Index first, const Eigen::MatrixXd& gamma)
+    {
+        for (Index i = 0; i < gamma.rows(); ++i) {
+            for (Index k = 0; k < gamma.cols(); ++k) {
+                if (gamma(i, k) != 0) softness_.emplace_back(first + i, first + k, gamma(i, k));
+            }
+        }
+    }
+    [[nodiscard]] Index size() const { return static_cast<Index>(bias_.size()); }
+
+    /// Makes A and q of the rows; `velocity` is that of all bodies in line.
+    Solution solve(const VectorXd& velocity)
+    {
+        const Index n = size(), columns = 6 * static_cast<Index>(bodies_.size());
+        if (n == 0) return {VectorXd::Zero(0), 0};
+        std::vector<Eigen::Triplet<double>> mass;
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            const Matrix6 m = bodies_[i].inverse_mass();
+            for (Index r = 0; r < 6; ++r) {
+                for (Index c = 0; c < 6; ++c) {
+                    if (m(r, c) != 0)
+                        mass.emplace_back(6 * static_cast<Index>(i) + r, 6 * static_cast<Index>(i) + c,
+                                          m(r, c));
+                }
+            }
+        }
+        jacobian_.resize(n, columns);
+        jacobian_.setFromTriplets(entries_.begin(), entries_.end());
+        inverse_mass_.resize(columns, columns);
+        inverse_mass_.setFromTriplets(mass.begin(), mass.end());
+        Eigen::SparseMatrix<double> gamma(n, n);
+        gamma.setFromTriplets(softness_.begin(), softness_.end());
+        problem.a = jacobian_ * inverse_mass_ * Eigen::SparseMatrix<double>(jacobian_.transpose());
+        problem.a += gamma;
+        problem.q = jacobian_ * velocity + Eigen::Map<const VectorXd>(bias_.data(), n);
+        return reference::solve(problem);
+    }
+    /// M^-1 J^T lambda, of all bodies in line.
+    [[nodiscard]] VectorXd change(const VectorXd& lambda) const
+    {
+        if (size() == 0) return VectorXd::Zero(6 * static_cast<Index>(bodies_.size()));
+        return inverse_mass_ * (jacobian_.transpose() * lambda);
+    }
+
+    Problem problem;
+
+  private:
+    const std::vector<Body>& bodies_;
+    std::vector<Eigen::Triplet<double>> entries_, softness_;
+    std::vector<double> bias_;
+    Eigen::SparseMatrix<double> jacobian_, inverse_mass_;
 };
 
-enum class Where { free, low, high };
-
-struct Solution {
-    Eigen::VectorXd lambda;
-    double violation;
-};
-
-/// Guesses which rows are at a bound, solves for the others exactly, and mends the guess: all wrong rows at once while
-/// that helps, else the last of them alone, which ends (Murty; Judice and Pires, block principal pivoting).
-Solution solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& q, const System& system)
+VectorXd velocities(const std::vector<Body>& bodies)
 {
-    const auto n = static_cast<Eigen::Index>(system.size());
-    std::vector<Where> where(static_cast<std::size_t>(n), Where::free);
-    Eigen::VectorXd lambda = Eigen::VectorXd::Zero(n), w = q;
-    const double scale = 1e-12 * (1 + q.cwiseAbs().maxCoeff());
-    std::size_t fewest = static_cast<std::size_t>(n) + 1;
-    int patience = 10;
-    for (int round = 0; round < 50 * n + 100; ++round) {
-        std::vector<Eigen::Index> free;
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            if (where[k] == Where::free) free.push_back(i);
-            lambda(i) = where[k] == Where::low ? system.low[k] : where[k] == Where::high ? system.high[k] : 0;
-        }
-        const Eigen::VectorXd rest = q + a * lambda;
-        if (!free.empty()) {
-            // Least norm where rows are redundant.
-            const Eigen::VectorXd inner = Eigen::MatrixXd(a(free, free))
-                                              .completeOrthogonalDecomposition()
-                                              .solve(-Eigen::VectorXd(rest(free)));
-            lambda(free) = inner;
-        }
-        w = q + a * lambda;
-        std::vector<std::size_t> wrong;
-        for (std::size_t k = 0; k < where.size(); ++k) {
-            if (system.low[k] == system.high[k] && where[k] != Where::free) continue;  // nothing to choose
-            const auto i = static_cast<Eigen::Index>(k);
-            const bool is_wrong = where[k] == Where::free ? lambda(i) < system.low[k] - 1e-12 ||
-                                                                lambda(i) > system.high[k] + 1e-12
-                                  : where[k] == Where::low ? w(i) < -scale
-                                                           : w(i) > scale;
-            if (is_wrong) wrong.push_back(k);
-        }
-        if (wrong.empty()) break;
-        if (wrong.size() < fewest) {
-            fewest = wrong.size();
-            patience = 10;
-        } else if (patience > 0) {
-            --patience;
-        }
-        if (patience == 0) wrong = {wrong.back()};
-        for (const std::size_t k : wrong) {
-            const auto i = static_cast<Eigen::Index>(k);
-            where[k] = where[k] != Where::free     ? Where::free
-                       : lambda(i) < system.low[k] ? Where::low
-                                                   : Where::high;
-        }
-    }
-    double violation = 0;
-    for (std::size_t k = 0; k < where.size(); ++k) {
-        if (system.low[k] == system.high[k]) continue;
-        const auto i = static_cast<Eigen::Index>(k);
-        const bool at_low = lambda(i) <= system.low[k], at_high = lambda(i) >= system.high[k];
-        violation = std::max(violation, at_low    ? std::max(-w(i), 0.0)
-                                        : at_high ? std::max(w(i), 0.0)
-                                                  : std::abs(w(i)));
-    }
-    return {lambda, violation};
+    VectorXd v(6 * static_cast<Index>(bodies.size()));
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        v.segment<6>(6 * static_cast<Index>(i)) = bodies[i].velocity;
+    return v;
 }
 
 }  // namespace
@@ -112,85 +107,154 @@ Solution solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& q, const System&
 double World::step_directly(double dt, const SolverSettings& settings,
                             const std::vector<ContactPoint>& points)
 {
-    if (settings.substeps != 1) throw std::invalid_argument("step_directly: settings.substeps must be 1");
-    const double h = dt;
+    const double h = dt / settings.substeps;
     start_ = bodies;
+    std::vector<ContactRow> contacts;
+    for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, 0));
     const Eigen::Vector3d gravity(settings.gravity.x, settings.gravity.y, settings.gravity.z);
-    for (Body& body : bodies) body.accelerate(gravity, h);
-
-    System system;
-    std::vector<BlockRow> rows_of_joints;
-    for (Joint& joint : joints) {
-        for (Eigen::VectorXd& impulse : joint.impulses) impulse.setZero();
-        begin_joint(joint, h, settings, rows_of_joints);
-    }
-    std::vector<int> first_row;
-    for (const BlockRow& row : rows_of_joints) {
-        const Block& block = row.block;
-        const int a = row.joint->a, b = row.joint->b;
-        first_row.push_back(system.size());
-        const bool limit = block.kind == Block::Kind::limit;
-        if (block.jacobian.rows() > 1 && std::isfinite(row.most))
-            throw std::invalid_argument("step_directly: bounded servos of several rows are not solved");
-        const double low = limit && block.side > 0 ? 0 : -row.most,
-                     high = limit && block.side < 0 ? 0 : row.most;
-        const Eigen::MatrixXd k =
-            block.jacobian *
-            pair_inverse_mass(bodies[static_cast<std::size_t>(a)], bodies[static_cast<std::size_t>(b)]) *
-            block.jacobian.transpose();
-        for (Eigen::Index i = 0; i < block.jacobian.rows(); ++i) {
-            system.add(a, b, block.jacobian.row(i), block.side * row.bias(i), low, high);
-            for (Eigen::Index m = 0; m < block.jacobian.rows(); ++m) {
-                system.softness.emplace_back(first_row.back() + i, first_row.back() + m,
-                                             row.soft.impulse_scale / row.soft.mass_scale * k(i, m));
-            }
+    double violation = 0;
+    for (int substep = 0; substep < settings.substeps; ++substep) {
+        for (Body& body : bodies) body.accelerate(gravity, h);
+        violation = std::max(violation, solve_substep_directly(h, settings, contacts));
+        for (Body& body : bodies) {
+            if (body.motion != BodyMotion::static_body) body.advance(body.velocity, h);
         }
+        for (int i = 0; settings.drift_correction == DriftCorrection::projection && i < settings.projections;
+             ++i)
+            project_directly(contacts, settings);
     }
-    for (const ContactPoint& point : points) {
-        if (point.contact.friction > 0 || point.contact.restitution > 0)
-            throw std::invalid_argument("step_directly: contacts must have neither friction nor restitution");
-        const ContactRow row = begin_contact(point, 0);
-        const double s = point.contact.separation;
-        const double beta =
-            settings.drift_correction == DriftCorrection::baumgarte ? settings.baumgarte : 0.0F;
+    finish_contacts(contacts, settings);
+    end_step(h);
+    return violation;
+}
+
+double World::solve_substep_directly(double h, const SolverSettings& settings,
+                                     std::vector<ContactRow>& contacts)
+{
+    Assembly assembly(bodies);
+    for (Joint& joint : joints) {
+        for (VectorXd& impulse : joint.impulses) impulse.setZero();
+    }
+    std::vector<BlockRow> blocks;
+    for (Joint& joint : joints) begin_joint(joint, h, settings, blocks);
+    struct Placed {
+        Index first;
+        Eigen::MatrixXd to_rows;  ///< what turns the impulse of the problem into that of the block's rows
+    };
+    std::vector<Placed> placed;
+    for (const BlockRow& row : blocks) {
+        const Block& block = row.block;
+        const Index count = block.jacobian.rows();
+        const int a = row.joint->a, b = row.joint->b;
+        Jacobian jacobian = block.jacobian;
+        VectorXd bias = block.side * row.bias;
+        Eigen::MatrixXd to_rows = Eigen::MatrixXd::Identity(count, count);
+        const bool bounded = std::isfinite(row.most) && count > 1;
+        if (bounded && block.bounds_torque) {
+            // The bound is a ball of torques: rows G w = s are solved as w = G^-1 s, whose impulse is the torque.
+            const Eigen::MatrixXd turn = block.jacobian.rightCols<3>();
+            const Eigen::MatrixXd inverse = turn.completeOrthogonalDecomposition().pseudoInverse();
+            jacobian = inverse * jacobian;
+            bias = inverse * bias;
+            to_rows = inverse.transpose();
+        }
+        const bool limit = block.kind == Block::Kind::limit;
+        double low = limit && block.side > 0 ? 0 : -row.most;
+        double high = limit && block.side < 0 ? 0 : row.most;
+        if (!bias.allFinite()) {  // a limit at infinity
+            bias.setZero();
+            low = high = 0;
+        }
+        const Index first = assembly.add(a, b, jacobian, bias, low, high);
+        const Eigen::MatrixXd k =
+            jacobian *
+            pair_inverse_mass(bodies[static_cast<std::size_t>(a)], bodies[static_cast<std::size_t>(b)]) *
+            jacobian.transpose();
+        assembly.soften(first, row.soft.impulse_scale / row.soft.mass_scale * k);
+        if (bounded) assembly.problem.cones.push_back({first, count, row.most});
+        placed.push_back({first, to_rows});
+    }
+    const double beta =
+        settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
+    std::vector<Index> first_of_contact;
+    for (const ContactRow& row : contacts) {
+        const ContactPoint& point = *row.point;
+        const double s = separation(row);
         const double deep = beta / h * std::min(s + static_cast<double>(settings.penetration_slop), 0.0);
         const double bias = s > 0 ? s / h : std::max(deep, -static_cast<double>(settings.push_out_speed));
-        system.add(point.a, point.b, row.normal.row(0), bias, 0, unbounded);
+        const Index normal =
+            assembly.add(point.a, point.b, row.normal, VectorXd::Constant(1, bias), 0, unbounded);
+        first_of_contact.push_back(normal);
+        const double mu = static_cast<double>(point.contact.friction);
+        if (mu == 0) continue;
+        const Index count = row.tangents.rows();
+        const Index first =
+            assembly.add(point.a, point.b, row.tangents, VectorXd::Zero(count), -unbounded, unbounded);
+        assembly.problem.cones.push_back({first, count, mu, {normal}});
     }
-
-    // J and M^-1 of the whole scene.
-    const auto rows = static_cast<Eigen::Index>(system.size()),
-               columns = static_cast<Eigen::Index>(6 * bodies.size());
-    Eigen::MatrixXd j = Eigen::MatrixXd::Zero(rows, columns),
-                    inverse_mass = Eigen::MatrixXd::Zero(columns, columns);
-    Eigen::VectorXd v(columns);
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const auto at = static_cast<Eigen::Index>(6 * i);
-        inverse_mass.block<6, 6>(at, at) = bodies[i].inverse_mass();
-        v.segment<6>(at) = bodies[i].velocity;
+    const Solution solution = assembly.solve(velocities(bodies));
+    const VectorXd change = assembly.change(solution.lambda);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        bodies[i].velocity += change.segment<6>(6 * static_cast<Index>(i));
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        VectorXd& impulse = blocks[i].impulse();
+        impulse = placed[i].to_rows * solution.lambda.segment(placed[i].first, impulse.size());
     }
-    for (std::size_t i = 0; i < system.jacobian.size(); ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
-        j.block<1, 6>(row, 6 * system.ends[i].first) += system.jacobian[i].head<6>();
-        j.block<1, 6>(row, 6 * system.ends[i].second) += system.jacobian[i].tail<6>();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        ContactRow& row = contacts[i];
+        row.impulse = solution.lambda(first_of_contact[i]);
+        row.peak = std::max(row.peak, row.impulse);
+        row.friction.setZero();
+        if (row.point->contact.friction > 0)
+            row.friction = solution.lambda.segment(first_of_contact[i] + 1, row.friction.size());
     }
-    Eigen::MatrixXd a = j * inverse_mass * j.transpose();
-    for (const auto& entry : system.softness) a(entry.row(), entry.col()) += entry.value();
-    const Eigen::VectorXd q = j * v + Eigen::Map<const Eigen::VectorXd>(
-                                          system.bias.data(), static_cast<Eigen::Index>(system.bias.size()));
-    const Solution solution = solve(a, q, system);
-
-    const Eigen::VectorXd after = v + inverse_mass * j.transpose() * solution.lambda;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        bodies[i].velocity = after.segment<6>(static_cast<Eigen::Index>(6 * i));
-        if (bodies[i].motion != BodyMotion::static_body) bodies[i].advance(bodies[i].velocity, h);
-    }
-    for (std::size_t i = 0; i < rows_of_joints.size(); ++i) {
-        Eigen::VectorXd& impulse = rows_of_joints[i].impulse();
-        impulse = solution.lambda.segment(first_row[i], impulse.size());
-    }
-    end_step(h);
     return solution.violation;
+}
+
+/// The norm of C over all locks and broken limits.
+double World::position_error() const
+{
+    double squares = 0;
+    for (const Joint& joint : joints) {
+        for (const Block& block : blocks_of(joint)) {
+            if (block.hertz > 0 || block.kind == Block::Kind::motor) continue;
+            const bool limit = block.kind == Block::Kind::limit;
+            squares += (limit ? Eigen::VectorXd(block.error.cwiseMin(0.0)) : block.error).squaredNorm();
+        }
+    }
+    return std::sqrt(squares);
+}
+
+/// One Newton step on all positions at once: locks, limits that are broken, contacts deeper than the slop.
+void World::project_directly(const std::vector<ContactRow>& contacts, const SolverSettings& settings)
+{
+    Assembly assembly(bodies);
+    for (const Joint& joint : joints) {
+        for (const Block& block : blocks_of(joint)) {
+            // Springs and motors are forces, not positions.
+            if (block.hertz > 0 || block.kind == Block::Kind::motor) continue;
+            const bool limit = block.kind == Block::Kind::limit;
+            if (limit && block.error(0) > 0) continue;
+            assembly.add(joint.a, joint.b, block.jacobian, block.side * block.error,
+                         limit && block.side > 0 ? 0 : -unbounded, limit && block.side < 0 ? 0 : unbounded);
+        }
+    }
+    for (const ContactRow& row : contacts) {
+        const double deep = separation(row) + static_cast<double>(settings.penetration_slop);
+        if (deep < 0)
+            assembly.add(row.point->a, row.point->b, row.normal, VectorXd::Constant(1, deep), 0, unbounded);
+    }
+    const Solution solution = assembly.solve(VectorXd::Zero(6 * static_cast<Index>(bodies.size())));
+    const VectorXd change = assembly.change(solution.lambda);
+    // Far from the solution a whole step may lead away from it: then half of it, and so on.
+    const std::vector<Body> before = bodies;
+    const double error = position_error();
+    for (double share = 1; share > 0.01; share /= 2) {
+        bodies = before;
+        for (std::size_t i = 0; i < bodies.size(); ++i)
+            bodies[i].advance(change.segment<6>(6 * static_cast<Index>(i)), share);
+        if (position_error() <= error) break;
+    }
 }
 
 }  // namespace motley::reference

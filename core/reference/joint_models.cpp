@@ -72,6 +72,12 @@ class DistanceModel : public JointModel {
         return blocks;
     }
 
+    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
+                                             double) const override
+    {
+        return {impulses.size() > 1 ? impulses[0](0) : 0, impulses.back()(0)};  // spring, limit
+    }
+
   private:
     DistanceDefinition joint_;
 };
@@ -125,6 +131,13 @@ class DriveModel : public JointModel {
         return blocks;
     }
 
+    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
+                                             double) const override
+    {
+        const std::size_t motor = impulses.size() - 2;
+        return {impulses[motor](0), motor > 0 ? impulses[0](0) : 0, impulses[motor + 1](0)};
+    }
+
   private:
     SlideDriveDefinition drive_;
     Frame frame_a_, frame_b_;
@@ -143,6 +156,12 @@ class SwingLimitModel : public JointModel {
                  .jacobian = swing_jacobian(a, b, frame_a_, frame_b_),
                  .error = scalar(max_angle_ - swing_angle(a, b, frame_a_, frame_b_)),
                  .side = -1}};
+    }
+
+    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
+                                             double) const override
+    {
+        return {-impulses[0](0)};  // the lanes' limit is positive
     }
 
   private:
@@ -236,6 +255,16 @@ class TransmissionModel : public JointModel {
         return of_b - ratio_ * turn_about(start_a, a, axis_a_);
     }
 
+    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
+                                             double travelled) const override
+    {
+        return {impulses[0](0), travelled};
+    }
+    [[nodiscard]] double travelled_in(const float* memory) const override
+    {
+        return static_cast<double>(memory[1]);
+    }
+
   private:
     Eigen::Vector3d axis_a_, axis_b_;
     double ratio_;
@@ -270,6 +299,13 @@ class PulleyModel : public JointModel {
 };
 
 }  // namespace
+
+std::vector<double> JointModel::memory(const std::vector<Eigen::VectorXd>& impulses, double) const
+{
+    std::vector<double> in_line;
+    for (const Eigen::VectorXd& block : impulses) in_line.insert(in_line.end(), block.begin(), block.end());
+    return in_line;
+}
 
 Model model_of(const BallSocketDefinition& joint)
 {

@@ -125,7 +125,7 @@ World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
     row.normal = direction_jacobian(n, arm_a, arm_b);
     row.normal_mass = effective_mass(row.normal, a, b)(0, 0);
     row.approach = speed(point.a, point.b, row.normal)(0);
-    const Remembered before = memory_.contains(c.key) ? memory_.at(c.key) : Remembered{};
+    const ContactResult before = memory_.contains(c.key) ? memory_.at(c.key) : ContactResult{};
     row.impulse = warm * before.normal;
     // Any two directions across n will do: the cone is round.
     const Eigen::Vector3d t1 =
@@ -267,6 +267,12 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
             for (ContactRow& row : contacts) solve_contact(row, h, settings, true);
         }
     }
+    finish_contacts(contacts, settings);
+    end_step(h);
+}
+
+void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSettings& settings)
+{
     memory_.clear();
     for (ContactRow& row : contacts) {
         const double e = static_cast<double>(row.point->contact.restitution);
@@ -277,13 +283,12 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
                   Eigen::VectorXd::Constant(1, impulse - row.impulse));
             row.impulse = impulse;
         }
-        Remembered kept;
+        ContactResult kept;
         kept.normal = row.impulse;
         // The tangents' linear part on b is the direction itself.
         kept.friction = row.tangents.middleCols<3>(6).transpose() * row.friction;
         memory_[row.point->contact.key] = kept;
     }
-    end_step(h);
 }
 
 void World::end_step(double h)

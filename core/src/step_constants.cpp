@@ -18,8 +18,9 @@ void check(std::string_view field, double value, double low, double high, std::s
 
 void SolverSettings::validate() const
 {
-    if (method != Method::soft_step && method != Method::sequential_impulse) {
-        refuse("SolverSettings.method", static_cast<double>(method), "soft_step or sequential_impulse");
+    if (method < Method::soft_step || method > Method::direct) {
+        refuse("SolverSettings.method", static_cast<double>(method),
+               "soft_step, sequential_impulse or direct");
     }
     if (drift_correction < DriftCorrection::none || drift_correction > DriftCorrection::projection) {
         refuse("SolverSettings.drift_correction", static_cast<double>(drift_correction),

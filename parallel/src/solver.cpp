@@ -8,6 +8,7 @@
 #include "layout.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/step_constants.h"
+#include "motley/reference/scene_step.h"
 #include "stage_runner.h"
 #include "tbb_executor.h"
 
@@ -76,6 +77,8 @@ struct Solver::Impl {
     void integrate_positions();
     void move_bodies(Scene& scene, StepReport& report);
     void solve_substeps(Scene& scene, StepReport& report);
+    void solve_directly(Scene& scene, float dt, std::span<const Contact> contacts, StepReport& report);
+    void finish(Scene& scene, StepReport& report);
 };
 
 Solver::Solver(const SolverSettings& settings, const SolverOptions& options)
@@ -128,7 +131,11 @@ StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contact
             if (!report.error.empty()) return;
             impl_->layout.point_at(scene, step_constants(impl_->settings, dt, scene.last_substep));
             clock.charge(Stage::colour);
-            impl_->solve_substeps(scene, report);
+            if (impl_->settings.method == Method::direct) {
+                impl_->solve_directly(scene, dt, contacts, report);
+            } else {
+                impl_->solve_substeps(scene, report);
+            }
         });
     } catch (const std::exception& error) {
         report.error = error.what();
@@ -164,15 +171,30 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     sweep(&ConstraintKernels::restitute);
     clock.charge(Stage::restitution);
     transfer(&ConstraintKernels::store);
+    finish(scene, report);
+    report.sweeps = settings.substeps * (1 + settings.iterations + (soft ? settings.relaxations : 0) +
+                                         (projects ? settings.projections : 0));
+    clock.charge(Stage::store);
+}
+
+/// The same step by the reference: it reads and writes the scene itself, and leaves the lanes alone.
+void Solver::Impl::solve_directly(Scene& scene, float dt, std::span<const Contact> contacts,
+                                  StepReport& report)
+{
+    StageClock clock(report);
+    report.direct_violation = reference::step_directly(scene, dt, settings, contacts);
+    clock.charge(Stage::solve);
+    finish(scene, report);
+    clock.charge(Stage::store);
+}
+
+void Solver::Impl::finish(Scene& scene, StepReport& report)
+{
     move_bodies(scene, report);
     scene.contact_cache().accept_staged();
     scene.last_substep = layout.context.step.substep;
     scene.find_break_events();
-
     layout.report(report);
-    report.sweeps = settings.substeps * (1 + settings.iterations + (soft ? settings.relaxations : 0) +
-                                         (projects ? settings.projections : 0));
-    clock.charge(Stage::store);
 }
 
 std::string Solver::Impl::take_in(Scene& scene, std::span<const Contact> contacts)

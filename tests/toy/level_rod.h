@@ -5,6 +5,9 @@
 // One file, and one name in the list of types: tests/CMakeLists.txt puts it there, in a copy of the list.
 #pragma once
 
+#include <cmath>
+#include <memory>
+
 #include "motley/core/constraints/ball_socket_definition.h"
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_pose.h"
@@ -18,6 +21,12 @@ struct LevelRodDefinition {
     BodyId body_b{};
     float offset = 0;  ///< m: how far b is above a, finite
 };
+
+/// Its formulas in double, for Method::direct and for whoever compares: level_rod_model.cpp.
+namespace reference {
+class JointModel;
+}
+std::shared_ptr<const reference::JointModel> model_of(const LevelRodDefinition& joint);
 
 struct LevelRod {
     using Definition = LevelRodDefinition;

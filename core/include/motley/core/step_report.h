@@ -38,12 +38,14 @@ struct StepReport {
 
     std::int64_t contacts = 0;
     std::int64_t joints = 0;
-    int colours = 0;                    ///< colours in use, the overflow not counted
-    std::int64_t overflow = 0;          ///< constraints that found no colour and ran in order
-    std::int64_t blocks = 0;            ///< blocks of 16 lanes
-    double lane_occupancy = 0;          ///< constraints / (16 blocks); 0 without constraints
-    double bytes_per_constraint = 0;    ///< streamed by one sweep of solve: rows, impulses and indices
-    std::int64_t sweeps = 0;            ///< sweeps over all constraints: warm starts, solves and relaxations
+    int colours = 0;                  ///< colours in use, the overflow not counted
+    std::int64_t overflow = 0;        ///< constraints that found no colour and ran in order
+    std::int64_t blocks = 0;          ///< blocks of 16 lanes
+    double lane_occupancy = 0;        ///< constraints / (16 blocks); 0 without constraints
+    double bytes_per_constraint = 0;  ///< streamed by one sweep of solve: rows, impulses and indices
+    std::int64_t sweeps = 0;          ///< sweeps over all constraints: warm starts, solves and relaxations
+    double direct_violation =
+        0;  ///< Method::direct: largest left of its equations and inequalities, m/s or rad/s
     std::int64_t bodies_contained = 0;  ///< bodies frozen in this step because their state was not finite
     BodyId first_contained{};           ///< one of them
 

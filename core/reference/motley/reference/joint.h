@@ -40,6 +40,12 @@ class JointModel {
     {
         return 0;
     }
+
+    /// What a joint remembers in lanes, in the order of its type's Memory: of most the impulses in line.
+    [[nodiscard]] virtual std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
+                                                     double travelled) const;
+    /// What has piled up, from there.
+    [[nodiscard]] virtual double travelled_in(const float* /*memory*/) const { return 0; }
 };
 
 /// A joint between bodies of the world by index.

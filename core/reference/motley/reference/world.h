@@ -26,12 +26,25 @@ class World {
     /// One step. Contacts are solved in the order of the list.
     void step(double dt, const SolverSettings& settings, const std::vector<ContactPoint>& contacts);
 
-    /// One substep solved simultaneously: every row at once, to a residual near the rounding of doubles, instead of one
-    /// after another. What a sequential method converges to as its iterations grow: the truth for tests. Redundant rows
-    /// share their impulse with the least norm. Contacts must be smooth. Returns the largest violation that is left of
-    /// the equations and inequalities, m/s or rad/s.
+    /// One step solved simultaneously: every row of a substep at once, to a residual near the rounding of doubles,
+    /// instead of one after another; what a sequential method converges to as its iterations grow. Rigid, with the drift
+    /// correction of the settings: baumgarte, or a position solve of all rows at once. Redundant rows share their impulse
+    /// with the least norm, contradictory ones are met in the least squares. Restitution comes after the substeps,
+    /// contact by contact, as in step(). Returns the largest violation that is left of the equations and inequalities,
+    /// m/s or rad/s.
     double step_directly(double dt, const SolverSettings& settings,
                          const std::vector<ContactPoint>& contacts);
+
+    /// What the last step's contact with this key did, N s: along the normal, and across it, on b.
+    struct ContactResult {
+        double normal = 0;
+        Eigen::Vector3d friction = Eigen::Vector3d::Zero();
+    };
+    [[nodiscard]] ContactResult contact_result(std::uint64_t key) const
+    {
+        const auto found = memory_.find(key);
+        return found == memory_.end() ? ContactResult{} : found->second;
+    }
 
   private:
     struct Soft {
@@ -39,11 +52,7 @@ class World {
     };
     struct BlockRow;
     struct ContactRow;
-    struct Remembered {
-        double normal = 0;
-        Eigen::Vector3d friction = Eigen::Vector3d::Zero();
-    };
-    std::map<std::uint64_t, Remembered> memory_;
+    std::map<std::uint64_t, ContactResult> memory_;
     double last_substep_ = 0;
     std::vector<Body> start_;  ///< the bodies when the step began
 
@@ -59,7 +68,12 @@ class World {
     void solve_contact(ContactRow& row, double h, const SolverSettings& settings, bool relax);
     [[nodiscard]] double separation(const ContactRow& row) const;
     void project(std::vector<ContactRow>& contacts, const SolverSettings& settings);
+    void finish_contacts(std::vector<ContactRow>& contacts, const SolverSettings& settings);
     void end_step(double h);
+    double solve_substep_directly(double h, const SolverSettings& settings,
+                                  std::vector<ContactRow>& contacts);
+    [[nodiscard]] double position_error() const;
+    void project_directly(const std::vector<ContactRow>& contacts, const SolverSettings& settings);
 };
 
 }  // namespace motley::reference

@@ -1,0 +1,129 @@
+// A scene as a world of the reference, and back.
+#include "motley/reference/scene_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motley/reference/joint_models.h"
+#include "motley/reference/world.h"
+
+namespace motley::reference {
+namespace {
+
+Body body_of(const Scene& scene, BodyId id)
+{
+    const BodyState state = scene.state(id);
+    const BodyStore& store = scene.bodies();
+    const BodyRow where = store.row_of(id);
+    BodyDefinition definition;
+    definition.model = store.model(id);
+    // What a step has frozen cannot be moved until the host revives it.
+    definition.motion = store.contained[id.slot] != 0 ? BodyMotion::static_body : store.motion(id);
+    definition.position = state.position;
+    definition.orientation = state.orientation;
+    definition.yaw = state.yaw;
+    definition.linear_velocity = state.linear_velocity;
+    definition.angular_velocity = state.angular_velocity;
+    const BodyRows& rows = store.rows(where.kind());
+    if (where.kind() == BodyKind::rigid) definition.inertia = rows.inertia[where.row()];
+    Body body = Body::from(definition);
+    if (where.kind() == BodyKind::fixed) return body;
+    body.mass = 1 / static_cast<double>(store.inverse_masses[id.slot]);
+    const float* acceleration =
+        &rows.acceleration[static_cast<std::size_t>(4 * quads_of(where.kind())) * where.row()];
+    for (int i = 0; i < 3; ++i) body.force(i) = body.mass * static_cast<double>(acceleration[i]);
+    if (where.kind() == BodyKind::planar) {
+        const double inertia = 1 / static_cast<double>(store.inverse_inertias[id.slot]);
+        body.inertia(2, 2) = inertia;
+        body.force(2) = 0;
+        body.force(5) = inertia * static_cast<double>(acceleration[2]);
+    }
+    if (where.kind() == BodyKind::rigid) {
+        for (int i = 0; i < 3; ++i) body.force(3 + i) = static_cast<double>(acceleration[4 + i]);
+    }
+    return body;
+}
+
+/// Velocities as they come, poses only where they are finite.
+void write_back(Scene& scene, BodyId id, const Body& body)
+{
+    BodyStore& store = scene.bodies();
+    const BodyRow where = store.row_of(id);
+    if (store.contained[id.slot] != 0) return;
+    BodyRows& rows = store.rows(where.kind());
+    float* velocity = &rows.velocity[static_cast<std::size_t>(4 * quads_of(where.kind())) * where.row()];
+    if (where.kind() != BodyKind::fixed) {
+        for (int i = 0; i < 3; ++i) velocity[i] = static_cast<float>(body.velocity(i));
+        if (where.kind() == BodyKind::planar) velocity[2] = static_cast<float>(body.velocity(5));
+        for (int i = 0; where.kind() == BodyKind::rigid && i < 3; ++i)
+            velocity[4 + i] = static_cast<float>(body.velocity(3 + i));
+    }
+    if (!body.position.allFinite() || !body.orientation.coeffs().allFinite()) {
+        velocity[0] = std::numeric_limits<float>::quiet_NaN();
+        return;
+    }
+    BodyPose& pose = rows.pose[where.row()];
+    const Eigen::Quaterniond& q = body.orientation;
+    pose.position = {body.position.x(), body.position.y(), body.position.z()};
+    if (where.kind() == BodyKind::planar)
+        pose.yaw += std::remainder(2 * std::atan2(q.z(), q.w()) - pose.yaw, 2 * EIGEN_PI);
+    if (quads_of(where.kind()) == 2) rows.orientation[where.row()] = {q.x(), q.y(), q.z(), q.w()};
+}
+
+}  // namespace
+
+double step_directly(Scene& scene, float dt, const SolverSettings& settings,
+                     std::span<const Contact> contacts)
+{
+    World world;
+    std::vector<int> index_of_slot(scene.bodies().slot_count(), -1);
+    std::vector<BodyId> ids;
+    for (std::uint32_t slot = 1; slot < scene.bodies().slot_count(); ++slot) {
+        if (!scene.bodies().is_slot_live(slot)) continue;
+        index_of_slot[slot] = static_cast<int>(ids.size());
+        ids.push_back(scene.bodies().id_of_slot(slot));
+        world.bodies.push_back(body_of(scene, ids.back()));
+    }
+    scene.joints().for_each([&](const auto& store, int) {
+        using Store = std::remove_cvref_t<decltype(store)>;
+        for (std::size_t i = 0; i < store.size(); ++i) {
+            const auto& definition = store.definitions[i];
+            Joint joint{index_of_slot[definition.body_a.slot], index_of_slot[definition.body_b.slot],
+                        model_of(definition)};
+            joint.travelled =
+                joint.model->travelled_in(&store.memory[i * quad_floats<typename Store::Memory>]);
+            world.joints.push_back(joint);
+        }
+    });
+    std::vector<ContactPoint> points;
+    for (const Contact& contact : contacts)
+        points.push_back({index_of_slot[contact.body_a.slot], index_of_slot[contact.body_b.slot], contact});
+
+    const double violation = world.step_directly(static_cast<double>(dt), settings, points);
+
+    for (std::size_t i = 0; i < ids.size(); ++i) write_back(scene, ids[i], world.bodies[i]);
+    std::size_t next = 0;
+    scene.joints().for_each([&](auto& store, int) {
+        using Store = std::remove_cvref_t<decltype(store)>;
+        constexpr std::size_t stride = quad_floats<typename Store::Memory>;
+        for (std::size_t i = 0; i < store.size(); ++i) {
+            const Joint& joint = world.joints[next++];
+            const std::vector<double> memory = joint.model->memory(joint.impulses, joint.travelled);
+            for (std::size_t k = 0; k < std::min(memory.size(), stride); ++k) {
+                const auto value = static_cast<float>(memory[k]);
+                store.memory[i * stride + k] = std::isfinite(value) ? value : 0;
+            }
+        }
+    });
+    ContactList& staged = scene.contact_cache().staged();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const World::ContactResult result = world.contact_result(contacts[i].key);
+        staged.impulses[i + 1] = {
+            static_cast<float>(result.normal),
+            {static_cast<float>(result.friction.x()), static_cast<float>(result.friction.y()),
+             static_cast<float>(result.friction.z())}};
+    }
+    return violation;
+}
+
+}  // namespace motley::reference

@@ -1,0 +1,299 @@
+// Method::direct as a host uses it: against closed forms, against what the sequential methods converge to, and where
+// constraints are redundant, contradictory or singular.
+#include <numbers>
+
+#include "rig.h"
+
+namespace motley {
+namespace {
+
+using testing::box;
+using testing::frame_time;
+using testing::with_gravity;
+
+constexpr double g = 9.81;
+
+SolverSettings direct(DriftCorrection correction, Vec3<float> gravity = {0, -9.81F, 0})
+{
+    SolverSettings settings = with_gravity(gravity);
+    settings.method = Method::direct;
+    settings.substeps = 1;
+    settings.drift_correction = correction;
+    return settings;
+}
+
+/// The world as a contact's other side: a plane through the origin with the normal of a slope of `angle`, the point of a
+/// ball of radius 0.5 nearest to it.
+Contact ball_on_slope(const Scene& scene, BodyId ball, double angle, float friction)
+{
+    const Vec3<double> n{-std::sin(angle), std::cos(angle), 0}, x = scene.state(ball).position;
+    Contact contact;
+    contact.body_a = scene.ground();
+    contact.body_b = ball;
+    contact.normal = convert<float>(n);
+    contact.separation = static_cast<float>(dot(n, x) - 0.5);
+    contact.arm_a = convert<float>(x - 0.5 * n);
+    contact.arm_b = -0.5F * contact.normal;
+    contact.friction = friction;
+    return contact;
+}
+
+TEST(DirectMethod, AChainWithAThousandfoldWeightHoldsItsJoints)
+{
+    // Ten links of 1 kg, 1,000 kg at the end, starting level: what sequential methods cannot hold, at 60 Hz, 10 s.
+    Scene scene;
+    std::vector<ConstraintId> joints;
+    BodyId before = scene.ground();
+    for (int i = 0; i < 11; ++i) {
+        BodyDefinition link = box({0.5 * i + 0.25, 0, 0}, i == 10 ? 1000.0F : 1.0F);
+        link.inertia = {0.005F * link.mass, 0, 0, 0.0233F * link.mass, 0, 0.0233F * link.mass};
+        const BodyId body = scene.add_body(link);
+        joints.push_back(scene.add_joint(BallSocketDefinition{
+            before, body, i == 0 ? Vec3<float>{} : Vec3<float>{0.25F, 0, 0}, {-0.25F, 0, 0}}));
+        before = body;
+    }
+    SolverSettings settings = direct(DriftCorrection::projection);
+    settings.projections = 3;
+    settings.substeps = 8;  // the light links whip round by several tenths of a radian a substep
+    Solver solver(settings);
+    double squares = 0, violation = 0;
+    int count = 0;
+    for (int step = 0; step < 600; ++step) {
+        const StepReport report = solver.step(scene, frame_time);
+        ASSERT_EQ(report.status, StepStatus::done);
+        ASSERT_EQ(report.bodies_contained, 0);
+        violation = std::max(violation, report.direct_violation);
+        for (const ConstraintId joint : joints) {
+            const double error = static_cast<double>(scene.joint_report(joint).error);
+            squares += error * error;
+            ++count;
+        }
+    }
+    std::printf("rms separation %.3g m, largest violation %.3g m/s\n", std::sqrt(squares / count), violation);
+    EXPECT_LT(std::sqrt(squares / count), 1e-9);
+    EXPECT_LT(violation, 1e-9);
+}
+
+TEST(DirectMethod, JointReportsHoldTheWeight)
+{
+    Scene scene;
+    const BodyId a = scene.add_body(box({0, -1, 0}, 2)), b = scene.add_body(box({0, -2, 0}, 3));
+    const ConstraintId upper = scene.add_joint(FixedDefinition{scene.ground(), a, {}, {{0, 1, 0}}});
+    const ConstraintId lower =
+        scene.add_joint(DistanceDefinition{.body_a = a, .body_b = b, .min_length = 0, .max_length = 1});
+    Solver solver(direct(DriftCorrection::baumgarte));
+    for (int step = 0; step < 60; ++step) solver.step(scene, frame_time);
+    EXPECT_NEAR(scene.joint_report(upper).force.y, 5 * g, 1e-4 * g);
+    EXPECT_NEAR(scene.joint_report(lower).force.y, 3 * g, 1e-4 * g);
+    EXPECT_EQ(scene.joint_report(lower).state, JointState::upper);
+}
+
+TEST(DirectMethod, ABlockSticksBelowTheAngleOfFrictionAndSlidesAboveIt)
+{
+    // A particle: a = g (sin - mu cos) above atan(mu), nothing below.
+    const double angle = 0.4;
+    for (const float mu : {0.5F, 0.3F}) {
+        Scene scene;
+        BodyDefinition block = box({-0.5 * std::sin(angle), 0.5 * std::cos(angle), 0});
+        block.model = BodyModel::particle;
+        const BodyId body = scene.add_body(block);
+        Solver solver(direct(DriftCorrection::baumgarte));
+        StepReport report;
+        for (int step = 0; step < 60; ++step) {
+            Contact contact = ball_on_slope(scene, body, angle, mu);
+            report = solver.step(scene, frame_time, {&contact, 1});
+            ASSERT_LT(report.direct_violation, 1e-9) << mu << ", step " << step;
+        }
+        const Vec3<float> v = scene.state(body).linear_velocity;
+        const double speed = std::hypot(v.x, v.y);
+        const bool slides = static_cast<double>(mu) < std::tan(angle);
+        EXPECT_NEAR(speed, slides ? g * (std::sin(angle) - static_cast<double>(mu) * std::cos(angle)) : 0,
+                    1e-5);
+    }
+}
+
+TEST(DirectMethod, ABallRollsDownASlopeWithoutSlipping)
+{
+    // a = 5/7 g sin for a solid ball, if mu > 2/7 tan.
+    const double angle = 0.3;
+    Scene scene;
+    BodyDefinition ball = box({-0.5 * std::sin(angle), 0.5 * std::cos(angle), 0}, 2);
+    ball.inertia = {0.2F, 0, 0, 0.2F, 0, 0.2F};  // 2/5 m r^2
+    const BodyId body = scene.add_body(ball);
+    Solver solver(direct(DriftCorrection::none));
+    for (int step = 0; step < 60; ++step) {
+        const Contact contact = ball_on_slope(scene, body, angle, 0.5F);
+        ASSERT_LT(solver.step(scene, frame_time, {&contact, 1}).direct_violation, 1e-9);
+    }
+    const BodyState state = scene.state(body);
+    EXPECT_NEAR(std::hypot(state.linear_velocity.x, state.linear_velocity.y), 5.0 / 7 * g * std::sin(angle),
+                1e-4);
+    EXPECT_NEAR(scene.contact_impulses()[0].normal / scene.last_substep, 2 * g * std::cos(angle), 1e-3);
+}
+
+/// Balls in a heap, some of which slide and some of which stick, pushed from the side.
+struct Heap {
+    Scene scene;
+    std::vector<BodyId> balls;
+    std::vector<Contact> contacts;
+
+    Heap()
+    {
+        for (int i = 0; i < 6; ++i) {
+            const int row = i < 3 ? 0 : i < 5 ? 1 : 2, column = i < 3 ? i : i < 5 ? i - 3 : 0;
+            BodyDefinition ball = box({column + 0.5 * row, 0.5 + row * 0.5 * std::numbers::sqrt3, 0},
+                                      1 + 0.3F * static_cast<float>(i));
+            ball.inertia = {0.1F * ball.mass, 0, 0, 0.1F * ball.mass, 0, 0.1F * ball.mass};
+            balls.push_back(scene.add_body(ball));
+        }
+        scene.set_force(balls[0], {25, 0, 3}, {});
+        scene.set_velocity(balls[5], {-0.4F, 0, 0.3F}, {0, 1, 0});
+        for (std::size_t i = 0; i < balls.size(); ++i) {
+            for (std::size_t k = i + 1; k < balls.size(); ++k)
+                touch(balls[i], balls[k], 0.2F * static_cast<float>(i + 1));
+            if (i < 3) touch(scene.ground(), balls[i], 0.6F);
+        }
+    }
+    void touch(BodyId a, BodyId b, float friction)
+    {
+        const bool floor = a == scene.ground();
+        const Vec3<double> x = scene.state(b).position;
+        const Vec3<double> d = floor ? Vec3<double>{0, x.y, 0} : x - scene.state(a).position;
+        const double length = std::sqrt(dot(d, d));
+        if (length > (floor ? 0.51 : 1.01)) return;
+        Contact contact;
+        contact.body_a = a;
+        contact.body_b = b;
+        contact.key = contacts.size() + 1;
+        contact.normal = convert<float>((1 / length) * d);
+        contact.separation = static_cast<float>(length - (floor ? 0.5 : 1.0));
+        contact.arm_a =
+            floor ? Vec3<float>{static_cast<float>(x.x), 0, static_cast<float>(x.z)} : 0.5F * contact.normal;
+        contact.arm_b = -0.5F * contact.normal;
+        contact.friction = friction;
+        contacts.push_back(contact);
+    }
+};
+
+TEST(DirectMethod, IsWhereSweepsOverAHeapWithFrictionConverge)
+{
+    // The same step by sweeps, ten times as many each time: independent code, in float and one row after another.
+    const Heap start;
+    Heap truth = start;
+    SolverSettings settings = direct(DriftCorrection::baumgarte);
+    const StepReport report = Solver(settings).step(truth.scene, frame_time, truth.contacts);
+    ASSERT_EQ(report.status, StepStatus::done) << report.error;
+    std::printf("heap of 6 balls, %zu contacts: violation %.2g m/s\n", start.contacts.size(),
+                report.direct_violation);
+    EXPECT_LT(report.direct_violation, 1e-9);
+    double before = 1e9;
+    settings.method = Method::sequential_impulse;
+    for (int iterations = 1; iterations <= 10000; iterations *= 10) {
+        settings.iterations = iterations;
+        Heap heap = start;
+        Solver(settings).step(heap.scene, frame_time, heap.contacts);
+        double distance = 0;
+        for (std::size_t i = 0; i < heap.balls.size(); ++i) {
+            const Vec3<float> d = heap.scene.state(heap.balls[i]).linear_velocity -
+                                  truth.scene.state(truth.balls[i]).linear_velocity;
+            distance = std::max(distance, static_cast<double>(std::sqrt(dot(d, d))));
+        }
+        std::printf("  %6d iterations: %.3g m/s from it\n", iterations, distance);
+        EXPECT_LT(distance, std::max(before, 2e-5));
+        before = distance;
+    }
+    EXPECT_LT(before, 2e-5);
+}
+
+TEST(DirectMethod, ContradictoryConstraintsAreMetInTheLeastSquares)
+{
+    // A rod of 1 m and one of 2 m between the same points, 1.5 m apart: they pull the mass both ways, and it stays.
+    Scene scene;
+    const BodyId bob = scene.add_body(box({1.5, 0, 0}));
+    for (const float length : {1.0F, 2.0F})
+        scene.add_joint(DistanceDefinition{
+            .body_a = scene.ground(), .body_b = bob, .min_length = length, .max_length = length});
+    for (const DriftCorrection correction : {DriftCorrection::baumgarte, DriftCorrection::projection}) {
+        Solver solver(direct(correction, {}));
+        StepReport report;
+        for (int step = 0; step < 30; ++step) report = solver.step(scene, frame_time);
+        EXPECT_EQ(report.bodies_contained, 0);
+        EXPECT_NEAR(scene.state(bob).position.x, 1.5, 1e-6);
+        EXPECT_LT(std::abs(scene.state(bob).linear_velocity.x), 1e-5F);
+    }
+}
+
+TEST(DirectMethod, RedundantJointsShareTheirLoadAndIslandsDoNotFeelEachOther)
+{
+    // Two welds at one place carry half the weight each; a body far away has the bits that it has alone.
+    const auto far_away = [](Scene& scene) {
+        const BodyId bob = scene.add_body(box({50, 0, 0}));
+        scene.add_joint(BallSocketDefinition{scene.ground(), bob, {49, 0, 0}, {-1, 0, 0}});
+        return bob;
+    };
+    Scene scene, alone;
+    const BodyId alone_bob = far_away(alone), bob = far_away(scene);
+    const BodyId weight = scene.add_body(box({0, 0, 0}));
+    const ConstraintId first = scene.add_joint(FixedDefinition{scene.ground(), weight, {}, {}});
+    const ConstraintId second = scene.add_joint(FixedDefinition{scene.ground(), weight, {}, {}});
+    Solver solver(direct(DriftCorrection::baumgarte));
+    for (int step = 0; step < 60; ++step) {
+        solver.step(scene, frame_time);
+        solver.step(alone, frame_time);
+    }
+    EXPECT_NEAR(scene.joint_report(first).force.y, g, 1e-4);
+    EXPECT_NEAR(scene.joint_report(second).force.y, g, 1e-4);
+    EXPECT_EQ(scene.state(bob).position.x, alone.state(alone_bob).position.x);
+    EXPECT_EQ(scene.state(bob).position.y, alone.state(alone_bob).position.y);
+}
+
+TEST(DirectMethod, AServoAtItsBoundPullsWithThatAndNoMore)
+{
+    Scene scene;
+    const BodyId weight = scene.add_body(box({0, 0, 0}));
+    PointServoDefinition servo{scene.ground(), weight};
+    servo.hertz = 0;
+    servo.max_force = 12;
+    const ConstraintId joint = scene.add_joint(servo);
+    AngularServoDefinition hold{scene.ground(), weight};
+    hold.hertz = 0;
+    hold.max_torque = 1;
+    scene.add_joint(hold);
+    scene.set_force(weight, {3, 0, 0}, {0, 0, 1.5F});
+    Solver solver(direct(DriftCorrection::baumgarte));
+    for (int step = 0; step < 30; ++step) ASSERT_LT(solver.step(scene, frame_time).direct_violation, 1e-9);
+    // The pull points against the motion, which is along the load: F = (3, -m g), less 12 of its length.
+    const double load = std::hypot(3, 2 * g), speed = (load - 12) / 2 * 0.5;
+    EXPECT_NEAR(scene.state(weight).linear_velocity.y, -speed * 2 * g / load, 1e-5);
+    EXPECT_NEAR(scene.state(weight).linear_velocity.x, speed * 3 / load, 1e-5);
+    EXPECT_NEAR(scene.state(weight).angular_velocity.z, 0.5 / 0.5 * 0.5, 1e-5);
+    const Vec3<float> f = scene.joint_report(joint).force;
+    EXPECT_NEAR(std::sqrt(dot(f, f)), 12, 1e-4);
+}
+
+TEST(DirectMethod, RefusesAndContainsAsTheOthersDo)
+{
+    Scene scene;
+    const BodyId good = scene.add_body(box({0, 0, 0})), bad = scene.add_body(box({9, 0, 0}));
+    scene.set_velocity(good, {1, 0, 0}, {});
+    const std::uint64_t hash = scene.state_hash();
+    Solver solver(direct(DriftCorrection::baumgarte, {}));
+    Contact contact;
+    contact.body_a = good;
+    contact.body_b = good;
+    EXPECT_EQ(solver.step(scene, frame_time, {&contact, 1}).status, StepStatus::refused);
+    EXPECT_EQ(scene.state_hash(), hash);
+    scene.set_force(bad, {3e38F, 0, 0}, {});
+    StepReport report;
+    for (int step = 0; step < 300 && report.bodies_contained == 0; ++step)
+        report = solver.step(scene, frame_time);
+    EXPECT_EQ(report.bodies_contained, 1);
+    EXPECT_TRUE(scene.is_contained(bad));
+    const Vec3<double> at = scene.state(bad).position;
+    solver.step(scene, frame_time);
+    EXPECT_EQ(scene.state(bad).position.x, at.x);
+    EXPECT_EQ(scene.state(good).linear_velocity.x, 1);
+}
+
+}  // namespace
+}  // namespace motley
