@@ -173,6 +173,19 @@ std::vector<NamedTie> every_tie()
                  pulley.point_a = {-1, 30, 0};
                  pulley.point_b = {1, 30, 0};
                  pulley.max_length = 40;
+             })},
+            {"manifold/rigid", rigid, joint<ManifoldDefinition>([](ManifoldDefinition& m, Vec3<float> arm) {
+                 m.normal = arm;
+                 m.point_count = 4;
+                 for (int i = 0; i < 4; ++i) {
+                     const Vec3<float> off{0.1F * arm.y * static_cast<float>(i % 2),
+                                           0.1F * arm.x * static_cast<float>(i % 2),
+                                           0.05F * static_cast<float>(i / 2)};
+                     m.points[i] = {arm + off, off - arm};
+                 }
+                 m.friction = 0.5F;
+                 m.torsional_radius = 0.1F;
+                 m.rolling_radius = 0.01F;
              })}};
 }
 

@@ -57,6 +57,13 @@ class JointPlace {
     /// Where a place on a body is in the world.
     [[nodiscard]] Vec3<double> where_a(const Vec3<float>& on_a) const { return in_world(state_a_, on_a); }
     [[nodiscard]] Vec3<double> where_b(const Vec3<float>& on_b) const { return in_world(state_b_, on_b); }
+    /// A place in the world, and a direction, seen from a body.
+    [[nodiscard]] Vec3<float> on_a(const Vec3<double>& p) const { return from_world(state_a_, p); }
+    [[nodiscard]] Vec3<float> on_b(const Vec3<double>& p) const { return from_world(state_b_, p); }
+    [[nodiscard]] Vec3<float> along_a(const Vec3<double>& v) const
+    {
+        return narrow(turn(state_a_).conjugate() * Eigen::Vector3d(v.x, v.y, v.z));
+    }
     /// Places on the two bodies that meet, to 2 cm; of a particle the centre, wherever it is.
     [[nodiscard]] std::pair<Vec3<float>, Vec3<float>> meeting_anchors() const
     {
@@ -109,6 +116,11 @@ class JointPlace {
     {
         const Eigen::Vector3d p = at(state, local);
         return {p.x(), p.y(), p.z()};
+    }
+    static Vec3<float> from_world(const BodyState& state, const Vec3<double>& p)
+    {
+        const Vec3<double> d = p - state.position;
+        return narrow(turn(state).conjugate() * Eigen::Vector3d(d.x, d.y, d.z));
     }
     static Vec3<float> narrow(const Eigen::Vector3d& v)
     {
@@ -296,6 +308,43 @@ struct JointCases<PulleyDefinition> {
         PulleyDefinition rod = rope;
         rod.min_length = rod.max_length;
         return {rope, rod};
+    }
+};
+
+template <>
+struct JointCases<ManifoldDefinition> {
+    static constexpr Keeps keeps = Keeps::both_momenta;
+    /// A contact at rest sits at C = 0, where rounding decides whether soft_step takes it for one with room (rigid) or for
+    /// one without (soft: it gives up a share of its impulse). From then on float and double part by that share.
+    static constexpr int soft_steps_until_rest = 6;
+    static bool is_passive(const ManifoldDefinition& contact)
+    {
+        return contact.restitution == 0 && contact.surface_velocity.x == 0;
+    }
+    /// Half way between the bodies, some points apart and some not.
+    static std::vector<ManifoldDefinition> of(const JointPlace& at)
+    {
+        const Vec3<double> from = at.where_a({}), to = at.where_b({});
+        Vec3<double> d = to - from;
+        if (at.has_planar()) d.z = 0;
+        const Vec3<double> n = (1 / std::sqrt(dot(d, d))) * d, side{-n.y, n.x, 0};
+        ManifoldDefinition contact{at.a, at.b, at.along_a(n)};
+        for (int i = 0; i < 4; ++i) {
+            const Vec3<double> off{0, 0, at.has_planar() || i < 2 ? 0 : 0.1 * i};
+            const Vec3<double> p = 0.5 * (from + to) + (0.2 * (i % 2) - 0.1) * side + off;
+            const double separation = i % 3 == 0 ? -0.004 : 0.006;
+            contact.points[i] = {at.on_a(p - (0.5 * separation) * n), at.on_b(p + (0.5 * separation) * n)};
+        }
+        ManifoldDefinition rough = contact, belt = contact;
+        rough.point_count = 3;
+        rough.friction = 0.4F;
+        belt.point_count = 4;
+        belt.friction = 0.6F;
+        belt.restitution = 0.5F;
+        belt.torsional_radius = 0.2F;
+        belt.rolling_radius = 0.1F;
+        belt.surface_velocity = at.along_a(0.3 * side);
+        return {contact, rough, belt};
     }
 };
 

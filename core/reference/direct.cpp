@@ -108,7 +108,7 @@ double World::step_directly(double dt, const SolverSettings& settings,
                             const std::vector<ContactPoint>& points)
 {
     const double h = dt / settings.substeps;
-    start_ = bodies;
+    begin_step();
     std::vector<ContactRow> contacts;
     for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, 0));
     const Eigen::Vector3d gravity(settings.gravity.x, settings.gravity.y, settings.gravity.z);
@@ -149,7 +149,7 @@ double World::solve_substep_directly(double h, const SolverSettings& settings,
         Jacobian jacobian = block.jacobian;
         VectorXd bias = block.side * row.bias;
         Eigen::MatrixXd to_rows = Eigen::MatrixXd::Identity(count, count);
-        const bool bounded = std::isfinite(row.most) && count > 1;
+        const bool bounded = block.most_per_contact >= 0 || (std::isfinite(row.most) && count > 1);
         if (bounded && block.bounds_torque) {
             // The bound is a ball of torques: rows G w = s are solved as w = G^-1 s, whose impulse is the torque.
             const Eigen::MatrixXd turn = block.jacobian.rightCols<3>();
@@ -158,7 +158,8 @@ double World::solve_substep_directly(double h, const SolverSettings& settings,
             bias = inverse * bias;
             to_rows = inverse.transpose();
         }
-        const bool limit = block.kind == Block::Kind::limit;
+        const bool limit = block.is_one_sided();
+        const bool by_contacts = block.most_per_contact >= 0;
         double low = limit && block.side > 0 ? 0 : -row.most;
         double high = limit && block.side < 0 ? 0 : row.most;
         if (!bias.allFinite()) {  // a limit at infinity
@@ -171,7 +172,18 @@ double World::solve_substep_directly(double h, const SolverSettings& settings,
             pair_inverse_mass(bodies[static_cast<std::size_t>(a)], bodies[static_cast<std::size_t>(b)]) *
             jacobian.transpose();
         assembly.soften(first, row.soft.impulse_scale / row.soft.mass_scale * k);
-        if (bounded) assembly.problem.cones.push_back({first, count, row.most});
+        if (by_contacts) {
+            // The joint's contacts come next, one row each, once its other blocks are there.
+            Cone cone{first, count, block.most_per_contact};
+            Index next = first;
+            for (std::size_t i = row.index; i < row.joint->impulses.size(); ++i) {
+                if (i + row.joint_contacts >= row.joint->impulses.size()) cone.normals.push_back(next);
+                next += row.joint->impulses[i].size();
+            }
+            assembly.problem.cones.push_back(cone);
+        } else if (bounded) {
+            assembly.problem.cones.push_back({first, count, row.most});
+        }
         placed.push_back({first, to_rows});
     }
     const double beta =
@@ -199,6 +211,8 @@ double World::solve_substep_directly(double h, const SolverSettings& settings,
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         VectorXd& impulse = blocks[i].impulse();
         impulse = placed[i].to_rows * solution.lambda.segment(placed[i].first, impulse.size());
+        double& peak = blocks[i].joint->peaks[blocks[i].index];
+        peak = std::max(peak, impulse(0));
     }
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         ContactRow& row = contacts[i];
@@ -218,7 +232,7 @@ double World::position_error() const
     for (const Joint& joint : joints) {
         for (const Block& block : blocks_of(joint)) {
             if (block.hertz > 0 || block.kind == Block::Kind::motor) continue;
-            const bool limit = block.kind == Block::Kind::limit;
+            const bool limit = block.is_one_sided();
             squares += (limit ? Eigen::VectorXd(block.error.cwiseMin(0.0)) : block.error).squaredNorm();
         }
     }
@@ -233,9 +247,12 @@ void World::project_directly(const std::vector<ContactRow>& contacts, const Solv
         for (const Block& block : blocks_of(joint)) {
             // Springs and motors are forces, not positions.
             if (block.hertz > 0 || block.kind == Block::Kind::motor) continue;
-            const bool limit = block.kind == Block::Kind::limit;
-            if (limit && block.error(0) > 0) continue;
-            assembly.add(joint.a, joint.b, block.jacobian, block.side * block.error,
+            const bool limit = block.is_one_sided();
+            VectorXd error = block.error;
+            if (block.kind == Block::Kind::contact)
+                error(0) += static_cast<double>(settings.penetration_slop);
+            if (limit && error(0) > 0) continue;
+            assembly.add(joint.a, joint.b, block.jacobian, block.side * error,
                          limit && block.side > 0 ? 0 : -unbounded, limit && block.side < 0 ? 0 : unbounded);
         }
     }

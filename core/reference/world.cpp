@@ -53,51 +53,86 @@ Eigen::VectorXd World::speed(int a, int b, const Jacobian& jacobian) const
 std::vector<Block> World::blocks_of(const Joint& joint) const
 {
     const auto a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
-    const double travelled =
-        joint.travelled + joint.model->travel(start_[a], start_[b], bodies[a], bodies[b]);
-    return joint.model->blocks(bodies[a], bodies[b], is_planar_pair(joint.a, joint.b), travelled);
+    const bool in_plane = is_planar_pair(joint.a, joint.b);
+    if (!joint.model->keeps_rows_of_start()) {
+        const double travelled =
+            joint.travelled + joint.model->travel(start_[a], start_[b], bodies[a], bodies[b]);
+        return joint.model->blocks(bodies[a], bodies[b], in_plane, travelled);
+    }
+    std::vector<Block> blocks = joint.model->blocks(start_[a], start_[b], in_plane, joint.travelled);
+    for (Block& block : blocks) {
+        if (block.kind == Block::Kind::contact)
+            block.error += block.jacobian * moved_since_start(joint.a, joint.b);
+    }
+    return blocks;
+}
+
+Eigen::MatrixXd World::mass_of(const Joint& joint, const Block& block) const
+{
+    const std::vector<Body>& then = joint.model->keeps_rows_of_start() ? start_ : bodies;
+    return effective_mass(block.jacobian, then[static_cast<std::size_t>(joint.a)],
+                          then[static_cast<std::size_t>(joint.b)]);
 }
 
 void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows)
 {
-    const double beta =
-        settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
-    const Soft rigid{0, 1, 0};
-    const Soft usual = settings.method == Method::soft_step
-                           ? softness(settings.joint_hertz, settings.joint_damping_ratio, h)
-                           : Soft{beta / h, 1, 0};
     std::vector<Block> blocks = blocks_of(joint);
     joint.impulses.resize(blocks.size());
+    const auto contacts = static_cast<std::size_t>(std::count_if(
+        blocks.begin(), blocks.end(), [](const Block& b) { return b.kind == Block::Kind::contact; }));
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-        Block& block = blocks[i];
-        BlockRow row{&joint, i, block, {}, {}, {}, usual, rigid, h * block.most};
-        row.mass = effective_mass(block.jacobian, bodies[static_cast<std::size_t>(joint.a)],
-                                  bodies[static_cast<std::size_t>(joint.b)]);
-        if (block.kind == Block::Kind::motor) row.soft = rigid;
-        if (block.hertz > 0) row.soft = row.relax_soft = softness(block.hertz, block.damping_ratio, h);
-        row.bias = row.soft.rate * block.error;
-        row.relax_bias = row.relax_soft.rate * block.error;
-        if (block.kind == Block::Kind::limit) {
-            if (block.error(0) > 0) {  // room: it may be used up within the substep and no further
-                row.soft = rigid;
-                row.bias = row.relax_bias = block.error / h;
-            } else {
-                row.bias = row.bias.cwiseMax(-static_cast<double>(settings.push_out_speed));
-            }
-        }
-        if (block.speed.size() > 0) {
-            row.bias -= block.speed;
-            row.relax_bias -= block.speed;
-        }
+        const Block& block = blocks[i];
+        BlockRow row{&joint, i, block, mass_of(joint, block), {}, {}, {}, {}, h * block.most, contacts};
+        aim(row, block.error, h, settings);
         if (row.impulse().size() != block.error.size()) row.impulse() = 0 * block.error;
         apply(joint.a, joint.b, block.jacobian, row.impulse());
         rows.push_back(row);
     }
 }
 
-void World::solve_block(BlockRow& row, bool relax)
+/// How a block answers an error, in a sweep and in relaxation.
+void World::aim(BlockRow& row, const Eigen::VectorXd& error, double h, const SolverSettings& settings) const
+{
+    const Block& block = row.block;
+    const bool contact = block.kind == Block::Kind::contact;
+    const bool soft_step = settings.method == Method::soft_step;
+    const double beta =
+        settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
+    const Soft rigid{0, 1, 0};
+    row.relax_soft = rigid;
+    if (block.kind == Block::Kind::motor) {
+        row.soft = rigid;
+    } else if (block.hertz > 0) {
+        row.soft = row.relax_soft = softness(block.hertz, block.damping_ratio, h);
+    } else if (contact) {
+        row.soft = contact_softness(row.joint->a, row.joint->b, h, settings);
+    } else {
+        row.soft = soft_step ? softness(settings.joint_hertz, settings.joint_damping_ratio, h)
+                             : Soft{beta / h, 1, 0};
+    }
+    row.bias = row.soft.rate * error;
+    row.relax_bias = row.relax_soft.rate * error;
+    if (block.is_one_sided()) {
+        const double slop = contact && !soft_step ? static_cast<double>(settings.penetration_slop) : 0;
+        if (error(0) > 0) {  // room: it may be used up within the substep and no further
+            row.soft = rigid;
+            row.bias = row.relax_bias = error / h;
+        } else {
+            row.bias(0) = std::max(row.soft.rate * std::min(error(0) + slop, 0.0),
+                                   -static_cast<double>(settings.push_out_speed));
+        }
+    }
+    if (block.speed.size() > 0) {
+        row.bias -= block.speed;
+        row.relax_bias -= block.speed;
+    }
+}
+
+void World::solve_block(BlockRow& row, double h, const SolverSettings& settings, bool relax)
 {
     const Joint& joint = *row.joint;
+    // Contacts look again at how far apart they are, also after positions have moved.
+    if (row.block.kind == Block::Kind::contact) aim(row, blocks_of(joint)[row.index].error, h, settings);
     const Soft& soft = relax ? row.relax_soft : row.soft;
     const Eigen::VectorXd& bias = relax ? row.relax_bias : row.bias;
     const Eigen::VectorXd held = row.impulse();
@@ -105,13 +140,38 @@ void World::solve_block(BlockRow& row, bool relax)
     Eigen::VectorXd wanted =
         held - soft.mass_scale * row.mass * (speed(joint.a, joint.b, row.block.jacobian) + side * bias) -
         soft.impulse_scale * held;
-    if (row.block.kind == Block::Kind::limit) wanted(0) = side * std::max(side * wanted(0), 0.0);
+    if (row.block.is_one_sided()) wanted(0) = side * std::max(side * wanted(0), 0.0);
     const double size = row.block.bounds_torque
                             ? (row.block.jacobian.rightCols<3>().transpose() * wanted).norm()
                             : wanted.norm();
-    if (size > row.most) wanted *= row.most / size;
+    if (size > row.bound()) wanted *= row.bound() / size;
     apply(joint.a, joint.b, row.block.jacobian, wanted - held);
     row.impulse() = wanted;
+    double& peak = row.joint->peaks[row.index];
+    peak = std::max(peak, wanted(0));
+}
+
+World::Soft World::contact_softness(int a, int b, double h, const SolverSettings& settings) const
+{
+    const double beta =
+        settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
+    if (settings.method != Method::soft_step) return {beta / h, 1, 0};
+    const bool on_fixed = bodies[static_cast<std::size_t>(a)].motion != BodyMotion::dynamic_body ||
+                          bodies[static_cast<std::size_t>(b)].motion != BodyMotion::dynamic_body;
+    return softness((on_fixed ? 2 : 1) * static_cast<double>(settings.contact_hertz),
+                    settings.contact_damping_ratio, h);
+}
+
+/// What the blocks of joints close at when a step begins.
+void World::begin_step()
+{
+    start_ = bodies;
+    for (Joint& joint : joints) {
+        joint.approaches.clear();
+        for (const Block& block : blocks_of(joint))
+            joint.approaches.push_back(speed(joint.a, joint.b, block.jacobian)(0));
+        joint.peaks.assign(joint.approaches.size(), 0);
+    }
 }
 
 World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
@@ -143,10 +203,10 @@ World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
     return row;
 }
 
-double World::separation(const ContactRow& row) const
+Eigen::Matrix<double, 12, 1> World::moved_since_start(int a, int b) const
 {
     Eigen::Matrix<double, 12, 1> moved;
-    const int ends[2] = {row.point->a, row.point->b};
+    const int ends[2] = {a, b};
     for (int end = 0; end < 2; ++end) {
         const Body& now = bodies[static_cast<std::size_t>(ends[end])];
         const Body& then = start_[static_cast<std::size_t>(ends[end])];
@@ -160,7 +220,13 @@ double World::separation(const ContactRow& row) const
         moved.segment<3>(6 * end) = now.position - then.position;
         moved.segment<3>(6 * end + 3) = angle;
     }
-    return static_cast<double>(row.point->contact.separation) + (row.normal * moved)(0);
+    return moved;
+}
+
+double World::separation(const ContactRow& row) const
+{
+    return static_cast<double>(row.point->contact.separation) +
+           (row.normal * moved_since_start(row.point->a, row.point->b))(0);
 }
 
 void World::solve_contact(ContactRow& row, double h, const SolverSettings& settings, bool relax)
@@ -174,13 +240,7 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
         row.friction = free;
     }
     const bool soft_step = settings.method == Method::soft_step;
-    const bool on_fixed = bodies[static_cast<std::size_t>(point.a)].motion != BodyMotion::dynamic_body ||
-                          bodies[static_cast<std::size_t>(point.b)].motion != BodyMotion::dynamic_body;
-    const double beta =
-        settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
-    Soft soft = soft_step ? softness((on_fixed ? 2 : 1) * static_cast<double>(settings.contact_hertz),
-                                     settings.contact_damping_ratio, h)
-                          : Soft{beta / h, 1, 0};
+    Soft soft = contact_softness(point.a, point.b, h, settings);
     const double slop = soft_step ? 0 : static_cast<double>(settings.penetration_slop);
     const double s = separation(row);
     double bias =
@@ -201,6 +261,23 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
     row.peak = std::max(row.peak, impulse);
 }
 
+/// The points of a manifold one by one, each knowing what those before it have moved; then the bodies at once.
+void World::project_contacts(const Joint& joint, const SolverSettings& settings)
+{
+    Body &a = bodies[static_cast<std::size_t>(joint.a)], &b = bodies[static_cast<std::size_t>(joint.b)];
+    Eigen::Matrix<double, 12, 1> move = Eigen::Matrix<double, 12, 1>::Zero();
+    for (const Block& block : blocks_of(joint)) {
+        if (block.kind != Block::Kind::contact) continue;
+        const double deep =
+            std::clamp(block.error(0) + static_cast<double>(settings.penetration_slop), -0.2, 0.0);
+        const double left = static_cast<double>(settings.baumgarte) * deep + (block.jacobian * move)(0);
+        const double lambda = std::max(-mass_of(joint, block)(0, 0) * left, 0.0);
+        move += pair_inverse_mass(a, b) * block.jacobian.transpose() * lambda;
+    }
+    a.advance(move.head<6>(), 1);
+    b.advance(move.tail<6>(), 1);
+}
+
 void World::project(std::vector<ContactRow>& contacts, const SolverSettings& settings)
 {
     const auto move = [&](int a, int b, const Jacobian& jacobian, const Eigen::VectorXd& push) {
@@ -212,11 +289,13 @@ void World::project(std::vector<ContactRow>& contacts, const SolverSettings& set
         body_b.advance(change.tail<6>(), 1);
     };
     for (Joint& joint : joints) {
+        project_contacts(joint, settings);
         const std::size_t count = joint.impulses.size();
         for (std::size_t i = 0; i < count; ++i) {
             const Block block = blocks_of(joint)[i];
             // Springs and motors are forces, not positions.
-            if (block.hertz > 0 || block.kind == Block::Kind::motor) continue;
+            if (block.hertz > 0 || block.kind == Block::Kind::motor || block.kind == Block::Kind::contact)
+                continue;
             Eigen::VectorXd error = block.error;
             if (block.kind == Block::Kind::limit) error = block.side * error.cwiseMin(0.0);
             move(joint.a, joint.b, block.jacobian,
@@ -237,7 +316,7 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
     const double h = dt / settings.substeps;
     const double warm = settings.warm_start && last_substep_ > 0 ? h / last_substep_ : 0;
     const bool soft_step = settings.method == Method::soft_step;
-    start_ = bodies;
+    begin_step();
     for (Joint& joint : joints) {
         for (Eigen::VectorXd& impulse : joint.impulses) impulse *= warm;
     }
@@ -253,7 +332,7 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
             apply(row.point->a, row.point->b, row.tangents, row.friction);
         }
         for (int i = 0; i < settings.iterations; ++i) {
-            for (BlockRow& row : rows) solve_block(row, false);
+            for (BlockRow& row : rows) solve_block(row, h, settings, false);
             for (ContactRow& row : contacts) solve_contact(row, h, settings, false);
         }
         for (Body& body : bodies) {
@@ -263,7 +342,7 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
             for (int i = 0; i < settings.projections; ++i) project(contacts, settings);
         }
         for (int i = 0; soft_step && i < settings.relaxations; ++i) {
-            for (BlockRow& row : rows) solve_block(row, true);
+            for (BlockRow& row : rows) solve_block(row, h, settings, true);
             for (ContactRow& row : contacts) solve_contact(row, h, settings, true);
         }
     }
@@ -273,6 +352,22 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
 
 void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSettings& settings)
 {
+    const double threshold = -static_cast<double>(settings.restitution_threshold);
+    for (Joint& joint : joints) {
+        const std::vector<Block> blocks = blocks_of(joint);
+        // A face that comes down flat hits with all its points at once, which takes a few rounds.
+        constexpr std::size_t rounds = 8;
+        for (std::size_t k = 0; k < rounds * blocks.size(); ++k) {
+            const std::size_t i = k % blocks.size();
+            const double e = blocks[i].restitution;
+            if (e == 0 || joint.approaches[i] >= threshold || joint.peaks[i] == 0) continue;
+            const double leaving = speed(joint.a, joint.b, blocks[i].jacobian)(0) + e * joint.approaches[i];
+            double& held = joint.impulses[i](0);
+            const double wanted = std::max(held - mass_of(joint, blocks[i])(0, 0) * leaving, 0.0);
+            apply(joint.a, joint.b, blocks[i].jacobian, Eigen::VectorXd::Constant(1, wanted - held));
+            held = wanted;
+        }
+    }
     memory_.clear();
     for (ContactRow& row : contacts) {
         const double e = static_cast<double>(row.point->contact.restitution);

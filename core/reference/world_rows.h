@@ -12,8 +12,17 @@ struct World::BlockRow {
     Eigen::MatrixXd mass;
     Eigen::VectorXd bias, relax_bias;
     Soft soft, relax_soft;
-    double most;  ///< largest norm of the impulse
+    double most;                 ///< largest norm of the impulse, where the joint's contacts do not say
+    std::size_t joint_contacts;  ///< how many of the joint's blocks are contacts; they come last
 
+    [[nodiscard]] double bound() const
+    {
+        if (block.most_per_contact < 0) return most;
+        double sum = 0;
+        for (std::size_t i = joint->impulses.size() - joint_contacts; i < joint->impulses.size(); ++i)
+            sum += joint->impulses[i](0);
+        return block.most_per_contact * sum;
+    }
     [[nodiscard]] Eigen::VectorXd& impulse() const { return joint->impulses[index]; }
 };
 

@@ -139,8 +139,8 @@ TEST(Trap4, AnAngleByArcsineIsNotANumberNearHalfATurn)
         if (std::isnan(2 * std::asin(along))) ++printed_nan;
         const float mended = 2 * std::atan2(q.w() < 0 ? -along : along, std::abs(q.w()));
         if (std::isnan(mended)) ++mended_nan;
-        mended_fault = std::max(mended_fault,
-                                std::abs(std::remainder(static_cast<double>(mended) - angle, 2 * pi)));
+        mended_fault =
+            std::max(mended_fault, std::abs(std::remainder(static_cast<double>(mended) - angle, 2 * pi)));
     }
     EXPECT_GT(printed_nan, trials / 20);
     EXPECT_EQ(mended_nan, 0);

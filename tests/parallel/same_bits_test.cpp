@@ -30,10 +30,10 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 14695652546739117744ULL},
-            {"baumgarte", iterative, 1032896179966864989ULL},
+    return {{"soft_step", soft, 16392575632900585837ULL},
+            {"baumgarte", iterative, 6675914774472871739ULL},
             {"no drift correction", none, 12983324377581379828ULL},
-            {"projection", projection, 15108735213734514677ULL}};
+            {"projection", projection, 10848292192859563670ULL}};
 }
 
 /// The state's hash after every step.
@@ -89,8 +89,8 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {18418207753600903768ULL, 9976739717974724223ULL, 9861853812829896325ULL,
-                                    949145528574501828ULL};
+    const std::uint64_t golden[] = {6397929200182799190ULL, 15701077129181807418ULL, 5865472195979083212ULL,
+                                    2688965282288382723ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});

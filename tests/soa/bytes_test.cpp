@@ -43,7 +43,8 @@ TEST(Readme, BytesALaneAreWhatTheKernelsStream)
                                 "slide drive",     "twist drive",
                                 "swing limit",     "point servo",
                                 "angular servo",   "gear",
-                                "rack and pinion", "pulley"};
+                                "rack and pinion", "pulley",
+                                "manifold"};
     static_assert(std::size(rows) == constraint_type_count, "a row for every type");
     for (const Isa isa : available_isas()) {
         const KernelTable& table = kernel_table(isa);

@@ -7,6 +7,7 @@
 #include "motley/core/constraints/distance.h"
 #include "motley/core/constraints/drive.h"
 #include "motley/core/constraints/frame_joint.h"
+#include "motley/core/constraints/manifold.h"
 #include "motley/core/constraints/pulley.h"
 #include "motley/core/constraints/servo.h"
 #include "motley/core/constraints/swing_limit.h"
@@ -33,7 +34,7 @@ using JointTypes =
              FrameJointOf<PointOnLineDefinition>::type, FrameJointOf<RotationLockDefinition>::type,
              FrameJointOf<ParallelAxesDefinition>::type, FrameJointOf<PerpendicularAxesDefinition>::type,
              Drive<DriveAxis::slide>, Drive<DriveAxis::twist>, SwingLimit, PointServo, AngularServo, Gear,
-             RackAndPinion, Pulley>;
+             RackAndPinion, Pulley, Manifold>;
 
 /// Types of constraint in all: contacts first, then joints, each at its place in the lists.
 inline constexpr int contact_type_count = ContactTypes::size;

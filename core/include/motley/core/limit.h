@@ -35,6 +35,27 @@ Real lock_impulse(const StepConstants& step, const Real& c, const Real& speed, c
     }
 }
 
+/// Of a contact, C >= 0: with room as a limit; without, as deep as the slop allows and no faster than push_out_speed.
+template <bool relax, class Real>
+Real contact_impulse(const StepConstants& step, const Softness& soft, const Real& separation,
+                     const Real& speed, const Real& mass, const Real& held)
+{
+    const auto apart = separation > Real(0);
+    Real bias = Real(step.inverse_substep) * separation;
+    Real mass_scale(1);
+    Real impulse_scale(0);
+    if constexpr (relax) {
+        bias = select(apart, bias, Real(0));
+    } else {
+        const Real deep = maximum(Real(soft.rate) * minimum(separation + Real(step.slop), Real(0)),
+                                  Real(-step.push_out_speed));
+        bias = select(apart, bias, deep);
+        mass_scale = select(apart, Real(1), Real(soft.mass_scale));
+        impulse_scale = select(apart, Real(0), Real(soft.impulse_scale));
+    }
+    return maximum(held - mass * mass_scale * (speed + bias) - impulse_scale * held, Real(0));
+}
+
 /// Of lower <= C <= upper. One limit at a time, the nearer one; a coordinate without room between them is held from
 /// both sides.
 template <bool relax, class Real>

@@ -14,6 +14,7 @@ struct Block {
     enum class Kind {
         equality,  ///< C = 0; with a frequency of its own a spring
         limit,     ///< one row, side * lambda >= 0, and `error` is the room left: C >= 0
+        contact,   ///< the same with the softness of contacts, and their slop
         motor      ///< J v = speed
     };
     Kind kind = Kind::equality;
@@ -24,6 +25,11 @@ struct Block {
     double hertz = 0, damping_ratio = 0;
     double most = std::numeric_limits<double>::infinity();  ///< largest norm of the force, N or N m...
     bool bounds_torque = false;                             ///< ...or of the torque that comes of it
+    /// m or 1, of a motor, >= 0: the bound is this times the sum of the joint's contacts instead.
+    double most_per_contact = -1;
+    double restitution = 0;  ///< of a contact
+
+    [[nodiscard]] bool is_one_sided() const { return kind == Kind::limit || kind == Kind::contact; }
 };
 
 /// A type of joint with its numbers. `in_plane`: the pair cannot leave the plane, and rows across it are left out.
@@ -34,6 +40,8 @@ class JointModel {
     /// joint has piled up, for those that have no C of the poses alone.
     [[nodiscard]] virtual std::vector<Block> blocks(const Body& a, const Body& b, bool in_plane,
                                                     double travelled) const = 0;
+    /// Rows stay as they were when the step began, and C follows by them: contacts, whose arms do not turn with a ball.
+    [[nodiscard]] virtual bool keeps_rows_of_start() const { return false; }
     /// By how much C has grown between two poses of the bodies, for those that pile it up.
     [[nodiscard]] virtual double travel(const Body& /*start_a*/, const Body& /*start_b*/, const Body& /*a*/,
                                         const Body& /*b*/) const
@@ -54,6 +62,8 @@ struct Joint {
     std::shared_ptr<const JointModel> model{};
     std::vector<Eigen::VectorXd> impulses{};  ///< of each block, carried from step to step
     double travelled = 0;
+    std::vector<double> approaches{},
+        peaks{};  ///< of a step: J v when it began, and the largest impulse, of each block
 };
 
 }  // namespace motley::reference

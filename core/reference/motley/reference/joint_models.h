@@ -5,6 +5,7 @@
 #include "motley/core/constraints/distance_definition.h"
 #include "motley/core/constraints/drive_definition.h"
 #include "motley/core/constraints/frame_joint_definition.h"
+#include "motley/core/constraints/manifold_definition.h"
 #include "motley/core/constraints/pulley_definition.h"
 #include "motley/core/constraints/servo_definition.h"
 #include "motley/core/constraints/swing_limit_definition.h"
@@ -23,6 +24,7 @@ Model model_of(const AngularServoDefinition& servo);
 Model model_of(const GearDefinition& gear);
 Model model_of(const RackAndPinionDefinition& rack);
 Model model_of(const PulleyDefinition& pulley);
+Model model_of(const ManifoldDefinition& contact);
 Model frame_model(const JointFrame& frame_a, const JointFrame& frame_b, const JointStiffness& stiffness,
                   LinearLock linear, AngularLock angular);
 Model drive_model(const SlideDriveDefinition& drive, DriveAxis axis);

@@ -62,11 +62,17 @@ class World {
     [[nodiscard]] Eigen::VectorXd speed(int a, int b, const Jacobian& jacobian) const;
 
     [[nodiscard]] std::vector<Block> blocks_of(const Joint& joint) const;
+    [[nodiscard]] Soft contact_softness(int a, int b, double h, const SolverSettings& settings) const;
+    void begin_step();
     void begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows);
-    void solve_block(BlockRow& row, bool relax);
+    [[nodiscard]] Eigen::MatrixXd mass_of(const Joint& joint, const Block& block) const;
+    void aim(BlockRow& row, const Eigen::VectorXd& error, double h, const SolverSettings& settings) const;
+    void solve_block(BlockRow& row, double h, const SolverSettings& settings, bool relax);
+    [[nodiscard]] Eigen::Matrix<double, 12, 1> moved_since_start(int a, int b) const;
     ContactRow begin_contact(const ContactPoint& point, double warm);
     void solve_contact(ContactRow& row, double h, const SolverSettings& settings, bool relax);
     [[nodiscard]] double separation(const ContactRow& row) const;
+    void project_contacts(const Joint& joint, const SolverSettings& settings);
     void project(std::vector<ContactRow>& contacts, const SolverSettings& settings);
     void finish_contacts(std::vector<ContactRow>& contacts, const SolverSettings& settings);
     void end_step(double h);

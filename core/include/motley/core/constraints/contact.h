@@ -11,6 +11,7 @@
 
 #include "motley/core/constraints/contact_definition.h"
 #include "motley/core/lever.h"
+#include "motley/core/limit.h"
 #include "motley/core/step_constants.h"
 
 namespace motley {
@@ -182,25 +183,11 @@ struct ContactKind {
     {
         if constexpr (!smooth) solve_friction<Real>(row, impulse, a, b);
 
-        const Real separation = row.separation + moved<Real>(row, a, b);
-        const auto apart = separation > Real(0);
-        Real bias = Real(step.inverse_substep) * separation;
-        Real mass_scale(1);
-        Real impulse_scale(0);
-        if constexpr (relax) {
-            bias = select(apart, bias, Real(0));
-        } else {
-            constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
-            const Softness& soft = on_fixed ? step.static_contact : step.contact;
-            const Real deep = maximum(Real(soft.rate) * minimum(separation + Real(step.slop), Real(0)),
-                                      Real(-step.push_out_speed));
-            bias = select(apart, bias, deep);
-            mass_scale = select(apart, Real(1), Real(soft.mass_scale));
-            impulse_scale = select(apart, Real(0), Real(soft.impulse_scale));
-        }
-        const Real wanted = impulse.normal - row.normal_mass * mass_scale * (speed<Real>(row, a, b) + bias) -
-                            impulse_scale * impulse.normal;
-        push_normal<Real>(row, maximum(wanted, Real(0)), impulse, a, b);
+        constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
+        const Real wanted = contact_impulse<relax>(step, on_fixed ? step.static_contact : step.contact,
+                                                   row.separation + moved<Real>(row, a, b),
+                                                   speed<Real>(row, a, b), row.normal_mass, impulse.normal);
+        push_normal<Real>(row, wanted, impulse, a, b);
     }
 
     /// After the substeps: contacts that were hit fast enough leave with e times the speed of approach.

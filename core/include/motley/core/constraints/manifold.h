@@ -1,0 +1,379 @@
+// Manifold: a contact at up to four points, with friction of the whole.
+//
+//   points    C_i = n . (p_b - p_a) >= 0, lambda_i >= 0     [-n, -(r_a x n), n, r_b x n], both r to the point on b
+//   friction  t . (v_b - v_a - u) at the mean of the points, norm lambda_t <= mu sum lambda_i
+//   torsion   n . (w_b - w_a)                                [0, -n, 0, n], |lambda| <= mu r_t sum lambda_i
+//   rolling   t . (w_b - w_a)                                [0, -t, 0, t], norm lambda <= r_r sum lambda_i
+//
+// A sweep takes friction, torsion and rolling within the bounds of the points so far, then the points one by one. Points
+// that are not there have no mass: masks, not branches. Normal and arms stay as they were when the step began, as a
+// Contact's do: C = C_0 + J delta, exact for balls, second order in the turn for the rest. (Arms that turn with a ball would
+// lag behind it, and brake it.)
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "motley/core/constraints/manifold_definition.h"
+#include "motley/core/invalid_input.h"
+#include "motley/core/joint_checks.h"
+#include "motley/core/joint_report.h"
+#include "motley/core/limit.h"
+#include "motley/core/wrench.h"
+
+namespace motley {
+
+struct Manifold {
+    using Definition = ManifoldDefinition;
+    static constexpr bool has_restitution = true;
+    static constexpr bool recomputes_each_substep = false;
+    static constexpr bool needs_bodies_that_turn = true;
+    static constexpr int most_points = 4;
+    static constexpr int restitution_rounds = 8;
+
+    template <class Real>
+    struct Point {
+        Vec3<Real> anchor_a, anchor_b;
+    };
+    template <class Real>
+    struct Parameters {
+        Vec3<Real> normal;
+        Real point_count;
+        Point<Real> point[most_points];
+        Real friction, restitution, torsional_radius, rolling_radius;
+        Vec3<Real> surface_velocity;
+    };
+    template <class Real>
+    struct Memory {
+        Real normal[most_points];  ///< N s
+        Vec2<Real> friction;       ///< N s along the tangents
+        Real torsion;              ///< N m s
+        Vec2<Real> rolling;        ///< N m s about the tangents
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        Vec3<Real> normal, tangent;  ///< world; the second tangent is normal x tangent
+        Vec3<Real> lever_a[most_points], lever_b[most_points];
+        Real mass[most_points], separation[most_points], approach[most_points];
+        Vec3<Real> arm_a, arm_b;  ///< to where the friction acts
+        Sym2<Real> friction_mass, rolling_mass;
+        Real torsion_mass;
+        Real friction, torsional_bound, rolling_radius,
+            restitution;           ///< torsional_bound: friction times radius
+        Vec2<Real> surface_speed;  ///< along the tangents
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Impulse {
+        Real normal[most_points];
+        Real peak[most_points];  ///< the largest normal impulse of the step, decides restitution
+        Vec2<Real> friction, rolling;
+        Real torsion;
+    };
+
+    static void validate(const Definition& contact, const JointBodies& bodies)
+    {
+        check_turns("body_a", bodies.model_a, bodies.fixed_a);
+        check_turns("body_b", bodies.model_b, bodies.fixed_b);
+        check_direction("normal", contact.normal);
+        check_range("point_count", static_cast<float>(contact.point_count), 1, most_points, "1 to 4");
+        for (int i = 0; i < contact.point_count; ++i) {
+            const std::string name = "points[" + std::to_string(i) + "].local_anchor_";
+            check_anchor(name + "a", contact.points[i].local_anchor_a, bodies.model_a, bodies.fixed_a);
+            check_anchor(name + "b", contact.points[i].local_anchor_b, bodies.model_b, bodies.fixed_b);
+        }
+        check_range("friction", contact.friction, 0, 1e9F, "a finite value from 0 to 1e9");
+        check_range("restitution", contact.restitution, 0, 1, "0 to 1");
+        check_range("torsional_radius", contact.torsional_radius, 0, largest_length, "0 to 1e9 (m)");
+        check_range("rolling_radius", contact.rolling_radius, 0, largest_length, "0 to 1e9 (m)");
+        const Vec3<float>& u = contact.surface_velocity;
+        check_range("surface_velocity.x", u.x, -1e9F, 1e9F, "a finite value from -1e9 to 1e9 (m/s)");
+        check_range("surface_velocity.y", u.y, -1e9F, 1e9F, "a finite value from -1e9 to 1e9 (m/s)");
+        check_range("surface_velocity.z", u.z, -1e9F, 1e9F, "a finite value from -1e9 to 1e9 (m/s)");
+    }
+    static Parameters<float> parameters(const Definition& contact)
+    {
+        Parameters<float> p{};
+        p.normal = unit(contact.normal);
+        p.point_count = static_cast<float>(contact.point_count);
+        // Points that are not there lie where the first one is, so that their mean needs no mask.
+        for (int i = 0; i < most_points; ++i) {
+            const ManifoldPoint& point = contact.points[i < contact.point_count ? i : 0];
+            p.point[i] = {point.local_anchor_a, point.local_anchor_b};
+        }
+        p.friction = contact.friction;
+        p.restitution = contact.restitution;
+        p.torsional_radius = contact.torsional_radius;
+        p.rolling_radius = contact.rolling_radius;
+        p.surface_velocity = contact.surface_velocity;
+        return p;
+    }
+
+    template <class Real, class A, class B>
+    static auto prepare(const StepConstants& step, const Parameters<Real>& contact,
+                        const Memory<Real>& memory, const JointPose<Real, A::kind, B::kind>& pose, const A& a,
+                        const B& b, Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        Row<Real, A::kind, B::kind> row;
+        const Vec3<Real> tangent = across(contact.normal);
+        const Vec3<Real> n = row.normal = to_world(pose.orientation_a, contact.normal);
+        const Vec3<Real> t = row.tangent = to_world(pose.orientation_a, tangent), t2 = cross(n, t);
+        const Vec3<Real>& u = contact.surface_velocity;
+        row.friction = contact.friction;
+        row.torsional_bound = contact.friction * contact.torsional_radius;
+        row.rolling_radius = contact.rolling_radius;
+        row.restitution = contact.restitution;
+        row.surface_speed = {dot(tangent, u), dot(cross(contact.normal, tangent), u)};
+
+        const Real warm(step.warm_start_scale);
+        const Real linear_floor = Real(rounding_share) * (linear_size(a) + linear_size(b));
+        const Real angular_floor = Real(rounding_share) * (angular_size(a) + angular_size(b));
+        const Real along = dot(n, over_mass(a, n) + over_mass(b, n));
+        Vec3<Real> mean{Real(0), Real(0), Real(0)};
+        for (int i = 0; i < most_points; ++i) {
+            const Vec3<Real> arm_b = to_world(pose.orientation_b, contact.point[i].anchor_b);
+            const Vec3<Real> arm_a =
+                pose.between + arm_b;  // to the same point, so that no push turns the pair
+            row.separation[i] = dot(n, arm_a - to_world(pose.orientation_a, contact.point[i].anchor_a));
+            row.lever_a[i] = cross(arm_a, n);
+            row.lever_b[i] = cross(arm_b, n);
+            const Real k = along + dot(row.lever_a[i], over_inertia(a, row.lever_a[i])) +
+                           dot(row.lever_b[i], over_inertia(b, row.lever_b[i]));
+            const auto is_there = contact.point_count > Real(static_cast<float>(i) + 0.5F);
+            row.mass[i] = select(is_there & (k > linear_floor), inverse_or_zero(k), Real(0));
+            row.approach[i] = speed_at<Real>(row, i, a, b);
+            impulse.normal[i] = select(is_there, warm * memory.normal[i], Real(0));
+            impulse.peak[i] = Real(0);
+            mean = mean + select(is_there, Real(1), Real(0)) * arm_b;
+        }
+        row.arm_b = Real(1) / contact.point_count * mean;
+        row.arm_a = pose.between + row.arm_b;
+        const auto across_mass = [&](const Vec3<Real>& x, const Vec3<Real>& y) {
+            return dot(x, over_mass(a, y) + over_mass(b, y)) +
+                   dot(cross(row.arm_a, x), over_inertia(a, cross(row.arm_a, y))) +
+                   dot(cross(row.arm_b, x), over_inertia(b, cross(row.arm_b, y)));
+        };
+        row.friction_mass =
+            inverse_of_what_moves(across_mass(t, t), across_mass(t, t2), across_mass(t2, t2), linear_floor);
+        const auto turning = [&](const Vec3<Real>& x, const Vec3<Real>& y) {
+            return dot(x, over_inertia(a, y) + over_inertia(b, y));
+        };
+        row.rolling_mass =
+            inverse_of_what_moves(turning(t, t), turning(t, t2), turning(t2, t2), angular_floor);
+        const Real k = turning(n, n);
+        row.torsion_mass = select(k > angular_floor, inverse_or_zero(k), Real(0));
+        impulse.friction = warm * memory.friction;
+        impulse.torsion = warm * memory.torsion;
+        impulse.rolling = warm * memory.rolling;
+        return row;
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const StepConstants&, const Row& row, Substep&, const Impulse& impulse, A& a, B& b)
+    {
+        push_friction(row, impulse.friction, a, b);
+        push_turn(row, impulse.torsion, impulse.rolling, a, b);
+        for (int i = 0; i < most_points; ++i) push_point(row, i, impulse.normal[i], a, b);
+    }
+
+    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants& step, const Row& row, const Substep&, Impulse& impulse, A& a, B& b)
+    {
+        solve_friction<Real>(row, impulse, a, b);
+        constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
+        const Softness& soft = on_fixed ? step.static_contact : step.contact;
+        const Vec3<Real> moved = to_three(b.delta) - to_three(a.delta), turn_a = turned_by(a),
+                         turn_b = turned_by(b);
+        for (int i = 0; i < most_points; ++i) {
+            const Real separation = row.separation[i] + dot(row.normal, moved) + dot(row.lever_b[i], turn_b) -
+                                    dot(row.lever_a[i], turn_a);
+            const Real wanted = contact_impulse<relax>(step, soft, separation, speed_at<Real>(row, i, a, b),
+                                                       row.mass[i], impulse.normal[i]);
+            push_point(row, i, wanted - impulse.normal[i], a, b);
+            impulse.normal[i] = wanted;
+            impulse.peak[i] = maximum(impulse.peak[i], wanted);
+        }
+    }
+
+    /// After the substeps: points that were hit fast enough leave with e times the speed of approach. A face that comes
+    /// down flat hits with all its points at once, which takes a few rounds.
+    template <class Real, class Row, class Impulse, class A, class B>
+    static void restitute(const StepConstants& step, const Row& row, Impulse& impulse, A& a, B& b)
+    {
+        for (int i = 0; i < restitution_rounds * most_points; ++i) {
+            const int point = i % most_points;
+            const Real leaving = speed_at<Real>(row, point, a, b) + row.restitution * row.approach[point];
+            const auto bounces = (row.restitution > Real(0)) &
+                                 (row.approach[point] < Real(-step.restitution_threshold)) &
+                                 (impulse.peak[point] > Real(0));
+            const Real& held = impulse.normal[point];
+            const Real wanted = select(bounces, maximum(held - row.mass[point] * leaving, Real(0)), held);
+            push_point(row, point, wanted - held, a, b);
+            impulse.normal[point] = wanted;
+        }
+    }
+
+    /// Moves the bodies until `projection_rate` of every point's penetration is gone: the points one by one, each knowing
+    /// what those before it have moved.
+    template <class Real, class Row, class Substep, class A, class B>
+    static void project(const StepConstants& step, const Row& row, const Substep&, A& a, B& b)
+    {
+        const Vec3<Real> moved = to_three(b.delta) - to_three(a.delta), turn_a = turned_by(a),
+                         turn_b = turned_by(b);
+        const Vec3<Real> none{Real(0), Real(0), Real(0)};
+        Vec3<Real> linear = none, angular_a = none, angular_b = none;
+        for (int i = 0; i < most_points; ++i) {
+            const Real separation = row.separation[i] + dot(row.normal, moved) + dot(row.lever_b[i], turn_b) -
+                                    dot(row.lever_a[i], turn_a);
+            const Real deep = maximum(minimum(separation + Real(step.slop), Real(0)), Real(-0.2F));
+            const Real so_far = dot(row.normal, over_mass(a, linear) + over_mass(b, linear)) +
+                                dot(row.lever_a[i], over_inertia(a, angular_a)) +
+                                dot(row.lever_b[i], over_inertia(b, angular_b));
+            const Real lambda =
+                maximum(-(row.mass[i] * (Real(step.projection_rate) * deep + so_far)), Real(0));
+            linear = linear + lambda * row.normal;
+            angular_a = angular_a + lambda * row.lever_a[i];
+            angular_b = angular_b + lambda * row.lever_b[i];
+        }
+        displace(a, -linear, -angular_a);
+        displace(b, linear, angular_b);
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    {
+        Memory<Real> memory;
+        for (int i = 0; i < most_points; ++i) memory.normal[i] = impulse.normal[i];
+        memory.friction = impulse.friction;
+        memory.torsion = impulse.torsion;
+        memory.rolling = impulse.rolling;
+        return memory;
+    }
+
+    /// The force on b and the moment beside it, and how deep its deepest point is, from the poses now, in double.
+    static JointReport report(const Definition& contact, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b, double inverse_substep)
+    {
+        const Vec3<double> local_n = convert<double>(unit(contact.normal)), local_t = across(local_n);
+        const Vec3<double> n = rotate(a.orientation, local_n), t = rotate(a.orientation, local_t),
+                           t2 = cross(n, t);
+        double push = 0, deepest = 0;
+        for (int i = 0; i < contact.point_count; ++i) {
+            push += static_cast<double>(memory.normal[i]);
+            const ManifoldPoint& point = contact.points[i];
+            deepest = std::fmax(deepest,
+                                -dot(n, anchor_separation(a, b, point.local_anchor_a, point.local_anchor_b)));
+        }
+        const Vec2<double> f{static_cast<double>(memory.friction.x), static_cast<double>(memory.friction.y)},
+            r{static_cast<double>(memory.rolling.x), static_cast<double>(memory.rolling.y)};
+        JointReport report;
+        report.force = convert<float>(inverse_substep * (push * n + f.x * t + f.y * t2));
+        report.torque =
+            convert<float>(inverse_substep * (static_cast<double>(memory.torsion) * n + r.x * t + r.y * t2));
+        report.error = static_cast<float>(deepest);
+        report.state = push > 0 ? JointState::active : JointState::inactive;
+        return report;
+    }
+
+  private:
+    /// How far a body has turned since the step began, as a rotation vector to first order.
+    template <class Real, BodyKind kind>
+    static Vec3<Real> turned_by(const LaneBody<Real, kind>& body)
+    {
+        return small_rotation(body.delta_rotation);
+    }
+    template <class Real>
+    static Vec3<Real> turned_by(const LaneBody<Real, BodyKind::planar>& body)
+    {
+        return {Real(0), Real(0), body.delta_yaw};
+    }
+
+    /// A unit vector across a unit vector, leaning away from the axis that it is nearest to.
+    template <class Real>
+    static Vec3<Real> across(const Vec3<Real>& n)
+    {
+        const auto leans_from_x = absolute(n.x) < Real(0.57735F);
+        const Vec3<Real> v{select(leans_from_x, Real(0), n.y), select(leans_from_x, n.z, -n.x),
+                           select(leans_from_x, -n.y, Real(0))};
+        return Real(1) / square_root(dot(v, v)) * v;
+    }
+    /// The inverse of a block of two rows; between planar bodies one of them may not move, and the other is alone.
+    template <class Real>
+    static Sym2<Real> inverse_of_what_moves(const Real& xx, const Real& xy, const Real& yy, const Real& floor)
+    {
+        const auto x_moves = xx > floor, y_moves = yy > floor;
+        const Sym2<Real> both = inverse(Sym2<Real>{xx, xy, yy});
+        const Real zero(0);
+        return {select(x_moves, select(y_moves, both.xx, inverse_or_zero(xx)), zero),
+                select(x_moves, select(y_moves, both.xy, zero), zero),
+                select(y_moves, select(x_moves, both.yy, inverse_or_zero(yy)), zero)};
+    }
+
+    template <class Real, class Row, class A, class B>
+    static Real speed_at(const Row& row, int i, const A& a, const B& b)
+    {
+        return dot(row.normal, linear_of(b) - linear_of(a)) + dot(row.lever_b[i], angular_of(b)) -
+               dot(row.lever_a[i], angular_of(a));
+    }
+    template <class Real, class Row, class A, class B>
+    static void push_point(const Row& row, int i, const Real& lambda, A& a, B& b)
+    {
+        apply_wrench(a, -(lambda * row.normal), -(lambda * row.lever_a[i]));
+        apply_wrench(b, lambda * row.normal, lambda * row.lever_b[i]);
+    }
+    template <class Real, class Row, class A, class B>
+    static void push_friction(const Row& row, const Vec2<Real>& lambda, A& a, B& b)
+    {
+        const Vec3<Real> push = lambda.x * row.tangent + lambda.y * cross(row.normal, row.tangent);
+        apply_wrench(a, -push, -cross(row.arm_a, push));
+        apply_wrench(b, push, cross(row.arm_b, push));
+    }
+    template <class Real, class Row, class A, class B>
+    static void push_turn(const Row& row, const Real& torsion, const Vec2<Real>& rolling, A& a, B& b)
+    {
+        const Vec3<Real> turn =
+            torsion * row.normal + rolling.x * row.tangent + rolling.y * cross(row.normal, row.tangent);
+        apply_turn(a, -turn);
+        apply_turn(b, turn);
+    }
+    /// Back onto the circle when outside. The floor keeps 0/0 out of lanes without a bound.
+    template <class Real>
+    static Vec2<Real> within_circle(const Vec2<Real>& v, const Real& radius)
+    {
+        const Real length2 = maximum(dot(v, v), Real(1e-30F));
+        return select(length2 > radius * radius, radius / square_root(length2), Real(1)) * v;
+    }
+
+    template <class Real, class Row, class Impulse, class A, class B>
+    static void solve_friction(const Row& row, Impulse& impulse, A& a, B& b)
+    {
+        const Real push = (impulse.normal[0] + impulse.normal[1]) + (impulse.normal[2] + impulse.normal[3]);
+        const Vec3<Real>&n = row.normal, &t = row.tangent, t2 = cross(n, t);
+        const Vec3<Real> slip = (linear_of(b) + cross(angular_of(b), row.arm_b)) -
+                                (linear_of(a) + cross(angular_of(a), row.arm_a));
+        const Vec2<Real> friction = within_circle(
+            impulse.friction - row.friction_mass * Vec2<Real>{dot(t, slip) - row.surface_speed.x,
+                                                              dot(t2, slip) - row.surface_speed.y},
+            row.friction * push);
+        push_friction(row, friction - impulse.friction, a, b);
+        impulse.friction = friction;
+
+        const Vec3<Real> spin = angular_of(b) - angular_of(a);
+        const Real torsional_bound = row.torsional_bound * push;
+        const Real free = impulse.torsion - row.torsion_mass * dot(n, spin);
+        const Real torsion = maximum(minimum(free, torsional_bound), -torsional_bound);
+        push_turn(row, torsion - impulse.torsion, Vec2<Real>{Real(0), Real(0)}, a, b);
+        impulse.torsion = torsion;
+
+        const Vec3<Real> roll = angular_of(b) - angular_of(a);
+        const Vec2<Real> rolling =
+            within_circle(impulse.rolling - row.rolling_mass * Vec2<Real>{dot(t, roll), dot(t2, roll)},
+                          row.rolling_radius * push);
+        push_turn(row, Real(0), rolling - impulse.rolling, a, b);
+        impulse.rolling = rolling;
+    }
+};
+
+}  // namespace motley
