@@ -33,6 +33,13 @@ class JointPlace {
     /// With a planar body axes lie in or across the plane, as a host's would: between others rows depend on each other.
     [[nodiscard]] bool has_planar() const { return kind_a == 1 || kind_b == 1; }
     [[nodiscard]] double symmetric() const { return random_->symmetric(); }
+    /// Three of them, drawn in order: between the arguments of a call compilers choose their own.
+    [[nodiscard]] Eigen::Vector3d vector() const
+    {
+        Eigen::Vector3d v;
+        for (double& x : v) x = symmetric();
+        return v;
+    }
 
     /// A random place on a body; the centre of a particle.
     [[nodiscard]] Vec3<float> anchor_on_a() const { return anchor(kind_a, kind_b); }
@@ -52,7 +59,7 @@ class JointPlace {
     [[nodiscard]] Vec3<float> axis(bool across) const
     {
         if (has_planar()) return across ? Vec3<float>{0, 0, 1} : Vec3<float>{0.6F, -0.8F, 0};
-        return narrow(Eigen::Vector3d(symmetric(), symmetric(), symmetric() + 1.5));
+        return narrow(vector() + Eigen::Vector3d(0, 0, 1.5));
     }
     /// Where a place on a body is in the world.
     [[nodiscard]] Vec3<double> where_a(const Vec3<float>& on_a) const { return in_world(state_a_, on_a); }
@@ -76,20 +83,23 @@ class JointPlace {
     [[nodiscard]] std::pair<JointFrame, JointFrame> frames(bool x_across) const
     {
         const bool planar = has_planar();
-        const auto vector = [&](double size) {
-            return Eigen::Vector3d(size * symmetric(), size * symmetric(), planar ? 0 : size * symmetric());
+        const auto vector_of = [&](double size) {
+            Eigen::Vector3d v = size * vector();
+            if (planar) v.z() = 0;
+            return v;
         };
         const Eigen::Quaterniond turn_a = turn(state_a_), turn_b = turn(state_b_);
+        const Eigen::Vector3d imaginary = vector();
         Eigen::Quaterniond world =
-            Eigen::Quaterniond(symmetric(), symmetric(), symmetric(), symmetric()).normalized();
-        Eigen::Vector3d tilt = vector(0.02);
+            Eigen::Quaterniond(symmetric(), imaginary.x(), imaginary.y(), imaginary.z()).normalized();
+        Eigen::Vector3d tilt = vector_of(0.02);
         if (planar) {
             world = Eigen::AngleAxisd(3 * symmetric(), Eigen::Vector3d::UnitZ());
             if (x_across) world = world * Eigen::AngleAxisd(-EIGEN_PI / 2, Eigen::Vector3d::UnitY());
             tilt = {0, 0, 0.02 * symmetric()};
         }
-        const JointFrame frame_a{narrow(vector(0.4)), narrow(turn_a.conjugate() * world)};
-        const Eigen::Vector3d anchor = at(state_a_, frame_a.position) + vector(0.02);
+        const JointFrame frame_a{narrow(vector_of(0.4)), narrow(turn_a.conjugate() * world)};
+        const Eigen::Vector3d anchor = at(state_a_, frame_a.position) + vector_of(0.02);
         const Eigen::Quaterniond tilted =
             Eigen::Quaterniond(1, tilt.x() / 2, tilt.y() / 2, tilt.z() / 2).normalized();
         const Eigen::Vector3d centre(state_b_.position.x, state_b_.position.y, state_b_.position.z);
