@@ -121,7 +121,7 @@ void six_dof_hinge(Net& net, BodyId a, BodyId b, Vec3<float> arm)
     six.body_b = b;
     six.frame_a.position = arm;
     six.frame_b.position = -arm;
-    six.twist = AxisSetup::free();
+    six.rotation[0] = AxisSetup::free();
     add_six_dof(net.scene, six);
 }
 

@@ -31,39 +31,46 @@ JointFrame turned_to(JointFrame frame, int axis)
     return frame;
 }
 
-enum class Rotations { all_locked, twist_loose, all_loose };
-
-Rotations rotations_of(const SixDofDefinition& joint)
+/// The frame turned about its x axis by a quarter, so that its y axis is its old z axis.
+JointFrame turned_about_x(JointFrame frame)
 {
-    if (!(joint.max_swing >= 0 && joint.max_swing <= half_turn * 1.0001F))
-        refuse("SixDofDefinition.max_swing", joint.max_swing, "0 to pi (rad)");
-    if (joint.max_swing > 0) return Rotations::all_loose;
-    if (joint.locks_swing_about_z) {
-        refuse("SixDofDefinition.locks_swing_about_z", "true while max_swing is 0",
-               "false: all of the swing is locked");
-    }
-    return is_locked(joint.twist) ? Rotations::all_locked : Rotations::twist_loose;
+    frame.rotation = frame.rotation * Quat<float>{0.70710678F, 0, 0, 0.70710678F};
+    return frame;
 }
+
+/// How many of three coordinates are locked, and which one is not like the other two.
+struct Locks {
+    int count = 0, odd = 0;
+    explicit Locks(const AxisSetup (&axes)[3])
+    {
+        for (const AxisSetup& axis : axes) count += is_locked(axis) ? 1 : 0;
+        for (int i = 0; i < 3; ++i) {
+            if (is_locked(axes[i]) == (count == 1)) odd = i;
+        }
+    }
+};
 
 /// Adds the joints one by one, and takes them back when one is refused.
 class Assembler {
   public:
-    Assembler(Scene& scene, const SixDofDefinition& joint) : scene_(scene), joint_(joint) {}
+    Assembler(Scene& scene, const SixDofDefinition& joint)
+        : scene_(scene), joint_(joint), linear_(joint.position), angular_(joint.rotation)
+    {
+    }
 
     std::vector<ConstraintId> assemble()
     {
+        check_swing();
         try {
-            const Rotations rotations = rotations_of(joint_);
-            lock(rotations);
+            lock();
             for (int axis = 0; axis < 3; ++axis) {
                 if (!is_locked(joint_.position[axis])) drive<DriveAxis::slide>(joint_.position[axis], axis);
+                if (!is_locked(joint_.rotation[axis])) drive<DriveAxis::twist>(joint_.rotation[axis], axis);
             }
-            if (rotations != Rotations::all_locked) drive<DriveAxis::twist>(joint_.twist, 0);
-            if (rotations == Rotations::all_loose && joint_.max_swing < half_turn) {
+            if (joint_.max_swing < half_turn) {
                 ids_.push_back(scene_.add_joint(SwingLimitDefinition{
                     joint_.body_a, joint_.body_b, joint_.frame_a, joint_.frame_b, joint_.max_swing}));
             }
-            if (joint_.locks_swing_about_z) add_locks<LinearLock::none, AngularLock::perpendicular>();
             if (ids_.empty())
                 refuse("SixDofDefinition", "free in every coordinate", "something to hold or to drive");
         } catch (...) {
@@ -76,37 +83,56 @@ class Assembler {
   private:
     Scene& scene_;
     const SixDofDefinition& joint_;
+    Locks linear_, angular_;
     std::vector<ConstraintId> ids_;
 
-    /// `axis`: the one that is not like the other two becomes x of both frames.
-    template <LinearLock linear, AngularLock angular>
-    void add_locks(int axis = 0)
+    void check_swing() const
     {
-        ids_.push_back(scene_.add_joint(FrameJointDefinition<linear, angular>{
-            joint_.body_a, joint_.body_b, turned_to(joint_.frame_a, axis), turned_to(joint_.frame_b, axis),
-            joint_.stiffness}));
+        if (!(joint_.max_swing > 0 && joint_.max_swing <= half_turn * 1.0001F))
+            refuse("SixDofDefinition.max_swing", joint_.max_swing, "> 0 to pi (rad)");
+        if (joint_.max_swing < half_turn && is_locked(joint_.rotation[1]) && is_locked(joint_.rotation[2])) {
+            refuse("SixDofDefinition.max_swing", joint_.max_swing,
+                   "pi where the rotations about y and z are locked: there is no swing to limit");
+        }
     }
 
-    void lock(Rotations rotations)
+    template <LinearLock linear, AngularLock angular>
+    void add_locks(const JointFrame& frame_a, const JointFrame& frame_b)
     {
-        int locked = 0, odd = 0;
-        for (int axis = 0; axis < 3; ++axis) locked += is_locked(joint_.position[axis]) ? 1 : 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (is_locked(joint_.position[axis]) == (locked == 1)) odd = axis;
-        }
-        const bool all = rotations == Rotations::all_locked, swing = rotations == Rotations::twist_loose;
-        // Where one joint has the rows of both, one joint; the axes of a slider's rail and its lock are its own.
-        if (locked == 3 && all) return add_locks<LinearLock::point, AngularLock::all>();
-        if (locked == 3 && swing) return add_locks<LinearLock::point, AngularLock::swing>();
-        if (locked == 2 && all) return add_locks<LinearLock::line, AngularLock::all>(odd);
-        if (locked == 3) {
+        ids_.push_back(scene_.add_joint(FrameJointDefinition<linear, angular>{
+            joint_.body_a, joint_.body_b, frame_a, frame_b, joint_.stiffness}));
+    }
+    /// `axis`: the one that is not like the other two becomes x of both frames.
+    template <LinearLock linear, AngularLock angular>
+    void add_locks(int axis)
+    {
+        add_locks<linear, angular>(turned_to(joint_.frame_a, axis), turned_to(joint_.frame_b, axis));
+    }
+
+    /// Where one joint has the rows of both positions and rotations, one joint.
+    void lock()
+    {
+        const bool all = angular_.count == 3, hinge = angular_.count == 2;
+        if (linear_.count == 3 && all) return add_locks<LinearLock::point, AngularLock::all>(0);
+        if (linear_.count == 3 && hinge)
+            return add_locks<LinearLock::point, AngularLock::swing>(angular_.odd);
+        if (linear_.count == 2 && all) return add_locks<LinearLock::line, AngularLock::all>(linear_.odd);
+        if (linear_.count == 3) {
             ids_.push_back(scene_.add_joint(BallSocketDefinition{
                 joint_.body_a, joint_.body_b, joint_.frame_a.position, joint_.frame_b.position}));
         }
-        if (locked == 2) add_locks<LinearLock::line, AngularLock::none>(odd);
-        if (locked == 1) add_locks<LinearLock::plane, AngularLock::none>(odd);
-        if (all) add_locks<LinearLock::none, AngularLock::all>();
-        if (swing) add_locks<LinearLock::none, AngularLock::swing>();
+        if (linear_.count == 2) add_locks<LinearLock::line, AngularLock::none>(linear_.odd);
+        if (linear_.count == 1) add_locks<LinearLock::plane, AngularLock::none>(linear_.odd);
+        if (all) add_locks<LinearLock::none, AngularLock::all>(0);
+        if (hinge) add_locks<LinearLock::none, AngularLock::swing>(angular_.odd);
+        if (angular_.count != 1) return;
+        // About z: y of b stays across x of a. About y: z of b does. About x: the twist itself is held.
+        if (angular_.odd == 0) drive<DriveAxis::twist>(joint_.rotation[0], 0);
+        if (angular_.odd == 1) {
+            add_locks<LinearLock::none, AngularLock::perpendicular>(turned_about_x(joint_.frame_a),
+                                                                    turned_about_x(joint_.frame_b));
+        }
+        if (angular_.odd == 2) add_locks<LinearLock::none, AngularLock::perpendicular>(0);
     }
 
     template <DriveAxis kind>

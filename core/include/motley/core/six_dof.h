@@ -24,23 +24,18 @@ struct AxisSetup {
     static AxisSetup limited(float lower, float upper) { return {.lower = lower, .upper = upper}; }
 };
 
-/// Frame b in frame a: three positions along the axes of a, a twist about x, and a swing of x away from x.
-///
-/// Positions may each be locked, limited, driven or free. Of rotations: all locked; the swing locked and the twist loose
-/// (a hinge); the swing loose, free or within a cone, and the twist locked, limited, driven or free; or the swing loose
-/// about y alone (with the position locked a universal joint). Two rotations locked about other axes are a hinge about
-/// the third, which the frames can be turned to.
+/// Frame b in frame a: three positions along the axes of a, and three rotations about them, 2 atan2(q_i, q_w) of the
+/// quaternion q from a to b; each locked, limited, driven or free. Beside the limits of single rotations a cone may keep x of
+/// b near x of a: for loose joints it has no corners.
 struct SixDofDefinition {
     BodyId body_a{};
     BodyId body_b{};
     JointFrame frame_a{};
     JointFrame frame_b{};
-    AxisSetup position[3];  ///< along x, y, z of frame a
-    AxisSetup twist;        ///< about x
-    /// rad, 0 to pi: 0 locks the swing, pi leaves it free, between is a cone.
-    float max_swing = 0;
-    bool locks_swing_about_z = false;  ///< y of b stays across x of a; the swing must be loose
-    JointStiffness stiffness{};        ///< of the locked coordinates
+    AxisSetup position[3];          ///< along x, y, z of frame a
+    AxisSetup rotation[3];          ///< about x (the twist), y, z; limits from -pi to pi
+    float max_swing = 3.14159265F;  ///< rad, > 0 to pi: half the opening of the cone; pi: none
+    JointStiffness stiffness{};     ///< of the locked coordinates
 };
 
 /// Adds the joints that a definition needs, and nothing more: locked coordinates become one joint of as many rows (the
