@@ -1,6 +1,7 @@
 // What a scene of the program is: a motley scene, the host's part around it, and the figures that judge it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -76,7 +77,7 @@ struct SceneEntry {
     const char* description;
     std::int64_t agents;  ///< default; bodies where there are no people
     double seconds;       ///< default
-    std::unique_ptr<BenchScene> (*make)(const RunOptions& options);
+    std::function<std::unique_ptr<BenchScene>(const RunOptions& options)> make;
 };
 
 /// The visible list; scenes.cpp.

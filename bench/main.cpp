@@ -8,6 +8,7 @@
 
 #include "demo.h"
 #include "runner.h"
+#include "sweep.h"
 
 namespace {
 
@@ -22,6 +23,14 @@ void write_text(const std::string& path, const std::string& text)
     if (!file) throw std::runtime_error(path + ": cannot be written");
 }
 
+/// Names and values of dials, for CLI11.
+const std::map<std::string, Method> method_names{{"soft_step", Method::soft_step},
+                                                 {"sequential_impulse", Method::sequential_impulse},
+                                                 {"direct", Method::direct}};
+const std::map<std::string, DriftCorrection> drift_names{{"none", DriftCorrection::none},
+                                                         {"baumgarte", DriftCorrection::baumgarte},
+                                                         {"projection", DriftCorrection::projection}};
+
 struct RunCommand {
     std::string scene, isa, json;
     RunOptions options;
@@ -29,23 +38,17 @@ struct RunCommand {
 
     void declare(CLI::App& app)
     {
-        static const std::map<std::string, Method> methods{
-            {"soft_step", Method::soft_step}, {"sequential_impulse", Method::sequential_impulse}};
-        static const std::map<std::string, DriftCorrection> corrections{
-            {"none", DriftCorrection::none},
-            {"baumgarte", DriftCorrection::baumgarte},
-            {"projection", DriftCorrection::projection}};
         app.add_option("scene", scene, "one of `motley list`")->required();
         app.add_option("--agents", options.agents, "people or bodies; default: the scene's")
             ->check(CLI::PositiveNumber);
         app.add_option("--seconds", options.seconds, "simulated time; default: the scene's")
             ->check(CLI::PositiveNumber);
         app.add_option("--dt", options.dt, "s a step")->check(CLI::Range(1e-6, 1.0))->capture_default_str();
-        app.add_option("--method", options.settings.method, "soft_step or sequential_impulse")
-            ->transform(CLI::CheckedTransformer(methods));
+        app.add_option("--method", options.settings.method, "soft_step, sequential_impulse or direct")
+            ->transform(CLI::CheckedTransformer(method_names));
         app.add_option("--drift-correction", options.settings.drift_correction,
                        "sequential_impulse: none, baumgarte or projection")
-            ->transform(CLI::CheckedTransformer(corrections));
+            ->transform(CLI::CheckedTransformer(drift_names));
         app.add_option("--substeps", options.settings.substeps, "substeps a step")
             ->check(CLI::Range(1, 1024))
             ->capture_default_str();
@@ -101,6 +104,62 @@ struct RunCommand {
     }
 };
 
+struct SweepCommand {
+    std::string scene, csv, json;
+    std::vector<std::string> isas;
+    DialGrid grid;
+    SweepOptions options;
+
+    void declare(CLI::App& app)
+    {
+        app.add_option("scene", scene, "one of `motley list`")->required();
+        app.add_option("--agents", options.agents, "people or bodies; default: the scene's")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--seconds", options.seconds, "simulated time that is measured; default: the scene's")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--rounds", options.rounds, "runs of each point, in turn with the others")
+            ->check(CLI::Range(1, 100))
+            ->capture_default_str();
+        app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();
+        app.add_option("--csv", csv, "write every point to this file");
+        app.add_option("--json", json, "write every point to this file, for `motley report`");
+        const auto dial = [&](const char* name, auto& values, const char* what) {
+            app.add_option(name, values, what)->delimiter(',');
+        };
+        app.add_option("--method", grid.methods, "soft_step, sequential_impulse, direct; several: a,b")
+            ->delimiter(',')
+            ->transform(CLI::CheckedTransformer(method_names));
+        app.add_option("--drift-correction", grid.drift_corrections, "none, baumgarte, projection")
+            ->delimiter(',')
+            ->transform(CLI::CheckedTransformer(drift_names));
+        dial("--substeps", grid.substeps, "substeps a step; several: 1,2,4");
+        dial("--iterations", grid.iterations, "sweeps a substep");
+        dial("--relaxations", grid.relaxations, "soft_step: sweeps without bias a substep");
+        dial("--hertz", grid.hertz, "soft_step: stiffness of joints; contacts have half of it");
+        dial("--warm-start", grid.warm_starts, "1, 0 or both: 0,1");
+        dial("--tolerance", grid.tolerances, "m/s at which an island's sweeps end; 0: never");
+        dial("--threads", grid.threads, "threads");
+        dial("--isa", isas, "instruction sets; default: MOTLEY_ISA, else the widest here");
+    }
+    int operator()()
+    {
+        for (const std::string& name : isas) {
+            const std::optional<Isa> isa = isa_from_name(name);
+            if (!isa) {
+                fmt::print(stderr, "motley: --isa is {}; expected scalar, sse2, avx2, avx512 or neon\n",
+                           name);
+                return 2;
+            }
+            grid.isas.push_back(*isa);
+        }
+        const SweepResult result = sweep(scene, grid, options);
+        fmt::print("{}", table_of(result));
+        if (!csv.empty()) write_text(csv, csv_of(result));
+        if (!json.empty()) write_text(json, json_of(result));
+        return 0;
+    }
+};
+
 }  // namespace
 
 int main(int count, char** arguments)
@@ -114,6 +173,14 @@ int main(int count, char** arguments)
         app.add_subcommand("list", "name the scenes and the instruction sets of this machine");
     CLI::App* demo_app = app.add_subcommand(
         "demo", "the main job: the bottleneck, then the crowd, scalar, SIMD and threads side by side");
+    SweepCommand sweep_command, compare_command;
+    compare_command.options.with_peers = true;
+    CLI::App* sweep_app =
+        app.add_subcommand("sweep", "run a scene under a grid of dials: time a step against error");
+    sweep_command.declare(*sweep_app);
+    CLI::App* compare_app =
+        app.add_subcommand("compare", "the same, with every peer that is installed, in one run");
+    compare_command.declare(*compare_app);
     DemoOptions demo;
     demo_app->add_option("--seconds", demo.seconds, "simulated time of each crowd run")
         ->check(CLI::PositiveNumber)
@@ -128,6 +195,8 @@ int main(int count, char** arguments)
     }
     try {
         if (*run_app) return run();
+        if (*sweep_app) return sweep_command();
+        if (*compare_app) return compare_command();
         if (*demo_app) return run_demo(demo);
         if (*list_app) {
             for (const SceneEntry& entry : scene_list())

@@ -117,7 +117,9 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     RunResult result;
     result.scene = entry.name;
     result.isa = isa_name(solver.isa());
-    result.method = options.settings.method == Method::soft_step ? "soft_step" : "sequential_impulse";
+    result.method = options.settings.method == Method::soft_step            ? "soft_step"
+                    : options.settings.method == Method::sequential_impulse ? "sequential_impulse"
+                                                                            : "direct";
     result.threads = solver.threads();
     const auto steps =
         static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));

@@ -1,9 +1,9 @@
-// The list of scenes. To add one: its header in scenes/, and its line here.
+// The list of scenes: crowds here, rigs from rigs.cpp. To add a crowd: its header in scenes/, and its line here.
 #include "bench_scene.h"
 #include "scenes/bottleneck.h"
-#include "scenes/grid.h"
 #include "scenes/open_crowd.h"
 #include "scenes/push.h"
+#include "scenes/rig_scene.h"
 
 namespace motley::bench {
 namespace {
@@ -14,27 +14,34 @@ std::unique_ptr<BenchScene> make(const RunOptions& options)
     return std::make_unique<S>(options);
 }
 
-constexpr SceneEntry entries[] = {
-    {"bottleneck", "75 people through a 0.5 m door, entering where and when a real experiment has them", 75,
-     90, make<Bottleneck>},
-    {"crowd", "N people at 5 per m2, each walking from goal to goal", 10000, 10, make<OpenCrowd>},
-    {"push", "a packed slab leans on a wall with 50 N each: 4.5 kN/m", 1800, 10, make<Push>},
-    {"grid", "an N x N net of bodies tied by ball-sockets, hung by its top row (N = square root of --agents)",
-     10000, 5, make<Grid>},
-    {"chains", "chains of 20 bodies tied by ball-sockets, starting level (N / 20 chains)", 20000, 5,
-     make<Chains>},
-};
+std::vector<SceneEntry> all_scenes()
+{
+    std::vector<SceneEntry> all{
+        {"bottleneck", "75 people through a 0.5 m door, entering where and when a real experiment has them",
+         75, 90, make<Bottleneck>},
+        {"crowd", "N people at 5 per m2, each walking from goal to goal", 10000, 10, make<OpenCrowd>},
+        {"push", "a packed slab leans on a wall with 50 N each: 4.5 kN/m", 1800, 10, make<Push>},
+    };
+    for (const RigEntry& rig : rig_list()) {
+        all.push_back({rig.name, rig.description, rig.bodies, rig.warm_up + rig.seconds,
+                       [&rig](const RunOptions& options) -> std::unique_ptr<BenchScene> {
+                           return std::make_unique<RigScene>(rig, options);
+                       }});
+    }
+    return all;
+}
 
 }  // namespace
 
 std::span<const SceneEntry> scene_list()
 {
-    return entries;
+    static const std::vector<SceneEntry> all = all_scenes();
+    return all;
 }
 
 const SceneEntry* find_scene(const std::string& name)
 {
-    for (const SceneEntry& entry : entries) {
+    for (const SceneEntry& entry : scene_list()) {
         if (name == entry.name) return &entry;
     }
     return nullptr;

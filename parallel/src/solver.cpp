@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 
+#include "convergence.h"
 #include "layout.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/step_constants.h"
@@ -50,6 +52,21 @@ class StageClock {
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+void measure_start(const Scene& scene, std::span<const Contact> contacts, StepMeasures& measures)
+{
+    measures.before = scene.errors();
+    double squares = 0;
+    std::int64_t overlapping = 0;
+    for (const Contact& contact : contacts) {
+        if (contact.separation >= 0) continue;
+        const auto depth = -static_cast<double>(contact.separation);
+        squares += depth * depth;
+        measures.penetration_max = std::max(measures.penetration_max, depth);
+        ++overlapping;
+    }
+    if (overlapping > 0) measures.penetration_rms = std::sqrt(squares / static_cast<double>(overlapping));
+}
+
 }  // namespace
 
 struct Solver::Impl {
@@ -58,6 +75,7 @@ struct Solver::Impl {
     std::unique_ptr<Executor> own_executor;
     StageRunner runner;
     Layout layout;
+    Convergence convergence;
 
     Impl(const SolverSettings& s, Isa i, Executor* host, int threads)
         : settings(s),
@@ -74,11 +92,18 @@ struct Solver::Impl {
     void transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel);
     void integrate_velocities(BodyKernels::Move BodyKernels::*kernel);
     void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel);
+    int iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations);
+    void measure_residual(StepReport& report);
     void integrate_positions();
     void move_bodies(Scene& scene, StepReport& report);
     void solve_substeps(Scene& scene, StepReport& report);
     void solve_directly(Scene& scene, float dt, std::span<const Contact> contacts, StepReport& report);
     void finish(Scene& scene, StepReport& report);
+    /// Whether sweeps are to have room for residuals.
+    [[nodiscard]] bool wants_residuals() const
+    {
+        return settings.method != Method::direct && (settings.measures || settings.tolerance > 0);
+    }
 };
 
 Solver::Solver(const SolverSettings& settings, const SolverOptions& options)
@@ -131,11 +156,13 @@ StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contact
             if (!report.error.empty()) return;
             impl_->layout.point_at(scene, step_constants(impl_->settings, dt, scene.last_substep));
             clock.charge(Stage::colour);
+            if (impl_->settings.measures) measure_start(scene, contacts, report.measures);
             if (impl_->settings.method == Method::direct) {
                 impl_->solve_directly(scene, dt, contacts, report);
             } else {
                 impl_->solve_substeps(scene, report);
             }
+            if (impl_->settings.measures) report.measures.after = scene.errors();
         });
     } catch (const std::exception& error) {
         report.error = error.what();
@@ -151,6 +178,8 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     const bool projects = !soft && settings.drift_correction == DriftCorrection::projection;
     StageClock clock(report);
 
+    if (settings.tolerance > 0)
+        convergence.find_islands(layout.context, layout.joint_placements(), layout.contact_placements());
     transfer(&ConstraintKernels::prepare);
     clock.charge(Stage::prepare);
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -160,20 +189,20 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
         clock.charge(Stage::integrate_velocities);
         if (!replays) sweep(&ConstraintKernels::warm_start);
         clock.charge(Stage::warm_start);
-        for (int i = 0; i < settings.iterations; ++i) sweep(&ConstraintKernels::solve);
+        report.sweeps += iterate(&ConstraintKernels::solve, settings.iterations);
+        if (substep + 1 == settings.substeps) measure_residual(report);
         clock.charge(Stage::solve);
         integrate_positions();
         for (int i = 0; projects && i < settings.projections; ++i) sweep(&ConstraintKernels::project);
         clock.charge(Stage::integrate_positions);
-        for (int i = 0; soft && i < settings.relaxations; ++i) sweep(&ConstraintKernels::relax);
+        if (soft) report.sweeps += iterate(&ConstraintKernels::relax, settings.relaxations);
         clock.charge(Stage::relax);
     }
     sweep(&ConstraintKernels::restitute);
     clock.charge(Stage::restitution);
     transfer(&ConstraintKernels::store);
     finish(scene, report);
-    report.sweeps = settings.substeps * (1 + settings.iterations + (soft ? settings.relaxations : 0) +
-                                         (projects ? settings.projections : 0));
+    report.sweeps += settings.substeps * (1 + (projects ? settings.projections : 0));
     clock.charge(Stage::store);
 }
 
@@ -232,7 +261,7 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
     if (!admitted) return ContactIntake::repeated_key(contacts);
     layout.contacts.open(layout.kernels());
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
-    layout.cut(scene, contacts);
+    layout.cut(scene, contacts, wants_residuals());
     return {};
 }
 
@@ -253,7 +282,17 @@ void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel)
 {
     const auto run_chunk = [&](const SweepChunk& chunk) {
         const ConstraintKernels::Sweep run = chunk.kernels->*kernel;
-        if (run != nullptr) run(layout.context, chunk.streams, chunk.begin, chunk.end);
+        if (run == nullptr) return;
+        if (layout.context.measure != Measure::while_solving) {
+            run(layout.context, chunk.streams, chunk.begin, chunk.end);
+            return;
+        }
+        for (std::int32_t begin = chunk.begin, end = begin; begin < chunk.end; begin = end) {
+            while (begin < chunk.end && chunk.finished[begin] != 0) ++begin;
+            end = begin;
+            while (end < chunk.end && chunk.finished[end] == 0) ++end;
+            if (begin < end) run(layout.context, chunk.streams, begin, end);
+        }
     };
     // The overflow first and in order, so that the colours have the last word.
     for (const SweepChunk& chunk : layout.sweeps(overflow_colour)) run_chunk(chunk);
@@ -262,6 +301,41 @@ void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel)
         runner.run(static_cast<std::int64_t>(chunks.size()),
                    [&](std::int64_t i) { run_chunk(chunks[static_cast<std::size_t>(i)]); });
     }
+}
+
+/// Sweeps `iterations` times, or until every island is within the tolerance. Returns how many sweeps there were.
+int Solver::Impl::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations)
+{
+    if (settings.tolerance == 0) {
+        for (int i = 0; i < iterations; ++i) sweep(kernel);
+        return iterations;
+    }
+    layout.context.measure = Measure::while_solving;
+    convergence.start_over(layout.sweeps());
+    int done = 0;
+    for (; done < iterations && convergence.unfinished() > 0; ++done) {
+        sweep(kernel);
+        convergence.judge(layout.sweeps(), settings.tolerance);
+    }
+    layout.context.measure = Measure::nothing;
+    return done;
+}
+
+/// What is left of the constraints as the bodies are now.
+void Solver::Impl::measure_residual(StepReport& report)
+{
+    report.islands = convergence.islands();
+    report.islands_above_tolerance = convergence.unfinished();
+    if (!settings.measures) return;
+    convergence.start_over(layout.sweeps());
+    layout.context.measure = Measure::without_solving;
+    sweep(&ConstraintKernels::solve);
+    layout.context.measure = Measure::nothing;
+    const ResidualSum sum = sum_residuals(layout.sweeps());
+    const auto constraints = static_cast<double>(std::max<std::int64_t>(1, sum.constraints));
+    report.measures.residual_norm = std::sqrt(sum.energy);
+    report.measures.residual_rms = std::sqrt(sum.squares / constraints);
+    report.measures.residual_max = sum.largest;
 }
 
 void Solver::Impl::integrate_velocities(BodyKernels::Move BodyKernels::*kernel)

@@ -170,24 +170,37 @@ void BatchSet::fill(std::int64_t chunk)
     }
 }
 
-BlockStreams BatchSet::Pool::streams()
+BlockStreams BatchSet::Pool::streams(bool measures)
 {
-    return {bodies.data(), counts.data(), who.data(), rows.data(), substep_rows.data(), impulses.data()};
+    return {bodies.data(),
+            counts.data(),
+            who.data(),
+            rows.data(),
+            substep_rows.data(),
+            impulses.data(),
+            measures ? residuals.data() : nullptr};
 }
 
-void BatchSet::cut(const KernelTable& table, SweepLists& sweeps, TransferList& transfers)
+void BatchSet::cut(const KernelTable& table, bool measures, SweepLists& sweeps, TransferList& transfers)
 {
     std::int32_t tiles = 1;
     for (std::size_t p = 0; p < pools_.size(); ++p) {
         Pool& pool = pools_[p];
         if (pool.block_count() == 0) continue;
-        const ConstraintKernels& kernels = table.constraints[static_cast<std::size_t>(first_class_) + p];
+        const int constraint_class = first_class_ + static_cast<int>(p);
+        const ConstraintKernels& kernels = table.constraints[constraint_class];
+        if (measures) {
+            grow(pool.residuals, static_cast<std::size_t>(pool.block_count()) * 2 * block_lanes);
+            grow(pool.finished, static_cast<std::size_t>(pool.block_count()));
+        }
         for (std::size_t colour = 0; colour < colours; ++colour) {
             const std::int32_t end = pool.first_block[colour + 1];
             tiles = std::max(tiles, (end - pool.first_block[colour]) / blocks_per_tile);
             for (std::int32_t begin = pool.first_block[colour]; begin < end; begin += blocks_per_chunk) {
-                sweeps[colour].push_back(
-                    {&kernels, pool.streams(), begin, std::min(begin + blocks_per_chunk, end)});
+                sweeps[colour].push_back({&kernels, pool.streams(measures), begin,
+                                          std::min(begin + blocks_per_chunk, end),
+                                          kind_a_of(constraint_class), kind_b_of(constraint_class),
+                                          measures ? pool.finished.data() : nullptr});
             }
         }
     }
@@ -203,7 +216,7 @@ void BatchSet::cut(const KernelTable& table, SweepLists& sweeps, TransferList& t
                 const auto begin = first + static_cast<std::int32_t>(blocks * tile / tiles);
                 const auto end = first + static_cast<std::int32_t>(blocks * (tile + 1) / tiles);
                 if (begin == end) continue;
-                transfers.parts.push_back({&table.constraints[constraint_class], pool.streams(),
+                transfers.parts.push_back({&table.constraints[constraint_class], pool.streams(false),
                                            constraint_class / (body_kind_count * body_kind_count), begin,
                                            end});
             }

@@ -29,6 +29,9 @@ struct SweepChunk {
     const ConstraintKernels* kernels;
     BlockStreams streams;
     std::int32_t begin, end;
+    BodyKind kind_a, kind_b;
+    std::uint8_t*
+        finished;  ///< by block: 1 when its islands want no more sweeps; null unless residuals are measured
 };
 
 /// The unit of work of prepare and store: a few blocks of each class and colour, from about the same stretch of the
@@ -64,8 +67,9 @@ class BatchSet {
     /// Puts the constraints of a chunk into their lanes. Chunks may run on different threads.
     void fill(std::int64_t chunk);
 
-    /// Appends this set's chunks to the lists. Pointers in them stay good until the next begin().
-    void cut(const KernelTable& kernels, SweepLists& sweeps, TransferList& transfers);
+    /// Appends this set's chunks to the lists, with room for residuals if they are to be measured. Pointers in them
+    /// stay good until the next begin().
+    void cut(const KernelTable& kernels, bool measures, SweepLists& sweeps, TransferList& transfers);
 
     /// Blocks, constraints, overflow and streamed floats, for the report.
     struct Count {
@@ -74,6 +78,7 @@ class BatchSet {
     };
     [[nodiscard]] Count count(const KernelTable& kernels) const;
     [[nodiscard]] bool is_empty() const { return placements_.empty(); }
+    [[nodiscard]] std::span<const Placement> placements() const { return placements_; }
 
   private:
     static constexpr int colours = parallel_colours + 1;
@@ -82,11 +87,13 @@ class BatchSet {
         AlignedVector<BlockConstraints> who;
         AlignedVector<std::uint8_t> counts;
         AlignedVector<float> rows, substep_rows, impulses;
+        AlignedVector<float> residuals;                            ///< only when they are measured
+        AlignedVector<std::uint8_t> finished;                      ///< likewise
         std::array<std::int32_t, colours + 1> first_block{};       ///< of each colour, and one past the last
         std::array<std::int32_t, parallel_colours> constraints{};  ///< of each colour
         std::int64_t overflow = 0;
         [[nodiscard]] std::int32_t block_count() const { return first_block[colours]; }
-        [[nodiscard]] BlockStreams streams();
+        [[nodiscard]] BlockStreams streams(bool measures);
         void make_room(std::int32_t blocks);
         void set_lane(std::size_t block, int lane, const Placement& placement)
         {

@@ -37,6 +37,7 @@ struct BlockStreams {
     float* rows = nullptr;                          ///< constant through a step
     float* substep_rows = nullptr;                  ///< made by warm_start each substep
     float* impulses = nullptr;
+    float* residuals = nullptr;  ///< energies and speeds of LaneResidual; null unless they are measured
 };
 
 /// Where definitions and remembered impulses of a type lie, an entry a constraint.
@@ -64,8 +65,16 @@ struct BodyArrays {
     std::int32_t size = 0;
 };
 
+/// Whether a sweep of solve or relax notes each constraint's LaneResidual.
+enum class Measure {
+    nothing,
+    while_solving,    ///< what the sweep found to do
+    without_solving,  ///< what a sweep would do to the bodies as they are: changes nothing
+};
+
 struct KernelContext {
     StepConstants step;
+    Measure measure = Measure::nothing;
     BodyArrays bodies[body_kind_count];
 };
 
@@ -99,6 +108,14 @@ struct BodyKernels {
 constexpr int class_of(int type, BodyKind a, BodyKind b)
 {
     return (type * body_kind_count + static_cast<int>(a)) * body_kind_count + static_cast<int>(b);
+}
+constexpr BodyKind kind_a_of(int constraint_class)
+{
+    return static_cast<BodyKind>(constraint_class / body_kind_count % body_kind_count);
+}
+constexpr BodyKind kind_b_of(int constraint_class)
+{
+    return static_cast<BodyKind>(constraint_class % body_kind_count);
 }
 inline constexpr int class_count = constraint_type_count * body_kind_count * body_kind_count;
 

@@ -156,6 +156,7 @@ struct Kernels {
     static constexpr int row_stride = fields_of<Row> * block_lanes;
     static constexpr int substep_stride = fields_of<Substep> * block_lanes;
     static constexpr int impulse_stride = fields_of<Impulse> * block_lanes;
+    static constexpr int residual_stride = fields_of<LaneResidual<Lanes>> * block_lanes;
 
     /// One bundle of a block: its bodies, and where its lanes lie in the streams.
     struct Bundle {
@@ -167,6 +168,7 @@ struct Kernels {
         float* row;
         float* substep;
         float* impulse;
+        float* residual;
         int count;  ///< lanes of this bundle that are not padding
         [[nodiscard]] A load_a() const { return load_body(arrays_a, rows_a, static_cast<A*>(nullptr)); }
         [[nodiscard]] B load_b() const { return load_body(arrays_b, rows_b, static_cast<B*>(nullptr)); }
@@ -180,12 +182,15 @@ struct Kernels {
         const BlockBodies& bodies = streams.bodies[block];
         const int count = streams.counts[block];
         for (int lane = 0; lane < count; lane += Lanes_width) {
-            work(Bundle{context.bodies[static_cast<int>(kind_a)], context.bodies[static_cast<int>(kind_b)],
-                        bodies.a + lane, bodies.b + lane, streams.constraints[block].lane + lane,
-                        streams.rows + block * row_stride + lane,
-                        // A stream of nothing is null, and stays so.
-                        substep_stride == 0 ? nullptr : streams.substep_rows + block * substep_stride + lane,
-                        streams.impulses + block * impulse_stride + lane, count - lane});
+            work(Bundle{
+                context.bodies[static_cast<int>(kind_a)], context.bodies[static_cast<int>(kind_b)],
+                bodies.a + lane, bodies.b + lane, streams.constraints[block].lane + lane,
+                streams.rows + block * row_stride + lane,
+                // A stream of nothing is null, and stays so.
+                substep_stride == 0 ? nullptr : streams.substep_rows + block * substep_stride + lane,
+                streams.impulses + block * impulse_stride + lane,
+                streams.residuals == nullptr ? nullptr : streams.residuals + block * residual_stride + lane,
+                count - lane});
         }
     }
 
@@ -276,6 +281,11 @@ struct Kernels {
                 const auto row = load_row<Row>(bundle.row);
                 Type::template solve<relax, Lanes>(context.step, swept<Type::recomputes_each_substep>(row),
                                                    load_row<Substep>(bundle.substep), impulse, a, b);
+                if (context.measure != Measure::nothing) [[unlikely]] {
+                    // The bodies are loaded again: kept from above, they would cost every sweep registers.
+                    store_row(residual_of(bundle.load_a(), a, bundle.load_b(), b), bundle.residual);
+                    if (context.measure == Measure::without_solving) return;
+                }
                 store_row(impulse, bundle.impulse);
                 store_velocity(bundle.arrays_a, bundle.rows_a, a, bundle.count);
                 store_velocity(bundle.arrays_b, bundle.rows_b, b, bundle.count);

@@ -9,3 +9,4 @@
 #include "motley/core/constraint_types.h"
 #include "motley/core/joint_pose.h"
 #include "motley/core/lane_body.h"
+#include "motley/core/lane_residual.h"

@@ -29,7 +29,7 @@ class Layout {
     /// ...then the contacts are sorted into blocks (count, open, fill)...
     BatchSet contacts{0, contact_type_count};
     /// ...and the blocks are cut into work.
-    void cut(Scene& scene, std::span<const Contact> list);
+    void cut(Scene& scene, std::span<const Contact> list, bool measures);
 
     /// The step's numbers and the rows of the bodies.
     KernelContext context;
@@ -39,6 +39,9 @@ class Layout {
     {
         return sweeps_[static_cast<std::size_t>(colour)];
     }
+    [[nodiscard]] const SweepLists& sweeps() const { return sweeps_; }
+    [[nodiscard]] std::span<const Placement> joint_placements() const { return joint_placements_; }
+    [[nodiscard]] std::span<const Placement> contact_placements() const { return contacts.placements(); }
     [[nodiscard]] const TransferList& transfers() const { return transfers_; }
     [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
     [[nodiscard]] const KernelTable& kernels() const { return kernels_; }

@@ -50,11 +50,13 @@ namespace motley {
 namespace {
 
 /// Allocations of 20 steps after 200 to warm up.
-long allocations_of_warm_steps(int threads)
+long allocations_of_warm_steps(int threads, float tolerance = 0)
 {
     testing::MixedScene mixed;
     SolverSettings settings;
     settings.gravity = {0, -9.81F, 0};
+    settings.tolerance = tolerance;
+    settings.measures = tolerance > 0;
     Solver solver(settings, {.threads = threads});
     for (int step = 0; step < 200; ++step) solver.step(mixed.scene, 1.0F / 60, mixed.contacts());
     const std::vector<Contact> contacts = mixed.contacts();
@@ -77,6 +79,10 @@ TEST(Allocation, AWarmStepOnOneThreadAllocatesNothing)
 TEST(Allocation, AWarmStepOnTwoThreadsAllocatesNothing)
 {
     EXPECT_EQ(allocations_of_warm_steps(2), 0);
+}
+TEST(Allocation, AWarmStepThatMeasuresAndStopsIslandsAllocatesNothing)
+{
+    EXPECT_EQ(allocations_of_warm_steps(2, 1e-3F), 0);
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice,
     for (std::int64_t chunk = set.chunk_count(); chunk-- > 0;) set.fill(chunk);  // any order will do
     SweepLists sweeps;
     TransferList transfers;
-    set.cut(kernels, sweeps, transfers);
+    set.cut(kernels, false, sweeps, transfers);
     std::set<std::int32_t> seen;
     for (const auto& chunks : sweeps) {
         for (const SweepChunk& chunk : chunks) {

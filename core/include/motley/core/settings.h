@@ -28,10 +28,16 @@ enum class DriftCorrection {
 /// Settings of a step. A default-constructed value is a sensible crowd at 60 Hz.
 struct SolverSettings {
     Method method = Method::soft_step;
-    int substeps = 4;              ///< 1 to 1024; position and velocity integrations a step
-    int iterations = 1;            ///< 1 to 10000; sweeps a substep (sequential_impulse wants 8 or more)
-    int relaxations = 1;           ///< 0 to 10000; soft_step: sweeps without bias a substep
-    bool warm_start = true;        ///< start from the impulses of the step before
+    int substeps = 4;        ///< 1 to 1024; position and velocity integrations a step
+    int iterations = 1;      ///< 1 to 10000; sweeps a substep (sequential_impulse wants 8 or more)
+    int relaxations = 1;     ///< 0 to 10000; soft_step: sweeps without bias a substep
+    bool warm_start = true;  ///< start from the impulses of the step before
+    /// m/s, >= 0. Above 0 an island gets no more sweeps of a substep once none of its constraints would change a
+    /// speed by more (StepMeasures::residual_max); `iterations` and `relaxations` are then the most. Same bits
+    /// for any threads and instruction set; costs about half a sweep more a sweep, and finding the islands.
+    float tolerance = 0;
+    bool measures =
+        false;  ///< fill StepReport::measures; costs about two sweeps a step, and reading every joint twice
     Vec3<float> gravity{0, 0, 0};  ///< m/s2; planar bodies ignore z
 
     float contact_hertz = 30;          ///< soft_step: stiffness of contacts, > 0, capped at 0.25 / substep

@@ -31,6 +31,29 @@ enum class StepStatus {
     refused,  ///< bad input: nothing was changed; `error` says why
 };
 
+/// The errors of a scene's positions, in double from the definitions, not from what the solver believes.
+struct SceneErrors {
+    double joint_separation_rms = 0;  ///< m, over all joints
+    double joint_separation_max = 0;
+    double joint_angle_rms = 0;  ///< rad, over all joints
+    double joint_angle_max = 0;
+    double kinetic_energy = 0;       ///< J
+    double momentum[3] = {0, 0, 0};  ///< kg m/s
+};
+
+/// How well a step solved what it set out to solve. The same bits for any threads and instruction set.
+struct StepMeasures {
+    /// What is left of J v + bias, limits and friction cones included, after the last substep's sweeps of `solve`:
+    /// sqrt(sum of r^T K^-1 r) over all constraints, in sqrt(J). Zero exactly when every equation and every
+    /// complementarity condition holds; see lane_residual.h.
+    double residual_norm = 0;
+    double residual_rms = 0;     ///< m/s, over the constraints: sqrt(r^T K^-1 r (1/m_a + 1/m_b))
+    double residual_max = 0;     ///< m/s
+    double penetration_rms = 0;  ///< m, over the host's contacts that overlap, as the step began
+    double penetration_max = 0;
+    SceneErrors before, after;  ///< of the step: their differences are the changes of energy and momentum
+};
+
 /// Returned by Solver::step. Counting is free; times cost two clock reads a stage.
 struct StepReport {
     StepStatus status = StepStatus::done;
@@ -44,6 +67,9 @@ struct StepReport {
     double lane_occupancy = 0;        ///< constraints / (16 blocks); 0 without constraints
     double bytes_per_constraint = 0;  ///< streamed by one sweep of solve: rows, impulses and indices
     std::int64_t sweeps = 0;          ///< sweeps over all constraints: warm starts, solves and relaxations
+    std::int64_t islands = 0;         ///< found when SolverSettings::tolerance is above 0
+    std::int64_t islands_above_tolerance = 0;  ///< after the last sweep of solve that was allowed
+    StepMeasures measures;                     ///< only with SolverSettings::measures
     double direct_violation =
         0;  ///< Method::direct: largest left of its equations and inequalities, m/s or rad/s
     std::int64_t bodies_contained = 0;  ///< bodies frozen in this step because their state was not finite
@@ -56,16 +82,6 @@ struct StepReport {
         for (const double s : seconds) sum += s;
         return sum;
     }
-};
-
-/// The errors of a scene's positions, in double from the definitions, not from what the solver believes.
-struct SceneErrors {
-    double joint_separation_rms = 0;  ///< m, over all joints
-    double joint_separation_max = 0;
-    double joint_angle_rms = 0;  ///< rad, over all joints
-    double joint_angle_max = 0;
-    double kinetic_energy = 0;       ///< J
-    double momentum[3] = {0, 0, 0};  ///< kg m/s
 };
 
 }  // namespace motley

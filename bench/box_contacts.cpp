@@ -1,0 +1,103 @@
+#include "box_contacts.h"
+
+#include <cmath>
+
+namespace motley::bench {
+namespace {
+
+constexpr double margin = 0.02;  ///< m: gaps up to this are contacts to come
+constexpr float friction = 0.6F;
+
+Vec3<double> corner_of(const RigBody& box, int corner)
+{
+    const Vec3<double> h = convert<double>(box.half_extents);
+    return {(corner & 1) != 0 ? h.x : -h.x, (corner & 2) != 0 ? h.y : -h.y, (corner & 4) != 0 ? h.z : -h.z};
+}
+
+}  // namespace
+
+BoxContacts::BoxContacts(const Rig& rig, std::vector<BodyId> bodies) : rig_(rig), bodies_(std::move(bodies))
+{
+    for (int i = 0; i < static_cast<int>(rig.bodies.size()); ++i) {
+        for (int j = i + 1; j < static_cast<int>(rig.bodies.size()); ++j) {
+            const RigBody& a = rig.bodies[static_cast<std::size_t>(i)];
+            const RigBody& b = rig.bodies[static_cast<std::size_t>(j)];
+            const Vec3<double> d = b.position - a.position;
+            const Vec3<double> reach = convert<double>(a.half_extents + b.half_extents);
+            if (std::abs(d.x) < reach.x + 0.1 && std::abs(d.y) < reach.y + 0.1 &&
+                std::abs(d.z) < reach.z + 0.1)
+                pairs_.emplace_back(i, j);
+        }
+    }
+}
+
+void BoxContacts::add(BodyId a, BodyId b, Vec3<double> centre_a, Vec3<double> centre_b, Vec3<double> point,
+                      Vec3<float> normal, double separation, std::uint64_t key)
+{
+    Contact contact;
+    contact.body_a = a;
+    contact.body_b = b;
+    contact.key = key;
+    contact.normal = normal;
+    contact.separation = static_cast<float>(separation);
+    contact.arm_a = convert<float>(point - centre_a);
+    contact.arm_b = convert<float>(point - centre_b);
+    contact.friction = friction;
+    contacts_.push_back(contact);
+}
+
+/// Corners of `box` in the nearest face of `other`.
+void BoxContacts::corners_in_face(std::span<const RigPose> poses, int box, int other, std::uint64_t key)
+{
+    const auto i = static_cast<std::size_t>(box), j = static_cast<std::size_t>(other);
+    const Vec3<double> h = convert<double>(rig_.bodies[j].half_extents);
+    const Quat<double>& turn = poses[j].orientation;
+    // The face that looks most towards the box.
+    const Vec3<double> towards = rotate(conjugate(turn), poses[i].position - poses[j].position);
+    const Vec3<double> reach{std::abs(towards.x) / h.x, std::abs(towards.y) / h.y, std::abs(towards.z) / h.z};
+    const int axis = reach.y >= reach.x && reach.y >= reach.z ? 1 : reach.x >= reach.z ? 0 : 2;
+    const auto part = [](const Vec3<double>& v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; };
+    const double side = part(towards, axis) > 0 ? 1 : -1;
+    Vec3<double> face{};
+    (axis == 0 ? face.x : axis == 1 ? face.y : face.z) = side;
+    const Vec3<float> normal = convert<float>(rotate(turn, face));
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3<double> world =
+            poses[i].position + rotate(poses[i].orientation, corner_of(rig_.bodies[i], corner));
+        const Vec3<double> local = rotate(conjugate(turn), world - poses[j].position);
+        const double separation = side * part(local, axis) - part(h, axis);
+        if (separation > margin || separation < -0.25) continue;
+        bool inside = true;
+        for (int k = 0; k < 3; ++k)
+            inside = inside && (k == axis || std::abs(part(local, k)) <= part(h, k) + 1e-4);
+        if (inside)
+            add(bodies_[j], bodies_[i], poses[j].position, poses[i].position, world, normal, separation,
+                key * 8 + static_cast<std::uint64_t>(corner));
+    }
+}
+
+std::span<const Contact> BoxContacts::find(std::span<const RigPose> poses, BodyId ground)
+{
+    contacts_.clear();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (poses[i].position.y > 2) continue;
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3<double> world =
+                poses[i].position + rotate(poses[i].orientation, corner_of(rig_.bodies[i], corner));
+            if (world.y > margin) continue;
+            add(ground, bodies_[i], {0, 0, 0}, poses[i].position, world, {0, 1, 0}, world.y,
+                i * 8 + static_cast<std::uint64_t>(corner));
+        }
+    }
+    const std::uint64_t floor_keys = poses.size();
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        // A box whose four corners lie in the face needs none of the other's.
+        const std::size_t before = contacts_.size();
+        corners_in_face(poses, pairs_[p].second, pairs_[p].first, floor_keys + 2 * p);
+        if (contacts_.size() - before < 4)
+            corners_in_face(poses, pairs_[p].first, pairs_[p].second, floor_keys + 2 * p + 1);
+    }
+    return contacts_;
+}
+
+}  // namespace motley::bench

@@ -1,0 +1,32 @@
+// Contacts of boxes that stand on each other or on a floor: corners of one in a face of the other. Enough for stacks,
+// whose boxes turn little; not a general collision detection, which is the host's.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "motley/motley.h"
+#include "rig.h"
+
+namespace motley::bench {
+
+class BoxContacts {
+  public:
+    /// Boxes that lie near each other when the rig starts are looked at in every step.
+    BoxContacts(const Rig& rig, std::vector<BodyId> bodies);
+    /// The contacts of boxes in these poses. `ground` is the floor at y = 0.
+    std::span<const Contact> find(std::span<const RigPose> poses, BodyId ground);
+
+  private:
+    const Rig& rig_;
+    std::vector<BodyId> bodies_;
+    std::vector<std::pair<int, int>> pairs_;
+    std::vector<Contact> contacts_;
+
+    void add(BodyId a, BodyId b, Vec3<double> centre_a, Vec3<double> centre_b, Vec3<double> point,
+             Vec3<float> normal, double separation, std::uint64_t key);
+    void corners_in_face(std::span<const RigPose> poses, int box, int other, std::uint64_t key);
+};
+
+}  // namespace motley::bench

@@ -1,0 +1,75 @@
+// How far a constraint is from its solution, from what solving it once more does to its bodies.
+//
+// Solving a constraint changes its impulse by d lambda = -K^-1 r, where r is what is left of its equations and
+// inequalities, softness and limits included, and its bodies' velocities by dv = M^-1 J^T d lambda. So
+//     dv^T M dv = d lambda^T K d lambda = r^T K^-1 r,
+// the M^-1 norm of the residual, whatever the type of the constraint: nothing has to be written once a type. Where a
+// limit or a friction cone holds the impulse back, d lambda is the projected residual: zero exactly when the
+// complementarity conditions hold.
+#pragma once
+
+#include "motley/core/lane_body.h"
+
+namespace motley {
+
+template <class Real>
+struct LaneResidual {
+    Real energy;  ///< J, dv^T M dv
+    Real speed;   ///< m/s, sqrt(energy (1/m_a + 1/m_b)): |r| itself where the constraint acts on the centres
+};
+
+/// Delta v^T M Delta v of one body.
+template <class Real>
+Real energy_of_change(const LaneBody<Real, BodyKind::particle>& before,
+                      const LaneBody<Real, BodyKind::particle>& after)
+{
+    const Vec3<Real> change = after.linear - before.linear;
+    return inverse_or_zero(after.inverse_mass) * dot(change, change);
+}
+template <class Real>
+Real energy_of_change(const LaneBody<Real, BodyKind::planar>& before,
+                      const LaneBody<Real, BodyKind::planar>& after)
+{
+    const Vec2<Real> change = after.linear - before.linear;
+    const Real turn = after.yaw_rate - before.yaw_rate;
+    return inverse_or_zero(after.inverse_mass) * dot(change, change) +
+           inverse_or_zero(after.inverse_inertia) * turn * turn;
+}
+template <class Real>
+Real energy_of_change(const LaneBody<Real, BodyKind::rigid>& before,
+                      const LaneBody<Real, BodyKind::rigid>& after)
+{
+    const Vec3<Real> change = after.linear - before.linear, turn = after.angular - before.angular;
+    // Scaled by its trace first: a determinant in float leaves its range at inertias of 1e10 kg m2.
+    const Sym3<Real>& i = after.inverse_inertia;
+    const Real scale = inverse_or_zero(i.xx + i.yy + i.zz);
+    const Sym3<Real> scaled{scale * i.xx, scale * i.xy, scale * i.xz,
+                            scale * i.yy, scale * i.yz, scale * i.zz};
+    return inverse_or_zero(after.inverse_mass) * dot(change, change) +
+           scale * dot(turn, inverse(scaled) * turn);
+}
+template <class Real>
+Real energy_of_change(const LaneBody<Real, BodyKind::fixed>&, const LaneBody<Real, BodyKind::fixed>&)
+{
+    return Real(0);
+}
+
+template <class Real, BodyKind kind>
+Real inverse_mass_of(const LaneBody<Real, kind>& body)
+{
+    if constexpr (kind == BodyKind::fixed) {
+        return Real(0);
+    } else {
+        return body.inverse_mass;
+    }
+}
+
+template <class Real, BodyKind kind_a, BodyKind kind_b>
+LaneResidual<Real> residual_of(const LaneBody<Real, kind_a>& a_before, const LaneBody<Real, kind_a>& a,
+                               const LaneBody<Real, kind_b>& b_before, const LaneBody<Real, kind_b>& b)
+{
+    const Real energy = maximum(energy_of_change(a_before, a) + energy_of_change(b_before, b), Real(0));
+    return {energy, square_root(energy * (inverse_mass_of<Real>(a) + inverse_mass_of<Real>(b)))};
+}
+
+}  // namespace motley

@@ -1,0 +1,51 @@
+// Which islands still want sweeps, and what is left of the whole.
+//
+// An island is what constraints tie together, fixed bodies not counted. Nothing passes between islands, so one that is
+// solved well enough can be left alone while others go on. A block is left alone when all islands in it are.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "batches.h"
+
+namespace motley {
+
+/// Sums over the constraints, in the order of the blocks, which does not depend on threads or lanes.
+struct ResidualSum {
+    double energy = 0;   ///< J
+    double squares = 0;  ///< m2/s2
+    double largest = 0;  ///< m/s
+    std::int64_t constraints = 0;
+};
+/// Of what a measuring sweep left.
+ResidualSum sum_residuals(const SweepLists& sweeps);
+
+class Convergence {
+  public:
+    /// Finds the islands of a step.
+    void find_islands(const KernelContext& context, std::span<const Placement> joints,
+                      std::span<const Placement> contacts);
+    /// Every island wants sweeps again: another substep.
+    void start_over(const SweepLists& sweeps);
+    /// After a measuring sweep: finishes the islands whose residuals are all at most `tolerance`.
+    void judge(const SweepLists& sweeps, float tolerance);
+
+    [[nodiscard]] std::int64_t islands() const { return islands_; }
+    [[nodiscard]] std::int64_t unfinished() const { return unfinished_; }
+
+  private:
+    static constexpr int moving_kinds = body_kind_count - 1;
+    std::array<std::int32_t, moving_kinds> first_{};  ///< index of the first row of a kind
+    std::vector<std::int32_t> parent_;                ///< by moving body; then its island's root
+    std::vector<float> worst_;                        ///< m/s, by root
+    std::int64_t islands_ = 0, unfinished_ = 0;
+
+    [[nodiscard]] std::int32_t root_of(std::int32_t body);
+    void tie(std::span<const Placement> placements);
+    [[nodiscard]] std::int32_t island_of(const SweepChunk& chunk, std::int32_t block, int lane) const;
+};
+
+}  // namespace motley

@@ -1,0 +1,107 @@
+// Sweeps: which points there are, which of them form the front, and what is written.
+#include "sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "engine.h"
+
+namespace motley::bench {
+namespace {
+
+TEST(Front, IsWhatNobodyBeatsInBoth)
+{
+    const auto point = [](double seconds, double error) {
+        SweepPoint p;
+        p.seconds = seconds;
+        p.error = error;
+        return p;
+    };
+    std::vector<SweepPoint> points{point(1, 5), point(2, 5),
+                                   point(2, 3), point(3, 4),
+                                   point(4, 1), point(0.5, std::numeric_limits<double>::infinity())};
+    mark_front(points);
+    const bool expected[] = {true, false, true, false, true, false};
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(points[i].on_front, expected[i]) << i;
+}
+
+TEST(Dials, EveryCombinationOnceUnderItsOwnName)
+{
+    DialGrid grid;
+    grid.threads = {1, 2};
+    grid.warm_starts = {0, 1};
+    grid.tolerances = {0, 0.001F};
+    const std::vector<Dials> all = expand(grid);
+    // soft: 5 substeps x 2 iterations x 2 relaxations x 2 hertz x 2 x 2 x 2; impulse: 5 x 4 x 2 x 2 x 2 x 2; direct:
+    // 5 x 2.
+    EXPECT_EQ(all.size(), 320U + 320U + 10U);
+    std::set<std::string> labels;
+    for (const Dials& dials : all) labels.insert(label_of(dials));
+    EXPECT_EQ(labels.size(), all.size());
+}
+
+TEST(Dials, OutOfRangeAreRefusedBeforeAnythingRuns)
+{
+    DialGrid grid;
+    grid.substeps = {4, 0};
+    EXPECT_THROW(expand(grid), InvalidInput);
+}
+
+SweepResult small_sweep(bool with_peers)
+{
+    DialGrid grid;
+    grid.methods = {Method::soft_step, Method::sequential_impulse};
+    grid.substeps = {1, 8};
+    grid.hertz = {1e6F};
+    grid.relaxations = {1};
+    grid.iterations = {4};
+    SweepOptions options;
+    options.agents = 40;
+    options.seconds = 0.5;
+    options.rounds = 2;
+    options.progress = false;
+    options.with_peers = with_peers;
+    return sweep("chains", grid, options);
+}
+
+TEST(Sweep, MoreSubstepsAreSlowerAndMoreExact)
+{
+    const SweepResult result = small_sweep(false);
+    ASSERT_EQ(result.points.size(), 2U + 4U);
+    const SweepPoint *coarse = nullptr, *fine = nullptr;
+    for (const SweepPoint& p : result.points) {
+        if (p.label == "soft 1 x 4+1, stiffest") coarse = &p;
+        if (p.label == "soft 8 x 4+1, stiffest") fine = &p;
+        EXPECT_EQ(p.step_seconds.size(), 2U);
+    }
+    ASSERT_NE(coarse, nullptr);
+    ASSERT_NE(fine, nullptr);
+    EXPECT_LT(coarse->seconds, fine->seconds);
+    EXPECT_GT(coarse->error, 3 * fine->error);
+}
+
+TEST(Sweep, WritesWhatItMeasured)
+{
+    const SweepResult result = small_sweep(true);
+    const auto json = nlohmann::json::parse(json_of(result));
+    EXPECT_EQ(json["points"].size(), result.points.size());
+    EXPECT_EQ(json["joints"], 40);
+    std::set<std::string> engines;
+    for (const auto& point : json["points"]) engines.insert(point["engine"]);
+    // Every peer is there or is told to be missing.
+    EXPECT_EQ(engines.size(), 1 + peers().size());
+    EXPECT_EQ(peers().size() + missing_peers().size(), 2U);
+    const std::string csv = csv_of(result);
+    EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), 1 + result.points.size());
+}
+
+TEST(Sweep, OfNoSceneSaysSo)
+{
+    EXPECT_THROW(sweep("nowhere", {}, {}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace motley::bench
