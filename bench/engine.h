@@ -44,7 +44,6 @@ struct PeerSetting {
 struct Peer {
     std::string name;  ///< with its version
     std::vector<PeerSetting> settings;
-    /// Null when the peer cannot do the rig, or would take minutes over it.
     std::unique_ptr<Engine> (*make)(const Rig& rig, const PeerSetting& setting);
 };
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "demo.h"
+#include "page.h"
 #include "runner.h"
 #include "sweep.h"
 
@@ -181,6 +182,17 @@ int main(int count, char** arguments)
     CLI::App* compare_app =
         app.add_subcommand("compare", "the same, with every peer that is installed, in one run");
     compare_command.declare(*compare_app);
+    ReportOptions report;
+    CLI::App* report_app = app.add_subcommand(
+        "report", "sweep every scene beside the peers, price every feature, and write one page with charts");
+    report_app->add_option("--output", report.output, "the page; .csv and .json are put beside it")
+        ->capture_default_str();
+    report_app->add_option("--scenes", report.scenes, "only these; several: a,b")->delimiter(',');
+    report_app->add_option("--rounds", report.rounds, "runs of each point, in turn with the others")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    report_app->add_flag("--quick", report.quick, "small scenes: a page in a few minutes, for a look");
+    report_app->add_flag("!--without-peers", report.with_peers, "motley alone");
     DemoOptions demo;
     demo_app->add_option("--seconds", demo.seconds, "simulated time of each crowd run")
         ->check(CLI::PositiveNumber)
@@ -197,6 +209,7 @@ int main(int count, char** arguments)
         if (*run_app) return run();
         if (*sweep_app) return sweep_command();
         if (*compare_app) return compare_command();
+        if (*report_app) write_report(report);
         if (*demo_app) return run_demo(demo);
         if (*list_app) {
             for (const SceneEntry& entry : scene_list())

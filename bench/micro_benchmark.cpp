@@ -10,184 +10,10 @@
 
 #include "motley/motley.h"
 #include "stage_runner.h"
+#include "tie_net.h"
 
 namespace motley::bench {
 namespace {
-
-/// A square net of bodies, each tied to the one on its right and the one above.
-struct Net {
-    Scene scene;
-    std::vector<BodyId> bodies;
-    std::vector<Contact> contacts;
-
-    explicit Net(int side, BodyModel model)
-    {
-        for (int i = 0; i < side * side; ++i) {
-            BodyDefinition body{.model = model, .mass = 1};
-            body.position = {0.4 * (i % side), 0.4 * (i / side), 0};
-            body.inertia = {0.02F, 0, 0, 0.02F, 0, 0.02F};
-            bodies.push_back(scene.add_body(body));
-        }
-    }
-    /// Calls tie(a, b, arm) for each pair; the arm leads from a's centre to the point between them.
-    template <class Tie>
-    void for_each_pair(int side, const Tie& tie)
-    {
-        for (int i = 0; i < side * side; ++i) {
-            const auto a = static_cast<std::size_t>(i);
-            if (i % side + 1 < side) tie(bodies[a], bodies[a + 1], Vec3<float>{0.2F, 0, 0});
-            if (i / side + 1 < side)
-                tie(bodies[a], bodies[a + static_cast<std::size_t>(side)], Vec3<float>{0, 0.2F, 0});
-        }
-    }
-};
-
-/// What ties two bodies; the arm leads from the centre of a to the point between them.
-using Tie = std::function<void(Net&, BodyId a, BodyId b, Vec3<float> arm)>;
-
-std::unique_ptr<Net> make_net(const Tie& tie, BodyModel model, int side)
-{
-    auto net = std::make_unique<Net>(side, model);
-    net->for_each_pair(side, [&](BodyId a, BodyId b, Vec3<float> arm) { tie(*net, a, b, arm); });
-    return net;
-}
-
-Tie contact(float friction)
-{
-    return [friction](Net& net, BodyId a, BodyId b, Vec3<float> arm) {
-        Contact contact;
-        contact.body_a = a;
-        contact.body_b = b;
-        contact.key = net.contacts.size();
-        contact.normal = 5.0F * arm;
-        contact.separation = -0.001F;
-        contact.arm_a = arm;
-        contact.arm_b = -arm;
-        contact.friction = friction;
-        net.contacts.push_back(contact);
-    };
-}
-
-/// A joint between frames where the bodies meet; `fill` sets what is its own.
-template <class Definition>
-Tie frames(void (*fill)(Definition&) = [](Definition&) {})
-{
-    return [fill](Net& net, BodyId a, BodyId b, Vec3<float> arm) {
-        Definition joint;
-        joint.body_a = a;
-        joint.body_b = b;
-        joint.frame_a.position = arm;
-        joint.frame_b.position = -arm;
-        fill(joint);
-        net.scene.add_joint(joint);
-    };
-}
-
-/// A joint between two bodies; `fill` sets what is its own.
-template <class Definition>
-Tie joint(void (*fill)(Definition&, Vec3<float> arm) = [](Definition&, Vec3<float>) {})
-{
-    return [fill](Net& net, BodyId a, BodyId b, Vec3<float> arm) {
-        Definition joint;
-        joint.body_a = a;
-        joint.body_b = b;
-        fill(joint, arm);
-        net.scene.add_joint(joint);
-    };
-}
-
-template <class Definition>
-void everything(Definition& drive)
-{
-    drive.lower = -1;
-    drive.upper = 1;
-    drive.motor_speed = 1;
-    drive.motor_max_force = 1;
-    drive.spring_hertz = 2;
-}
-
-template <class Definition>
-void at_anchors(Definition& joint, Vec3<float> arm)
-{
-    joint.local_anchor_a = arm;
-    joint.local_anchor_b = -arm;
-}
-
-/// Six degrees of freedom set up as a hinge.
-void six_dof_hinge(Net& net, BodyId a, BodyId b, Vec3<float> arm)
-{
-    SixDofDefinition six;
-    six.body_a = a;
-    six.body_b = b;
-    six.frame_a.position = arm;
-    six.frame_b.position = -arm;
-    six.rotation[0] = AxisSetup::free();
-    add_six_dof(net.scene, six);
-}
-
-struct NamedTie {
-    const char* name;
-    BodyModel model;
-    Tie tie;
-};
-
-std::vector<NamedTie> every_tie()
-{
-    const auto planar = BodyModel::planar, rigid = BodyModel::rigid;
-    const Tie rod = joint<DistanceDefinition>(
-        [](DistanceDefinition& j, Vec3<float>) { j.min_length = j.max_length = 0.4F; });
-    const Tie strut = joint<DistanceDefinition>([](DistanceDefinition& j, Vec3<float>) {
-        j.min_length = 0.3F;
-        j.max_length = 0.5F;
-        j.rest_length = 0.4F;
-        j.spring_hertz = 2;
-    });
-    return {{"smooth_contact/planar", planar, contact(0)},
-            {"smooth_contact/particle", BodyModel::particle, contact(0)},
-            {"smooth_contact/rigid", rigid, contact(0)},
-            {"contact/planar", planar, contact(0.5F)},
-            {"contact/rigid", rigid, contact(0.5F)},
-            {"ball_socket/planar", planar, joint<BallSocketDefinition>(at_anchors<BallSocketDefinition>)},
-            {"ball_socket/rigid", rigid, joint<BallSocketDefinition>(at_anchors<BallSocketDefinition>)},
-            {"rod/planar", planar, rod},
-            {"rod/rigid", rigid, rod},
-            {"strut/rigid", rigid, strut},
-            {"fixed/rigid", rigid, frames<FixedDefinition>()},
-            {"hinge/rigid", rigid, frames<HingeDefinition>()},
-            {"six_dof_hinge/rigid", rigid, six_dof_hinge},
-            {"slider/rigid", rigid, frames<SliderDefinition>()},
-            {"point_on_plane/rigid", rigid, frames<PointOnPlaneDefinition>()},
-            {"point_on_line/rigid", rigid, frames<PointOnLineDefinition>()},
-            {"rotation_lock/rigid", rigid, frames<RotationLockDefinition>()},
-            {"parallel_axes/rigid", rigid, frames<ParallelAxesDefinition>()},
-            {"perpendicular_axes/rigid", rigid, frames<PerpendicularAxesDefinition>()},
-            {"slide_drive/rigid", rigid, frames<SlideDriveDefinition>(everything<SlideDriveDefinition>)},
-            {"twist_drive/rigid", rigid, frames<TwistDriveDefinition>(everything<TwistDriveDefinition>)},
-            {"swing_limit/rigid", rigid, frames<SwingLimitDefinition>()},
-            {"point_servo/rigid", rigid, joint<PointServoDefinition>(at_anchors<PointServoDefinition>)},
-            {"angular_servo/rigid", rigid, frames<AngularServoDefinition>()},
-            {"gear/rigid", rigid, joint<GearDefinition>()},
-            {"rack_and_pinion/rigid", rigid, joint<RackAndPinionDefinition>()},
-            {"pulley/rigid", rigid, joint<PulleyDefinition>([](PulleyDefinition& pulley, Vec3<float> arm) {
-                 at_anchors(pulley, arm);
-                 pulley.point_a = {-1, 30, 0};
-                 pulley.point_b = {1, 30, 0};
-                 pulley.max_length = 40;
-             })},
-            {"manifold/rigid", rigid, joint<ManifoldDefinition>([](ManifoldDefinition& m, Vec3<float> arm) {
-                 m.normal = arm;
-                 m.point_count = 4;
-                 for (int i = 0; i < 4; ++i) {
-                     const Vec3<float> off{0.1F * arm.y * static_cast<float>(i % 2),
-                                           0.1F * arm.x * static_cast<float>(i % 2),
-                                           0.05F * static_cast<float>(i / 2)};
-                     m.points[i] = {arm + off, off - arm};
-                 }
-                 m.friction = 0.5F;
-                 m.torsional_radius = 0.1F;
-                 m.rolling_radius = 0.01F;
-             })}};
-}
 
 /// One sweep of `solve` over every constraint, from the solver's own clock: the maths, gathers and scatters, and the
 /// hand-over between colours.
@@ -215,13 +41,13 @@ void sweep(benchmark::State& state, const NamedTie& kind, Isa isa, int threads, 
 /// The colour stage, intake included: of a scene never seen, or of the same contacts again.
 void colour(benchmark::State& state, bool again, int threads, int side)
 {
-    auto net = make_net(contact(0), BodyModel::planar, side);
+    auto net = make_net(contact_tie(0), BodyModel::planar, side);
     Solver solver({}, {.threads = threads});
     solver.step(net->scene, 1e-3F, net->contacts);
     for (auto _ : state) {
         if (!again) {
             state.PauseTiming();
-            net = make_net(contact(0), BodyModel::planar, side);
+            net = make_net(contact_tie(0), BodyModel::planar, side);
             state.ResumeTiming();
         }
         const StepReport report = solver.step(net->scene, 1e-3F, net->contacts);
@@ -253,7 +79,7 @@ void hand_over(benchmark::State& state)
 void enter_all()
 {
     // 4,000 constraints stay in a second level cache, 320,000 do not.
-    const std::pair<const char*, int> sizes[] = {{"in_cache", 45}, {"streaming", 400}};
+    const std::pair<const char*, int> sizes[] = {{"in_cache", side_in_cache}, {"streaming", side_streaming}};
     for (const auto& [place, side] : sizes) {
         for (const NamedTie& kind : every_tie()) {
             for (const Isa isa : available_isas()) {

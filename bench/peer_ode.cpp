@@ -134,12 +134,8 @@ class OdeEngine final : public Engine {
     }
 };
 
-/// Its direct solver is cubic in the rows of an island: nets are beyond it, many small islands are not.
-constexpr std::size_t most_joints_of_direct = 1500;
-
 std::unique_ptr<Engine> make(const Rig& rig, const PeerSetting& setting)
 {
-    if (setting.is_direct && (rig.joints.size() > most_joints_of_direct || rig.collides)) return nullptr;
     static const struct Library {
         Library() { dInitODE2(0); }
         ~Library() { dCloseODE(); }

@@ -67,6 +67,7 @@ struct RigEntry {
     std::int64_t bodies;     ///< about how many, by default
     double warm_up;          ///< s before anything is measured
     double seconds;          ///< s measured
+    bool suits_direct;  ///< islands small enough, and without limits, for simultaneous solutions in seconds
     Rig (*make)(std::int64_t bodies, std::uint64_t seed);
 };
 

@@ -18,8 +18,6 @@ namespace motley::bench {
 namespace {
 
 constexpr double came_apart = std::numeric_limits<double>::infinity();
-/// More joints than this take `direct` minutes.
-constexpr std::size_t most_joints_of_direct = 1500;
 /// Steps between two looks at the joints of a rig.
 constexpr int steps_a_look = 10;
 
@@ -94,7 +92,8 @@ Run run_rig(const Rig& rig, Engine& engine, const RigTimes& times)
 class RigSubject {
   public:
     RigSubject(const RigEntry& entry, const SweepOptions& options)
-        : rig_(entry.make(options.agents > 0 ? options.agents : entry.bodies, options.seed)),
+        : suits_direct_(entry.suits_direct),
+          rig_(entry.make(options.agents > 0 ? options.agents : entry.bodies, options.seed)),
           times_{entry.warm_up, options.seconds > 0 ? options.seconds : entry.seconds}
     {
         if (rig_.bodies.empty() || (rig_.joints.empty() && !rig_.collides))
@@ -108,9 +107,7 @@ class RigSubject {
     /// Empty where the point makes no sense.
     [[nodiscard]] std::function<Run()> candidate(const Dials& dials) const
     {
-        if (dials.settings.method == Method::direct &&
-            (rig_.joints.size() > most_joints_of_direct || rig_.collides))
-            return {};
+        if (dials.settings.method == Method::direct && !suits_direct_) return {};
         return [this, dials] {
             const auto engine = make_motley_engine(rig_, dials.settings, dials.solver);
             return run_rig(rig_, *engine, times_);
@@ -118,7 +115,7 @@ class RigSubject {
     }
     [[nodiscard]] std::function<Run()> candidate(const Peer& peer, const PeerSetting& setting) const
     {
-        if (!peer.make(rig_, setting)) return {};
+        if (setting.is_direct && !suits_direct_) return {};
         return [this, &peer, &setting] {
             const auto engine = peer.make(rig_, setting);
             return run_rig(rig_, *engine, times_);
@@ -126,6 +123,7 @@ class RigSubject {
     }
 
   private:
+    bool suits_direct_;
     Rig rig_;
     RigTimes times_;
 };

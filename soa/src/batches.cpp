@@ -192,15 +192,16 @@ void BatchSet::cut(const KernelTable& table, bool measures, SweepLists& sweeps, 
         if (measures) {
             grow(pool.residuals, static_cast<std::size_t>(pool.block_count()) * 2 * block_lanes);
             grow(pool.finished, static_cast<std::size_t>(pool.block_count()));
+            grow(pool.islands, static_cast<std::size_t>(pool.block_count()));
         }
         for (std::size_t colour = 0; colour < colours; ++colour) {
             const std::int32_t end = pool.first_block[colour + 1];
             tiles = std::max(tiles, (end - pool.first_block[colour]) / blocks_per_tile);
             for (std::int32_t begin = pool.first_block[colour]; begin < end; begin += blocks_per_chunk) {
-                sweeps[colour].push_back({&kernels, pool.streams(measures), begin,
-                                          std::min(begin + blocks_per_chunk, end),
-                                          kind_a_of(constraint_class), kind_b_of(constraint_class),
-                                          measures ? pool.finished.data() : nullptr});
+                sweeps[colour].push_back(
+                    {&kernels, pool.streams(measures), begin, std::min(begin + blocks_per_chunk, end),
+                     kind_a_of(constraint_class), kind_b_of(constraint_class),
+                     measures ? pool.finished.data() : nullptr, measures ? pool.islands.data() : nullptr});
             }
         }
     }

@@ -24,14 +24,18 @@ struct Placement {
     std::uint8_t colour = no_colour;
 };
 
+inline constexpr std::int32_t several_islands = -1;
+
 /// Blocks begin ... end - 1 of one class and colour: the unit of work of a sweep.
 struct SweepChunk {
     const ConstraintKernels* kernels;
     BlockStreams streams;
     std::int32_t begin, end;
     BodyKind kind_a, kind_b;
-    std::uint8_t*
-        finished;  ///< by block: 1 when its islands want no more sweeps; null unless residuals are measured
+    /// By block, and null unless residuals are measured: 1 when its islands want no more sweeps; and the island that all
+    /// its constraints are of, or several_islands.
+    std::uint8_t* finished;
+    std::int32_t* islands;
 };
 
 /// The unit of work of prepare and store: a few blocks of each class and colour, from about the same stretch of the
@@ -89,6 +93,7 @@ class BatchSet {
         AlignedVector<float> rows, substep_rows, impulses;
         AlignedVector<float> residuals;                            ///< only when they are measured
         AlignedVector<std::uint8_t> finished;                      ///< likewise
+        AlignedVector<std::int32_t> islands;                       ///< likewise
         std::array<std::int32_t, colours + 1> first_block{};       ///< of each colour, and one past the last
         std::array<std::int32_t, parallel_colours> constraints{};  ///< of each colour
         std::int64_t overflow = 0;

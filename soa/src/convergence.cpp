@@ -2,6 +2,8 @@
 #include "convergence.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 #include <numeric>
 
 namespace motley {
@@ -18,6 +20,24 @@ void for_each_unfinished(const SweepLists& sweeps, const Visit& visit)
             }
         }
     }
+}
+
+constexpr std::int32_t unseen = -1;
+
+/// Of numbers that are not negative, the order of their bits is their order; a NaN comes after all of them.
+std::int32_t bits_of(float value)
+{
+    return std::bit_cast<std::int32_t>(value);
+}
+/// Integers, because a compiler may put a maximum of those in lanes, and of floats not.
+std::int32_t largest_bits(const float* values, int count)
+{
+    std::array<std::int32_t, block_lanes> bits;
+    std::memcpy(bits.data(), values, sizeof(bits));
+    for (int lane = count; lane < block_lanes; ++lane) bits[static_cast<std::size_t>(lane)] = 0;
+    std::int32_t largest = 0;
+    for (const std::int32_t b : bits) largest = std::max(largest, b);
+    return largest;
 }
 
 const float* speeds_of(const SweepChunk& chunk, std::int32_t block)
@@ -68,31 +88,53 @@ void Convergence::tie(std::span<const Placement> placements)
 }
 
 void Convergence::find_islands(const KernelContext& context, std::span<const Placement> joints,
-                               std::span<const Placement> contacts)
+                               std::span<const Placement> contacts, const SweepLists& sweeps)
 {
-    std::int32_t count = 0;
+    std::int32_t moving = 0;
     for (std::size_t kind = 0; kind < moving_kinds; ++kind) {
-        first_[kind] = count;
-        count += context.bodies[kind].size;
+        first_[kind] = moving;
+        moving += context.bodies[kind].size;
     }
-    parent_.resize(static_cast<std::size_t>(count));
+    parent_.resize(static_cast<std::size_t>(moving));
     std::iota(parent_.begin(), parent_.end(), 0);
     tie(joints);
     tie(contacts);
-    for (std::int32_t body = 0; body < count; ++body) parent_[static_cast<std::size_t>(body)] = root_of(body);
-    worst_.assign(static_cast<std::size_t>(count), -1.0F);
+    for (std::int32_t body = 0; body < moving; ++body)
+        parent_[static_cast<std::size_t>(body)] = root_of(body);
+    worst_.assign(static_cast<std::size_t>(moving), unseen);
     islands_ = 0;
-    const auto note = [&](const Placement& placement) {
-        const BodyRow moving = placement.a.kind() == BodyKind::fixed ? placement.b : placement.a;
-        const std::int32_t body =
-            first_[static_cast<std::size_t>(moving.kind())] + static_cast<std::int32_t>(moving.row());
-        float& seen = worst_[static_cast<std::size_t>(parent_[static_cast<std::size_t>(body)])];
-        islands_ += seen < 0 ? 1 : 0;
-        seen = 0;
-    };
-    for (const Placement& placement : joints) note(placement);
-    for (const Placement& placement : contacts) note(placement);
+    count(joints);
+    count(contacts);
     unfinished_ = islands_;
+    name_islands(sweeps);
+}
+
+void Convergence::count(std::span<const Placement> placements)
+{
+    for (const Placement& placement : placements) {
+        const BodyRow body = placement.a.kind() == BodyKind::fixed ? placement.b : placement.a;
+        const std::int32_t index =
+            first_[static_cast<std::size_t>(body.kind())] + static_cast<std::int32_t>(body.row());
+        std::int32_t& seen = worst_[static_cast<std::size_t>(parent_[static_cast<std::size_t>(index)])];
+        islands_ += seen == unseen ? 1 : 0;
+        seen = 0;
+    }
+}
+
+/// Most blocks are of one island: their worst lane is all that has to be known of them.
+void Convergence::name_islands(const SweepLists& sweeps)
+{
+    for (const auto& chunks : sweeps) {
+        for (const SweepChunk& chunk : chunks) {
+            for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
+                const std::int32_t first = island_of(chunk, block, 0);
+                bool same = true;
+                for (int lane = 1; lane < chunk.streams.counts[block]; ++lane)
+                    same = same && island_of(chunk, block, lane) == first;
+                chunk.islands[block] = same ? first : several_islands;
+            }
+        }
+    }
 }
 
 std::int32_t Convergence::island_of(const SweepChunk& chunk, std::int32_t block, int lane) const
@@ -115,20 +157,35 @@ void Convergence::start_over(const SweepLists& sweeps)
 
 void Convergence::judge(const SweepLists& sweeps, float tolerance)
 {
-    std::fill(worst_.begin(), worst_.end(), -1.0F);
+    const std::int32_t most = bits_of(tolerance);
+    std::fill(worst_.begin(), worst_.end(), unseen);
+    const auto note = [&](std::int32_t island, std::int32_t speed) {
+        std::int32_t& worst = worst_[static_cast<std::size_t>(island)];
+        worst = std::max(worst, speed);
+    };
     for_each_unfinished(sweeps, [&](const SweepChunk& chunk, std::int32_t block) {
         const float* speeds = speeds_of(chunk, block);
-        for (int lane = 0; lane < chunk.streams.counts[block]; ++lane) {
-            float& worst = worst_[static_cast<std::size_t>(island_of(chunk, block, lane))];
-            worst = std::max(worst, speeds[lane]);
+        const int count = chunk.streams.counts[block];
+        if (chunk.islands[block] != several_islands) {
+            note(chunk.islands[block], largest_bits(speeds, count));
+            return;
         }
+        for (int lane = 0; lane < count; ++lane) note(island_of(chunk, block, lane), bits_of(speeds[lane]));
     });
-    unfinished_ = std::count_if(worst_.begin(), worst_.end(), [&](float speed) { return speed > tolerance; });
+    unfinished_ =
+        std::count_if(worst_.begin(), worst_.end(), [&](std::int32_t speed) { return speed > most; });
+    const auto wants_more = [&](std::int32_t island) {
+        return worst_[static_cast<std::size_t>(island)] > most;
+    };
     for_each_unfinished(sweeps, [&](const SweepChunk& chunk, std::int32_t block) {
-        bool all = true;
-        for (int lane = 0; lane < chunk.streams.counts[block]; ++lane)
-            all = all && !(worst_[static_cast<std::size_t>(island_of(chunk, block, lane))] > tolerance);
-        if (all) chunk.finished[block] = 1;
+        bool more = false;
+        if (chunk.islands[block] != several_islands) {
+            more = wants_more(chunk.islands[block]);
+        } else {
+            for (int lane = 0; lane < chunk.streams.counts[block]; ++lane)
+                more = more || wants_more(island_of(chunk, block, lane));
+        }
+        if (!more) chunk.finished[block] = 1;
     });
 }
 

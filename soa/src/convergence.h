@@ -27,7 +27,7 @@ class Convergence {
   public:
     /// Finds the islands of a step.
     void find_islands(const KernelContext& context, std::span<const Placement> joints,
-                      std::span<const Placement> contacts);
+                      std::span<const Placement> contacts, const SweepLists& sweeps);
     /// Every island wants sweeps again: another substep.
     void start_over(const SweepLists& sweeps);
     /// After a measuring sweep: finishes the islands whose residuals are all at most `tolerance`.
@@ -40,11 +40,13 @@ class Convergence {
     static constexpr int moving_kinds = body_kind_count - 1;
     std::array<std::int32_t, moving_kinds> first_{};  ///< index of the first row of a kind
     std::vector<std::int32_t> parent_;                ///< by moving body; then its island's root
-    std::vector<float> worst_;                        ///< m/s, by root
+    std::vector<std::int32_t> worst_;                 ///< bits of m/s, by root
     std::int64_t islands_ = 0, unfinished_ = 0;
 
     [[nodiscard]] std::int32_t root_of(std::int32_t body);
     void tie(std::span<const Placement> placements);
+    void count(std::span<const Placement> placements);
+    void name_islands(const SweepLists& sweeps);
     [[nodiscard]] std::int32_t island_of(const SweepChunk& chunk, std::int32_t block, int lane) const;
 };
 
