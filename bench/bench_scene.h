@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -22,7 +23,15 @@ struct RunOptions {
     SolverOptions solver;
     float friction = -1;  ///< below 0: the scene's default
     std::uint64_t seed = 12345;
+    int direct_every =
+        0;  ///< steps between two comparisons with the simultaneous solution of the same step; 0: never
     std::string data;  ///< bottleneck: the trajectory file; empty: the project's copy
+};
+
+/// The one number that judges a scene, where overlap does not.
+struct SceneError {
+    const char* name;  ///< with its unit
+    double value;
 };
 
 /// A line of the table at the end: what, and its value with its unit.
@@ -44,6 +53,8 @@ class BenchScene {
     virtual std::span<const Contact> find_contacts(Executor& executor) = 0;
     /// After each step.
     virtual void observe(double time, const Solver& solver) = 0;
+    /// What a sweep judges the scene by; none: how deep people overlap.
+    [[nodiscard]] virtual std::optional<SceneError> error() const { return {}; }
     /// The scene's own figures.
     [[nodiscard]] virtual std::vector<Figure> figures() const { return {}; }
     /// The people, for pictures and trajectories; null where there are none.

@@ -74,6 +74,16 @@ struct RunCommand {
         app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();
         app.add_option("--data", options.data, "bottleneck: a trajectory file; default: the experiment's")
             ->check(CLI::ExistingFile);
+        app.add_option("--tolerance", options.settings.tolerance,
+                       "m/s at which an island's sweeps end; 0: never")
+            ->capture_default_str();
+        app.add_option("--budget", options.settings.budget_ms,
+                       "ms a step may take; substeps or iterations are then the most; 0: no budget")
+            ->capture_default_str();
+        app.add_flag("--measures", options.settings.measures, "report what each step left unsolved");
+        app.add_option("--direct-every", options.direct_every,
+                       "compare every so many steps with the simultaneous solution of the same step; slow")
+            ->check(CLI::PositiveNumber);
         app.add_option("--json", json, "write the figures to this file");
         app.add_option("--trajectories", outputs.trajectories, "write PedPy text to this file");
         app.add_option("--frames", outputs.frames, "write pictures to this folder");

@@ -68,7 +68,18 @@ std::string table_of(const RunResult& r)
                                                 100 * r.overlap_p99, 100 * r.overlap_max));
     line("joint separation rms / max",
          fmt::format("{:.3g} / {:.3g} m", r.errors.joint_separation_rms, r.errors.joint_separation_max));
+    if (r.last.measures.residual_norm > 0) {
+        line("residual of the last step",
+             fmt::format("{:.3g} sqrt(J), rms {:.3g} m/s, max {:.3g} m/s", r.last.measures.residual_norm,
+                         r.last.measures.residual_rms, r.last.measures.residual_max));
+        line("substeps x iterations of the last step",
+             fmt::format("{} x {}", r.last.substeps, r.last.iterations));
+    }
     line("residual approach speed, rms", fmt::format("{:.3g} m/s", r.residual));
+    if (r.direct_rms >= 0) {
+        line("off the simultaneous solution",
+             fmt::format("{:.3g} / {:.3g} m/s rms / max, a step", r.direct_rms, r.direct_max));
+    }
     line("bodies contained", fmt::format("{}", r.contained));
     for (const Figure& figure : r.figures) line(figure.first, figure.second);
     line("state hash", fmt::format("{:016x}", r.state_hash));
@@ -102,6 +113,7 @@ std::string json_of(const RunResult& r)
     json["joint_separation_m"] = {{"rms", r.errors.joint_separation_rms},
                                   {"max", r.errors.joint_separation_max}};
     json["residual_approach_speed_rms"] = r.residual;
+    if (r.direct_rms >= 0) json["off_direct_m_per_s"] = {{"rms", r.direct_rms}, {"max", r.direct_max}};
     json["bodies_contained"] = r.contained;
     for (const Figure& figure : r.figures) json["figures"][figure.first] = figure.second;
     json["state_hash"] = fmt::format("{:016x}", r.state_hash);

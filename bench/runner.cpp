@@ -94,6 +94,50 @@ void judge_contacts(RunResult& result, BenchScene& scene, Executor& executor)
     result.residual = touching > 0 ? std::sqrt(squares / static_cast<double>(touching)) : 0;
 }
 
+/// How far velocities are from those of the simultaneous solution of the same steps.
+class DirectComparison {
+  public:
+    DirectComparison(const RunOptions& options) : dt_(options.dt), solver_(settings_of(options), {}) {}
+    void solve(const Scene& before, std::span<const Contact> contacts)
+    {
+        copy_ = before;
+        const StepReport report = solver_.step(copy_, dt_, contacts);
+        if (report.status != StepStatus::done) throw std::runtime_error("direct: " + report.error);
+    }
+    void compare(const Scene& after)
+    {
+        for (std::uint32_t slot = 1; slot < after.bodies().slot_count(); ++slot) {
+            if (!after.bodies().is_slot_live(slot)) continue;
+            const BodyId body = after.bodies().id_of_slot(slot);
+            const Vec3<float> off = after.state(body).linear_velocity - copy_.state(body).linear_velocity;
+            const auto length2 = static_cast<double>(dot(off, off));
+            squares_ += length2;
+            largest_ = std::max(largest_, std::sqrt(length2));
+            ++count_;
+        }
+    }
+    void report(RunResult& result) const
+    {
+        if (count_ == 0) return;
+        result.direct_rms = std::sqrt(squares_ / static_cast<double>(count_));
+        result.direct_max = largest_;
+    }
+
+  private:
+    float dt_;
+    Solver solver_;
+    Scene copy_;
+    double squares_ = 0, largest_ = 0;
+    std::int64_t count_ = 0;
+
+    static SolverSettings settings_of(const RunOptions& options)
+    {
+        SolverSettings settings = options.settings;
+        settings.method = Method::direct;
+        return settings;
+    }
+};
+
 }  // namespace
 
 RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutputs& outputs)
@@ -102,6 +146,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     if (options.seconds == 0) options.seconds = entry.seconds;
     const std::unique_ptr<BenchScene> scene = entry.make(options);
     scene->adjust(options.settings);
+    DirectComparison direct(options);
     Solver solver(options.settings, options.solver);
     Executor& executor = solver.executor();
     std::unique_ptr<TrajectoryWriter> trajectories;
@@ -131,16 +176,20 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         scene->steer(time, executor);
         const double steered = now();
         const std::span<const Contact> contacts = scene->find_contacts(executor);
+        const double searched = now() - steered;
+        const bool compares = options.direct_every > 0 && step % options.direct_every == 0;
+        if (compares) direct.solve(scene->scene, contacts);
         const double found = now();
         result.last = solver.step(scene->scene, options.dt, contacts);
         const double solved = now();
         if (result.last.status != StepStatus::done)
             throw std::runtime_error(fmt::format("step {} refused: {}", step, result.last.error));
 
+        if (compares) direct.compare(scene->scene);
         result.steering_seconds += steered - began;
-        result.search_seconds += found - steered;
+        result.search_seconds += searched;
         result.solver_seconds += solved - found;
-        step_seconds.push_back(solved - began);
+        step_seconds.push_back((solved - found) + searched + (steered - began));
         solver_seconds.push_back(solved - found);
         for (std::size_t s = 0; s < stage_count; ++s) result.stages[s] += result.last.seconds[s];
         const auto constraints = static_cast<double>(result.last.contacts + result.last.joints);
@@ -168,7 +217,11 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     result.errors = scene->scene.errors();
     result.state_hash = scene->scene.state_hash();
     judge_contacts(result, *scene, executor);
+    direct.report(result);
+    result.error = scene->error();
     result.figures = scene->figures();
+    if (result.error)
+        result.figures.emplace_back(result.error->name, fmt::format("{:.4g}", result.error->value));
     return result;
 }
 

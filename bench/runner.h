@@ -30,6 +30,8 @@ struct RunResult {
     SceneErrors errors;
     std::uint64_t state_hash = 0;
     std::int64_t contained = 0;
+    double direct_rms = -1, direct_max = -1;  ///< m/s, off the simultaneous solution; negative: not compared
+    std::optional<SceneError> error;
     std::vector<Figure> figures;
     [[nodiscard]] double whole_seconds() const { return solver_seconds + steering_seconds + search_seconds; }
 };

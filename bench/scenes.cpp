@@ -4,6 +4,7 @@
 #include "scenes/open_crowd.h"
 #include "scenes/push.h"
 #include "scenes/rig_scene.h"
+#include "scenes/rows.h"
 
 namespace motley::bench {
 namespace {
@@ -21,6 +22,10 @@ std::vector<SceneEntry> all_scenes()
          75, 90, make<Bottleneck>},
         {"crowd", "N people at 5 per m2, each walking from goal to goal", 10000, 10, make<OpenCrowd>},
         {"push", "a packed slab leans on a wall with 50 N each: 4.5 kN/m", 1800, 10, make<Push>},
+        {"lean", "rows of 100 people lean on each other with 50 N each, and the first on a wall", 10000, 4,
+         make<Lean>},
+        {"pulse", "rows of 20 people 0.1 m apart; the first runs into them and takes all along", 10000, 3,
+         make<Pulse>},
     };
     for (const RigEntry& rig : rig_list()) {
         all.push_back({rig.name, rig.description, rig.bodies, rig.warm_up + rig.seconds,

@@ -248,7 +248,10 @@ SweepResult sweep(const std::string& scene, const DialGrid& grid, const SweepOpt
     if (entry == nullptr)
         throw std::runtime_error(fmt::format("no scene '{}'; `motley list` names them", scene));
     result.description = entry->description;
-    result.error_name = "overlap, 99th percentile (share of the radius)";
+    RunOptions small;
+    small.agents = 100;
+    const std::optional<SceneError> own = entry->make(small)->error();
+    result.error_name = own ? own->name : "overlap, 99th percentile (share of the radius)";
     const CrowdSubject subject(*entry, options);
     subject.describe(result);
     add_motley(subject, grid, candidates);

@@ -67,6 +67,11 @@ class Push final : public CrowdScene {
         ++samples_;
     }
 
+    [[nodiscard]] std::optional<SceneError> error() const override
+    {
+        return SceneError{"wall stress of 1 m bands off its law, rms per step (share)",
+                          samples_ > 0 ? std::sqrt(squares_ / samples_) : 0};
+    }
     [[nodiscard]] std::vector<Figure> figures() const override
     {
         if (samples_ == 0) return {{"wall stress", "not sampled: run longer than 2 s"}};

@@ -53,6 +53,7 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
 
     remove_joints_of(bodies);
     for (const BodyId body : bodies) bodies_.remove(body);
+    std::erase_if(island_iterations_, [&](const IslandIterations& asked) { return !is_alive(asked.body); });
     body_count_ -= bodies.size();
 }
 

@@ -36,6 +36,7 @@ ConstraintId Scene::take_joint_slot(int type, std::size_t index)
     entry.live = true;
     entry.watched = false;
     entry.break_limit = {};
+    entry.iterations = 0;
     return {slot, entry.generation};
 }
 
@@ -67,6 +68,7 @@ void Scene::remove_joint_at(int type, std::size_t index)
         if (t != type) return;
         JointStores::Slot& entry = joints_.slots[store.slots[index]];
         entry.live = false;
+        if (entry.iterations != 0) --joints_.with_iterations;
         joints_.free_slots.push_back(store.slots[index]);
         --bodies_.joint_counts[store.definitions[index].body_a.slot];
         --bodies_.joint_counts[store.definitions[index].body_b.slot];
@@ -112,6 +114,28 @@ void Scene::set_break_limit(ConstraintId joint, const BreakLimit& limit)
     if (!slot.watched) joints_.watched.push_back(joint);
     slot.watched = true;
     slot.break_limit = limit;
+}
+
+void Scene::set_iterations(ConstraintId joint, int at_least)
+{
+    if (!is_alive(joint)) {
+        refuse("set_iterations.joint", "slot " + std::to_string(joint.slot) + ", not alive",
+               "a joint of this scene");
+    }
+    if (at_least < 0 || at_least > 10000) refuse("set_iterations.at_least", at_least, "0 to 10000");
+    std::uint16_t& iterations = joints_.slots[joint.slot].iterations;
+    joints_.with_iterations += (at_least != 0 ? 1U : 0U) - (iterations != 0 ? 1U : 0U);
+    iterations = static_cast<std::uint16_t>(at_least);
+}
+
+void Scene::set_island_iterations(BodyId body, int at_least)
+{
+    require_alive(body, "set_island_iterations.body");
+    if (bodies_.row_of(body).kind() == BodyKind::fixed)
+        refuse("set_island_iterations.body", "a body that nothing moves", "a dynamic body");
+    if (at_least < 0 || at_least > 10000) refuse("set_island_iterations.at_least", at_least, "0 to 10000");
+    std::erase_if(island_iterations_, [&](const IslandIterations& asked) { return asked.body == body; });
+    if (at_least > 0) island_iterations_.push_back({body, at_least});
 }
 
 void Scene::find_break_events()

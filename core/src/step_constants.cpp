@@ -32,6 +32,7 @@ void SolverSettings::validate() const
     check("SolverSettings.projections", projections, 0, 10000, "0 to 10000");
     constexpr double big = 1e9;
     check("SolverSettings.tolerance", tolerance, 0, big, "0 to 1e9 (m/s)");
+    check("SolverSettings.budget_ms", budget_ms, 0, 1e6, "0 to 1e6 (ms)");
     check("SolverSettings.gravity.x", gravity.x, -big, big, "a finite value from -1e9 to 1e9 (m/s2)");
     check("SolverSettings.gravity.y", gravity.y, -big, big, "a finite value from -1e9 to 1e9 (m/s2)");
     check("SolverSettings.gravity.z", gravity.z, -big, big, "a finite value from -1e9 to 1e9 (m/s2)");

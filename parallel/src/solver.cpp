@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "budget.h"
 #include "convergence.h"
 #include "layout.h"
 #include "motley/core/invalid_input.h"
@@ -70,7 +71,9 @@ void measure_start(const Scene& scene, std::span<const Contact> contacts, StepMe
 }  // namespace
 
 struct Solver::Impl {
-    SolverSettings settings;
+    SolverSettings asked;     ///< by the host
+    SolverSettings settings;  ///< of this step
+    Budget budget;
     Isa isa;
     std::unique_ptr<Executor> own_executor;
     StageRunner runner;
@@ -78,7 +81,8 @@ struct Solver::Impl {
     Convergence convergence;
 
     Impl(const SolverSettings& s, Isa i, Executor* host, int threads)
-        : settings(s),
+        : asked(s),
+          settings(s),
           isa(i),
           own_executor(host ? nullptr : make_executor(threads)),
           runner(host ? host : own_executor.get()),
@@ -91,8 +95,8 @@ struct Solver::Impl {
     std::string lay_out(Scene& scene, std::span<const Contact> contacts);
     void transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel);
     void integrate_velocities(BodyKernels::Move BodyKernels::*kernel);
-    enum class Blocks { all, unfinished };
-    void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, Blocks which = Blocks::all);
+    static constexpr int every_block = -1;
+    void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least = every_block);
     int iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations);
     void measure_residual(StepReport& report);
     void integrate_positions();
@@ -100,11 +104,11 @@ struct Solver::Impl {
     void solve_substeps(Scene& scene, StepReport& report);
     void solve_directly(Scene& scene, float dt, std::span<const Contact> contacts, StepReport& report);
     void finish(Scene& scene, StepReport& report);
-    /// Whether sweeps are to have room for residuals.
-    [[nodiscard]] bool wants_residuals() const
-    {
-        return settings.method != Method::direct && (settings.measures || settings.tolerance > 0);
-    }
+    void pick_settings();
+    void learn_times(const StepReport& report);
+    /// Whether blocks have room for residuals and wishes; and whether some of them are swept and others not.
+    bool tells_blocks_apart = false, picks_blocks = false;
+    void decide_on_blocks(const Scene& scene);
 };
 
 Solver::Solver(const SolverSettings& settings, const SolverOptions& options)
@@ -121,12 +125,12 @@ Solver& Solver::operator=(Solver&&) noexcept = default;
 
 const SolverSettings& Solver::settings() const
 {
-    return impl_->settings;
+    return impl_->asked;
 }
 void Solver::set_settings(const SolverSettings& settings)
 {
     settings.validate();
-    impl_->settings = settings;
+    impl_->asked = settings;
 }
 Isa Solver::isa() const
 {
@@ -148,6 +152,7 @@ StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contact
         if (!(dt >= 0 && dt <= 1)) refuse("step.dt", dt, "0 to 1 (s)");
         if (contacts.size() > INT32_MAX)
             refuse("step.contacts.size()", static_cast<double>(contacts.size()), "at most 2^31 - 1");
+        impl_->pick_settings();
         impl_->runner.with_workers([&] {
             StageClock clock(report);
             report.error = impl_->take_in(scene, contacts);
@@ -164,12 +169,40 @@ StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contact
                 impl_->solve_substeps(scene, report);
             }
             if (impl_->settings.measures) report.measures.after = scene.errors();
+            impl_->learn_times(report);
         });
     } catch (const std::exception& error) {
         report.error = error.what();
     }
     if (!report.error.empty()) report.status = StepStatus::refused;
     return report;
+}
+
+void Solver::Impl::decide_on_blocks(const Scene& scene)
+{
+    picks_blocks = settings.tolerance > 0 || scene.asks_for_iterations();
+    tells_blocks_apart = picks_blocks || settings.measures || settings.budget_ms > 0;
+}
+
+/// The host's settings, with as much work as its budget has room for.
+void Solver::Impl::pick_settings()
+{
+    settings = asked;
+    if (asked.budget_ms == 0) return;
+    int& work = asked.method == Method::soft_step ? settings.substeps : settings.iterations;
+    work = budget.units_within(static_cast<double>(asked.budget_ms) * 1e-3, work);
+}
+
+void Solver::Impl::learn_times(const StepReport& report)
+{
+    if (asked.budget_ms == 0 || asked.method == Method::direct) return;
+    double work = 0;
+    // What is done once a step whatever the settings is not work to be picked.
+    for (const Stage stage : {Stage::integrate_velocities, Stage::warm_start, Stage::solve,
+                              Stage::integrate_positions, Stage::relax})
+        work += report.seconds[static_cast<std::size_t>(stage)];
+    budget.learn(report.total_seconds() - work, work,
+                 asked.method == Method::soft_step ? settings.substeps : settings.iterations);
 }
 
 /// The step as the data sees it.
@@ -179,9 +212,11 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     const bool projects = !soft && settings.drift_correction == DriftCorrection::projection;
     StageClock clock(report);
 
-    if (settings.tolerance > 0)
+    if (picks_blocks) {
         convergence.find_islands(layout.context, layout.joint_placements(), layout.contact_placements(),
                                  layout.sweeps());
+        convergence.take_wishes(scene, layout.sweeps());
+    }
     transfer(&ConstraintKernels::prepare);
     clock.charge(Stage::prepare);
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -191,7 +226,9 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
         clock.charge(Stage::integrate_velocities);
         if (!replays) sweep(&ConstraintKernels::warm_start);
         clock.charge(Stage::warm_start);
-        report.sweeps += iterate(&ConstraintKernels::solve, settings.iterations);
+        const int iterations = iterate(&ConstraintKernels::solve, settings.iterations);
+        report.iterations = std::max(report.iterations, iterations);
+        report.sweeps += iterations;
         if (substep + 1 == settings.substeps) measure_residual(report);
         clock.charge(Stage::solve);
         integrate_positions();
@@ -204,6 +241,7 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     clock.charge(Stage::restitution);
     transfer(&ConstraintKernels::store);
     finish(scene, report);
+    report.substeps = settings.substeps;
     report.sweeps += settings.substeps * (1 + (projects ? settings.projections : 0));
     clock.charge(Stage::store);
 }
@@ -263,7 +301,8 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
     if (!admitted) return ContactIntake::repeated_key(contacts);
     layout.contacts.open(layout.kernels());
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
-    layout.cut(scene, contacts, wants_residuals());
+    decide_on_blocks(scene);
+    layout.cut(scene, contacts, tells_blocks_apart);
     return {};
 }
 
@@ -280,19 +319,23 @@ void Solver::Impl::transfer(ConstraintKernels::Transfer ConstraintKernels::*kern
     });
 }
 
-void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, Blocks which)
+/// Runs a kernel over the blocks that are not finished, and of those over the ones that want at least so many sweeps.
+void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
     const auto run_chunk = [&](const SweepChunk& chunk) {
         const ConstraintKernels::Sweep run = chunk.kernels->*kernel;
         if (run == nullptr) return;
-        if (which == Blocks::all) {
+        if (at_least == every_block) {
             run(layout.context, chunk.streams, chunk.begin, chunk.end);
             return;
         }
+        const auto runs = [&](std::int32_t block) {
+            return chunk.finished[block] == 0 && (at_least == 0 || chunk.wanted[block] >= at_least);
+        };
         for (std::int32_t begin = chunk.begin, end = begin; begin < chunk.end; begin = end) {
-            while (begin < chunk.end && chunk.finished[begin] != 0) ++begin;
+            while (begin < chunk.end && !runs(begin)) ++begin;
             end = begin;
-            while (end < chunk.end && chunk.finished[end] == 0) ++end;
+            while (end < chunk.end && runs(end)) ++end;
             if (begin < end) run(layout.context, chunk.streams, begin, end);
         }
     };
@@ -305,21 +348,25 @@ void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, Bl
     }
 }
 
-/// Sweeps `iterations` times, or until every island is within the tolerance. Returns how many sweeps there were.
+/// Sweeps `iterations` times, or until every island is within the tolerance; longer where more was asked for. Returns how
+/// many sweeps there were.
 int Solver::Impl::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations)
 {
-    if (settings.tolerance == 0) {
+    if (!picks_blocks) {
         for (int i = 0; i < iterations; ++i) sweep(kernel);
         return iterations;
     }
     convergence.start_over(layout.sweeps());
+    // Wishes are for what solves, not for what relaxes.
+    const int most =
+        kernel == &ConstraintKernels::solve ? std::max(iterations, convergence.most_wanted()) : iterations;
     int done = 0;
-    while (done < iterations && convergence.unfinished() > 0) {
+    while (done < most && convergence.unfinished() > 0) {
         ++done;
         // Measuring costs about a sweep: early for what is nearly solved, then only now and then.
-        const bool measured = done == 2 || done % 4 == 0 || done == iterations;
+        const bool measured = settings.tolerance > 0 && (done == 2 || done % 4 == 0 || done == most);
         layout.context.measure = measured ? Measure::while_solving : Measure::nothing;
-        sweep(kernel, Blocks::unfinished);
+        sweep(kernel, done <= iterations ? 0 : done);
         if (measured) convergence.judge(layout.sweeps(), settings.tolerance);
     }
     layout.context.measure = Measure::nothing;
@@ -329,9 +376,11 @@ int Solver::Impl::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, i
 /// What is left of the constraints as the bodies are now.
 void Solver::Impl::measure_residual(StepReport& report)
 {
-    report.islands = convergence.islands();
-    report.islands_above_tolerance = convergence.unfinished();
-    if (!settings.measures) return;
+    if (settings.tolerance > 0) {
+        report.islands = convergence.islands();
+        report.islands_above_tolerance = convergence.unfinished();
+    }
+    if (!settings.measures && settings.budget_ms == 0) return;
     convergence.start_over(layout.sweeps());
     layout.context.measure = Measure::without_solving;
     sweep(&ConstraintKernels::solve);

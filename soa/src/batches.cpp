@@ -170,7 +170,7 @@ void BatchSet::fill(std::int64_t chunk)
     }
 }
 
-BlockStreams BatchSet::Pool::streams(bool measures)
+BlockStreams BatchSet::Pool::streams(bool tells_apart)
 {
     return {bodies.data(),
             counts.data(),
@@ -178,10 +178,10 @@ BlockStreams BatchSet::Pool::streams(bool measures)
             rows.data(),
             substep_rows.data(),
             impulses.data(),
-            measures ? residuals.data() : nullptr};
+            tells_apart ? residuals.data() : nullptr};
 }
 
-void BatchSet::cut(const KernelTable& table, bool measures, SweepLists& sweeps, TransferList& transfers)
+void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweeps, TransferList& transfers)
 {
     std::int32_t tiles = 1;
     for (std::size_t p = 0; p < pools_.size(); ++p) {
@@ -189,19 +189,22 @@ void BatchSet::cut(const KernelTable& table, bool measures, SweepLists& sweeps, 
         if (pool.block_count() == 0) continue;
         const int constraint_class = first_class_ + static_cast<int>(p);
         const ConstraintKernels& kernels = table.constraints[constraint_class];
-        if (measures) {
+        if (tells_apart) {
             grow(pool.residuals, static_cast<std::size_t>(pool.block_count()) * 2 * block_lanes);
             grow(pool.finished, static_cast<std::size_t>(pool.block_count()));
             grow(pool.islands, static_cast<std::size_t>(pool.block_count()));
+            grow(pool.wanted, static_cast<std::size_t>(pool.block_count()));
         }
         for (std::size_t colour = 0; colour < colours; ++colour) {
             const std::int32_t end = pool.first_block[colour + 1];
             tiles = std::max(tiles, (end - pool.first_block[colour]) / blocks_per_tile);
             for (std::int32_t begin = pool.first_block[colour]; begin < end; begin += blocks_per_chunk) {
                 sweeps[colour].push_back(
-                    {&kernels, pool.streams(measures), begin, std::min(begin + blocks_per_chunk, end),
-                     kind_a_of(constraint_class), kind_b_of(constraint_class),
-                     measures ? pool.finished.data() : nullptr, measures ? pool.islands.data() : nullptr});
+                    {&kernels, pool.streams(tells_apart), begin, std::min(begin + blocks_per_chunk, end),
+                     constraint_class / (body_kind_count * body_kind_count), kind_a_of(constraint_class),
+                     kind_b_of(constraint_class), tells_apart ? pool.finished.data() : nullptr,
+                     tells_apart ? pool.islands.data() : nullptr,
+                     tells_apart ? pool.wanted.data() : nullptr});
             }
         }
     }

@@ -31,11 +31,13 @@ struct SweepChunk {
     const ConstraintKernels* kernels;
     BlockStreams streams;
     std::int32_t begin, end;
+    int type;
     BodyKind kind_a, kind_b;
-    /// By block, and null unless residuals are measured: 1 when its islands want no more sweeps; and the island that all
-    /// its constraints are of, or several_islands.
+    /// By block, and null unless blocks are told apart: 1 when its islands want no more sweeps; the island that all its
+    /// constraints are of, or several_islands; at least how many sweeps somebody asked for.
     std::uint8_t* finished;
     std::int32_t* islands;
+    std::int32_t* wanted;
 };
 
 /// The unit of work of prepare and store: a few blocks of each class and colour, from about the same stretch of the
@@ -71,9 +73,9 @@ class BatchSet {
     /// Puts the constraints of a chunk into their lanes. Chunks may run on different threads.
     void fill(std::int64_t chunk);
 
-    /// Appends this set's chunks to the lists, with room for residuals if they are to be measured. Pointers in them
+    /// Appends this set's chunks to the lists, with room to tell blocks apart, by residuals and wishes, if asked. Pointers in them
     /// stay good until the next begin().
-    void cut(const KernelTable& kernels, bool measures, SweepLists& sweeps, TransferList& transfers);
+    void cut(const KernelTable& kernels, bool tells_apart, SweepLists& sweeps, TransferList& transfers);
 
     /// Blocks, constraints, overflow and streamed floats, for the report.
     struct Count {
@@ -91,14 +93,14 @@ class BatchSet {
         AlignedVector<BlockConstraints> who;
         AlignedVector<std::uint8_t> counts;
         AlignedVector<float> rows, substep_rows, impulses;
-        AlignedVector<float> residuals;                            ///< only when they are measured
+        AlignedVector<float> residuals;                            ///< only when blocks are told apart
         AlignedVector<std::uint8_t> finished;                      ///< likewise
-        AlignedVector<std::int32_t> islands;                       ///< likewise
+        AlignedVector<std::int32_t> islands, wanted;               ///< likewise
         std::array<std::int32_t, colours + 1> first_block{};       ///< of each colour, and one past the last
         std::array<std::int32_t, parallel_colours> constraints{};  ///< of each colour
         std::int64_t overflow = 0;
         [[nodiscard]] std::int32_t block_count() const { return first_block[colours]; }
-        [[nodiscard]] BlockStreams streams(bool measures);
+        [[nodiscard]] BlockStreams streams(bool tells_apart);
         void make_room(std::int32_t blocks);
         void set_lane(std::size_t block, int lane, const Placement& placement)
         {

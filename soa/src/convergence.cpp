@@ -1,4 +1,4 @@
-// Islands by union-find, residuals by block.
+// Islands by union-find, residuals and wishes by block.
 #include "convergence.h"
 
 #include <algorithm>
@@ -132,6 +132,40 @@ void Convergence::name_islands(const SweepLists& sweeps)
                 for (int lane = 1; lane < chunk.streams.counts[block]; ++lane)
                     same = same && island_of(chunk, block, lane) == first;
                 chunk.islands[block] = same ? first : several_islands;
+            }
+        }
+    }
+}
+
+void Convergence::take_wishes(const Scene& scene, const SweepLists& sweeps)
+{
+    most_wanted_ = 0;
+    wanted_.assign(parent_.size(), 0);
+    for (const Scene::IslandIterations& asked : scene.island_iterations()) {
+        const BodyRow row = scene.bodies().row_of(asked.body);
+        const std::int32_t body =
+            first_[static_cast<std::size_t>(row.kind())] + static_cast<std::int32_t>(row.row());
+        std::int32_t& wanted = wanted_[static_cast<std::size_t>(parent_[static_cast<std::size_t>(body)])];
+        wanted = std::max(wanted, asked.at_least);
+    }
+    std::array<const std::uint32_t*, constraint_type_count> slots{};
+    scene.joints().for_each([&](const auto& store, int type) {
+        slots[static_cast<std::size_t>(contact_type_count + type)] = store.slots.data();
+    });
+    for (const auto& chunks : sweeps) {
+        for (const SweepChunk& chunk : chunks) {
+            const std::uint32_t* slot_of = slots[static_cast<std::size_t>(chunk.type)];
+            for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
+                std::int32_t wanted = 0;
+                for (int lane = 0; lane < chunk.streams.counts[block]; ++lane) {
+                    wanted =
+                        std::max(wanted, wanted_[static_cast<std::size_t>(island_of(chunk, block, lane))]);
+                    if (slot_of == nullptr) continue;  // of contacts
+                    const std::uint32_t slot = slot_of[chunk.streams.constraints[block].lane[lane]];
+                    wanted = std::max<std::int32_t>(wanted, scene.joints().slots[slot].iterations);
+                }
+                chunk.wanted[block] = wanted;
+                most_wanted_ = std::max(most_wanted_, wanted);
             }
         }
     }

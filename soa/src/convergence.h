@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "batches.h"
+#include "motley/core/scene.h"
 
 namespace motley {
 
@@ -28,6 +29,10 @@ class Convergence {
     /// Finds the islands of a step.
     void find_islands(const KernelContext& context, std::span<const Placement> joints,
                       std::span<const Placement> contacts, const SweepLists& sweeps);
+    /// After find_islands: how many sweeps the host asked for, by joint and by island.
+    void take_wishes(const Scene& scene, const SweepLists& sweeps);
+    /// The most that anybody asked for; 0 when nobody did.
+    [[nodiscard]] int most_wanted() const { return most_wanted_; }
     /// Every island wants sweeps again: another substep.
     void start_over(const SweepLists& sweeps);
     /// After a measuring sweep: finishes the islands whose residuals are all at most `tolerance`.
@@ -41,7 +46,9 @@ class Convergence {
     std::array<std::int32_t, moving_kinds> first_{};  ///< index of the first row of a kind
     std::vector<std::int32_t> parent_;                ///< by moving body; then its island's root
     std::vector<std::int32_t> worst_;                 ///< bits of m/s, by root
+    std::vector<std::int32_t> wanted_;                ///< sweeps, by root
     std::int64_t islands_ = 0, unfinished_ = 0;
+    int most_wanted_ = 0;
 
     [[nodiscard]] std::int32_t root_of(std::int32_t body);
     void tie(std::span<const Placement> placements);

@@ -64,13 +64,13 @@ void Layout::colour_contacts(ContactList& list)
     }
 }
 
-void Layout::cut(Scene& scene, std::span<const Contact> list, bool measures)
+void Layout::cut(Scene& scene, std::span<const Contact> list, bool tells_apart)
 {
     for (auto& chunks : sweeps_) chunks.clear();
     transfers_.parts.clear();
     transfers_.tiles.clear();
-    joints_.cut(kernels_, measures, sweeps_, transfers_);
-    contacts.cut(kernels_, measures, sweeps_, transfers_);
+    joints_.cut(kernels_, tells_apart, sweeps_, transfers_);
+    contacts.cut(kernels_, tells_apart, sweeps_, transfers_);
     point_at_data(scene, list);
 }
 

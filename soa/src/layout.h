@@ -29,7 +29,7 @@ class Layout {
     /// ...then the contacts are sorted into blocks (count, open, fill)...
     BatchSet contacts{0, contact_type_count};
     /// ...and the blocks are cut into work.
-    void cut(Scene& scene, std::span<const Contact> list, bool measures);
+    void cut(Scene& scene, std::span<const Contact> list, bool tells_apart);
 
     /// The step's numbers and the rows of the bodies.
     KernelContext context;

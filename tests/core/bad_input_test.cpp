@@ -600,6 +600,8 @@ TEST(BadInput, EverySettingIsChecked)
     refused("iterations", [](auto& s) { s.iterations = 0; });
     refused("relaxations", [](auto& s) { s.relaxations = -1; });
     refused("projections", [](auto& s) { s.projections = -1; });
+    refused("tolerance", [](auto& s) { s.tolerance = -1; });
+    refused("budget_ms", [](auto& s) { s.budget_ms = nan; });
     refused("gravity.x", [](auto& s) { s.gravity.x = nan; });
     refused("gravity.y", [](auto& s) { s.gravity.y = nan; });
     refused("gravity.z", [](auto& s) { s.gravity.z = infinity; });

@@ -3,6 +3,8 @@
 // of r^T K^-1 r whatever the joint; equal bits with the measuring on and off.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "joint_scene.h"
 #include "rig.h"
 
@@ -274,39 +276,135 @@ TEST(Tolerance, EndsSweepsWhenEveryIslandIsSolved)
     EXPECT_EQ(cut_short.sweeps, 3);
 }
 
-TEST(Tolerance, AnIslandStopsOnItsOwn)
+/// Where the pairs beside a whip are, to the bit.
+std::vector<double> pair_positions(const Scene& scene, int pairs)
 {
-    // The pairs alone need two sweeps: one that solves them, one that finds nothing to do. Beside the chain, which wants
-    // hundreds, their bits are those of two sweeps: they were left alone.
-    const auto pair_positions = [](Scene& scene) {
-        std::vector<double> values;
-        for (std::uint32_t slot = 13; slot < 13 + 32; ++slot) {
-            const BodyState s = scene.state(scene.bodies().id_of_slot(slot));
-            values.insert(values.end(),
-                          {s.position.x, s.position.y, static_cast<double>(s.linear_velocity.y)});
-        }
-        return values;
-    };
+    std::vector<double> values;
+    for (std::uint32_t slot = 14; slot < 14 + static_cast<std::uint32_t>(pairs); ++slot) {
+        const BodyState s = scene.state(scene.bodies().id_of_slot(slot));
+        values.insert(values.end(), {s.position.x, s.position.y, static_cast<double>(s.linear_velocity.y)});
+    }
+    return values;
+}
+
+/// In one step without a warm start: what a whip and 32 pairs are after so many iterations.
+WhipAndPairs whip_after(int iterations, float tolerance, StepReport& report)
+{
     SolverSettings settings = one_plain_sweep();
     settings.gravity = {1, -9.81F, 0};
     settings.warm_start = false;
-    settings.iterations = 500;
-    settings.tolerance = 1e-4F;
-    WhipAndPairs tolerant(32);
+    settings.iterations = iterations;
+    settings.tolerance = tolerance;
+    WhipAndPairs whip(32);
     Solver solver(settings, {});
-    const StepReport report = solver.step(tolerant.scene, frame_time);
-    EXPECT_GT(report.sweeps, 20);
-    // As many chain joints as fill no block with the pairs' would differ; sixteen pairs a block stand alone.
-    settings.tolerance = 0;
-    settings.iterations = 2;
-    WhipAndPairs plain(32);
-    Solver two(settings, {});
-    two.step(plain.scene, frame_time);
-    const auto left = pair_positions(tolerant.scene), right = pair_positions(plain.scene);
-    std::size_t same = 0;
-    for (std::size_t i = 0; i < left.size(); ++i) same += left[i] == right[i] ? 1U : 0U;
-    // Those that share a block with the chain may have been swept on; the others may not.
-    EXPECT_GE(same, left.size() / 2);
+    report = solver.step(whip.scene, frame_time);
+    return whip;
+}
+
+TEST(Tolerance, AnIslandStopsOnItsOwn)
+{
+    // A pair is solved by one sweep, and the second finds nothing to do. The chain wants hundreds. All joints to the ground
+    // have one colour: of the 33, the first sixteen share a block with the chain's and are swept on with it.
+    StepReport tolerant_report, plain_report;
+    const WhipAndPairs tolerant = whip_after(500, 1e-4F, tolerant_report),
+                       plain = whip_after(2, 0, plain_report);
+    EXPECT_GT(tolerant_report.sweeps, 20);
+    const auto left = pair_positions(tolerant.scene, 32), right = pair_positions(plain.scene, 32);
+    EXPECT_TRUE(std::equal(left.begin() + 15 * 3, left.end(), right.begin() + 15 * 3));
+}
+
+/// The residual of the chain's joints after one step, each joint asking for so many sweeps.
+double residual_when_asked(const std::function<void(Scene&, const std::vector<ConstraintId>&, BodyId)>& ask,
+                           StepReport& report)
+{
+    Scene scene;
+    std::vector<ConstraintId> joints;
+    BodyId before = scene.ground(), last{};
+    for (int i = 0; i < 12; ++i) {
+        last = scene.add_body(box({0.5 * i + 0.25, 0, 0}, 1));
+        joints.push_back(scene.add_joint(BallSocketDefinition{
+            before, last, i == 0 ? Vec3<float>{} : Vec3<float>{0.25F, 0, 0}, {-0.25F, 0, 0}}));
+        before = last;
+    }
+    ask(scene, joints, last);
+    SolverSettings settings = one_plain_sweep();
+    settings.gravity = {0, -9.81F, 0};
+    settings.iterations = 3;
+    Solver solver(settings, {});
+    report = solver.step(scene, frame_time);
+    return report.measures.residual_norm;
+}
+
+TEST(Iterations, OfAnIslandAreAsManyAsItsBodyAsksFor)
+{
+    StepReport report;
+    const double plain = residual_when_asked([](auto&, const auto&, BodyId) {}, report);
+    EXPECT_EQ(report.iterations, 3);
+    const double asked = residual_when_asked(
+        [](Scene& s, const auto&, BodyId body) { s.set_island_iterations(body, 60); }, report);
+    EXPECT_EQ(report.iterations, 60);
+    EXPECT_LT(asked, plain / 10);
+    // Fewer than everybody gets is no fewer; and 0 takes the wish back.
+    EXPECT_EQ(residual_when_asked(
+                  [](Scene& s, const auto&, BodyId body) { s.set_island_iterations(body, 2); }, report),
+              plain);
+    EXPECT_EQ(residual_when_asked(
+                  [](Scene& s, const auto&, BodyId body) {
+                      s.set_island_iterations(body, 60);
+                      s.set_island_iterations(body, 0);
+                  },
+                  report),
+              plain);
+}
+
+TEST(Iterations, OfEveryJointOrOfItsIslandAreTheSame)
+{
+    StepReport report;
+    const double island = residual_when_asked(
+        [](Scene& s, const auto&, BodyId body) { s.set_island_iterations(body, 60); }, report);
+    const double joints = residual_when_asked(
+        [](Scene& s, const std::vector<ConstraintId>& all, BodyId) {
+            for (const ConstraintId joint : all) s.set_iterations(joint, 60);
+        },
+        report);
+    EXPECT_EQ(joints, island);
+}
+
+TEST(Iterations, OfOneIslandLeaveTheOthersBitsAlone)
+{
+    const auto pairs_when = [](bool asks) {
+        WhipAndPairs whip(32);
+        if (asks) whip.scene.set_island_iterations(whip.scene.bodies().id_of_slot(5), 50);
+        SolverSettings settings;
+        settings.gravity = {1, -9.81F, 0};
+        Solver solver(settings, {});
+        for (int step = 0; step < 30; ++step) solver.step(whip.scene, frame_time);
+        return pair_positions(whip.scene, 32);
+    };
+    const auto asked = pairs_when(true), plain = pairs_when(false);
+    // As above: the first fifteen pairs share a block with the chain's first joint.
+    EXPECT_TRUE(std::equal(asked.begin() + 15 * 3, asked.end(), plain.begin() + 15 * 3));
+    EXPECT_FALSE(asked.empty());
+}
+
+TEST(Iterations, RemovedBodiesAndJointsTakeTheirWishesWithThem)
+{
+    Scene scene;
+    const BodyId a = scene.add_body(box({0, 0, 0})), b = scene.add_body(box({1, 0, 0}));
+    const ConstraintId joint = scene.add_joint(BallSocketDefinition{a, b});
+    scene.set_iterations(joint, 7);
+    scene.set_island_iterations(a, 9);
+    EXPECT_TRUE(scene.asks_for_iterations());
+    scene.remove_joint(joint);
+    EXPECT_TRUE(scene.asks_for_iterations());
+    scene.remove_body(a);
+    EXPECT_FALSE(scene.asks_for_iterations());
+    EXPECT_THROW(scene.set_iterations(joint, 7), InvalidInput);
+    EXPECT_THROW(scene.set_island_iterations(a, 7), InvalidInput);
+    EXPECT_THROW(scene.set_island_iterations(scene.ground(), 7), InvalidInput);
+    EXPECT_THROW(scene.set_island_iterations(b, -1), InvalidInput);
+    EXPECT_THROW(scene.set_island_iterations(b, 10001), InvalidInput);
+    EXPECT_FALSE(scene.asks_for_iterations());
 }
 
 }  // namespace

@@ -105,11 +105,14 @@ struct JointStores {
         bool live = false;
         bool watched = false;  ///< stands in the list below
         BreakLimit break_limit{};
+        std::uint16_t iterations =
+            0;  ///< at least so many sweeps of solve a substep; 0: as the solver's settings
     };
     typename StoresOf<JointTypes>::type stores;
     std::vector<Slot> slots{Slot{}};  ///< slot 0 is null
     std::vector<std::uint32_t> free_slots;
     std::vector<ConstraintId> watched;  ///< joints with a break limit, and some that had one
+    std::size_t with_iterations = 0;    ///< joints that ask for iterations of their own
     /// Names this set of joints: null after a change, given by the next step, shared by copies of the scene.
     /// A layout that holds the same token was made from the same joints.
     std::shared_ptr<const char> version;

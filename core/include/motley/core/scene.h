@@ -84,6 +84,13 @@ class Scene {
     /// Joints that bore more than their limit in the last step, in the order in which they were first watched.
     [[nodiscard]] std::span<const BreakEvent> break_events() const { return break_events_; }
 
+    // ---- accuracy where it is wanted ----------------------------------------------------------------------
+    /// Asks for at least so many sweeps of `solve` a substep for one joint, 0 to 10000; 0: as the solver's settings say.
+    /// The up to fifteen constraints that share its block are swept along. Not of Method::direct.
+    void set_iterations(ConstraintId joint, int at_least);
+    /// The same for every joint and contact of the island that the body is in, as it is in each step. Dynamic bodies only.
+    void set_island_iterations(BodyId body, int at_least);
+
     // ---- contacts -----------------------------------------------------------------------------------------
     /// What the contacts of the last step did, in the order of its list.
     [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const { return contacts_.impulses(); }
@@ -99,6 +106,15 @@ class Scene {
 
     // ---- for the solver
     // ------------------------------------------------------------------------------------
+    [[nodiscard]] bool asks_for_iterations() const
+    {
+        return joints_.with_iterations > 0 || !island_iterations_.empty();
+    }
+    struct IslandIterations {
+        BodyId body;
+        int at_least;
+    };
+    [[nodiscard]] std::span<const IslandIterations> island_iterations() const { return island_iterations_; }
     [[nodiscard]] const BodyStore& bodies() const { return bodies_; }
     [[nodiscard]] BodyStore& bodies() { return bodies_; }
     [[nodiscard]] const JointStores& joints() const { return joints_; }
@@ -114,7 +130,8 @@ class Scene {
     BodyStore bodies_;
     JointStores joints_;
     ContactCache contacts_;
-    std::vector<BreakEvent> break_events_;  ///< with room for every watched joint
+    std::vector<BreakEvent> break_events_;             ///< with room for every watched joint
+    std::vector<IslandIterations> island_iterations_;  ///< of bodies alive
     BodyId ground_{};
     std::size_t body_count_ = 0;
 

@@ -67,9 +67,11 @@ struct StepReport {
     double lane_occupancy = 0;        ///< constraints / (16 blocks); 0 without constraints
     double bytes_per_constraint = 0;  ///< streamed by one sweep of solve: rows, impulses and indices
     std::int64_t sweeps = 0;          ///< sweeps over all constraints: warm starts, solves and relaxations
+    int substeps = 0;                 ///< that were made; with a budget: that were picked
+    int iterations = 0;               ///< most sweeps of solve in a substep
     std::int64_t islands = 0;         ///< found when SolverSettings::tolerance is above 0
     std::int64_t islands_above_tolerance = 0;  ///< after the last sweep of solve that was allowed
-    StepMeasures measures;                     ///< only with SolverSettings::measures
+    StepMeasures measures;  ///< with SolverSettings::measures; with a budget its residuals alone
     double direct_violation =
         0;  ///< Method::direct: largest left of its equations and inequalities, m/s or rad/s
     std::int64_t bodies_contained = 0;  ///< bodies frozen in this step because their state was not finite

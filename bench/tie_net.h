@@ -1,0 +1,40 @@
+// A square net of bodies held together by one kind of constraint: what kernels are measured on.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "motley/motley.h"
+
+namespace motley::bench {
+
+/// A square net of bodies, each tied to the one on its right and the one above.
+struct TieNet {
+    Scene scene;
+    std::vector<BodyId> bodies;
+    std::vector<Contact> contacts;
+
+    TieNet(int side, BodyModel model);
+};
+
+/// What ties two bodies; the arm leads from the centre of a to the point between them.
+using Tie = std::function<void(TieNet&, BodyId a, BodyId b, Vec3<float> arm)>;
+
+std::unique_ptr<TieNet> make_net(const Tie& tie, BodyModel model, int side);
+/// Contacts that overlap by a millimetre.
+Tie contact_tie(float friction);
+
+struct NamedTie {
+    std::string name;  ///< "hinge/rigid"
+    BodyModel model;
+    Tie tie;
+};
+/// Every constraint, some between several models of bodies.
+std::vector<NamedTie> every_tie();
+
+/// A side whose net stays in a second level cache, and one whose does not.
+inline constexpr int side_in_cache = 45, side_streaming = 400;
+
+}  // namespace motley::bench
