@@ -13,7 +13,9 @@ void expand_method(const DialGrid& grid, Method method, const SolverOptions& sol
     const std::vector<int> defaults = soft ? std::vector<int>{1, 2} : std::vector<int>{4, 8, 16, 32};
     const std::vector<int>& iterations = direct ? one : grid.iterations.empty() ? defaults : grid.iterations;
     const std::vector<float> no_tolerance{0};
-    for (const int substeps : grid.substeps) {
+    const std::vector<int> default_substeps =
+        direct ? std::vector<int>{1, 4} : std::vector<int>{1, 2, 4, 8, 16};
+    for (const int substeps : grid.substeps.empty() ? default_substeps : grid.substeps) {
         for (const int iteration : iterations) {
             for (const int relaxation : soft ? grid.relaxations : one) {
                 for (const float hertz : soft ? grid.hertz : std::vector<float>{60}) {

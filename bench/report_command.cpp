@@ -23,7 +23,7 @@ struct PageScene {
 };
 constexpr PageScene page_scenes[] = {
     {"crowd", 10000, 1000, 1},
-    {"lean", 10000, 1000, 2},
+    {"lean", 10000, 1000, 6},
     {"pulse", 10000, 1000, 2},
     {"push", 1800, 600, 3},
     {"grid", 2500, 400, 2},

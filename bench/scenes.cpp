@@ -22,7 +22,7 @@ std::vector<SceneEntry> all_scenes()
          75, 90, make<Bottleneck>},
         {"crowd", "N people at 5 per m2, each walking from goal to goal", 10000, 10, make<OpenCrowd>},
         {"push", "a packed slab leans on a wall with 50 N each: 4.5 kN/m", 1800, 10, make<Push>},
-        {"lean", "rows of 100 people lean on each other with 50 N each, and the first on a wall", 10000, 4,
+        {"lean", "rows of 100 people lean on each other with 50 N each, and the first on a wall", 10000, 6,
          make<Lean>},
         {"pulse", "rows of 20 people 0.1 m apart; the first runs into them and takes all along", 10000, 3,
          make<Pulse>},

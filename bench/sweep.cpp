@@ -149,8 +149,9 @@ class CrowdSubject {
             RunOutputs quiet;
             quiet.progress = false;
             const RunResult result = run_scene(entry_, run, quiet);
-            return Run{
-                result.median_solver_seconds, result.overlap_p99, result.overlap_max, result.steps, {}};
+            const double error = result.error ? result.error->value : result.overlap_p99;
+            const double worst = result.error ? error : result.overlap_max;
+            return Run{result.median_solver_seconds, error, worst, result.steps, {}};
         };
     }
 

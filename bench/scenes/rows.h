@@ -66,6 +66,7 @@ class Rows : public BenchScene {
 class Lean final : public Rows {
   public:
     static constexpr double force = 50;  ///< N
+    static constexpr double settle = 4;  ///< s until the load has run through a row and back
     explicit Lean(const RunOptions& options)
     {
         add_rows(options.agents, 100, 0);
@@ -90,7 +91,7 @@ class Lean final : public Rows {
     }
     void observe(double time, const Solver&) override
     {
-        if (time < 1) return;
+        if (time < settle) return;
         const auto impulses = scene.contact_impulses();
         for (std::size_t i = 0; i < contacts_.size(); ++i) {
             const bool at_wall = contacts_[i].key >= bodies_.size();
