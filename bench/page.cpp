@@ -88,6 +88,24 @@ std::string front_chart(const SweepResult& sweep)
     return svg_of(plot);
 }
 
+/// How fast each engine is when all are as exact.
+std::string equal_error_table(const SweepResult& sweep)
+{
+    std::string head = "<table><tr><th>error at most</th>", rows;
+    for (const auto& [engine, none] : fastest_within(sweep, 0))
+        head += fmt::format("<th>{}, ms</th>", engine);
+    for (double error = 1e-1; error > 5e-5; error /= 10) {
+        rows += fmt::format("<tr><td>{:.0e}</td>", error);
+        for (const auto& [engine, point] : fastest_within(sweep, error)) {
+            rows += point == nullptr ? std::string("<td>none</td>")
+                                     : fmt::format("<td title=\"{}\">{:.4f}</td>", escaped(point->label),
+                                                   point->seconds * 1e3);
+        }
+        rows += "</tr>\n";
+    }
+    return head + "</tr>\n" + rows + "</table>\n";
+}
+
 std::string sweep_section(const SweepResult& sweep)
 {
     std::string text = fmt::format(
@@ -96,6 +114,7 @@ std::string sweep_section(const SweepResult& sweep)
         sweep.scene, escaped(sweep.description), sweep.bodies, sweep.joints, sweep.steps, sweep.rounds,
         sweep.host_load);
     text += "<figure>" + front_chart(sweep) + "</figure>\n";
+    text += equal_error_table(sweep);
     const auto lost = unanswered(sweep);
     if (engines_of(sweep).size() > 1) {
         if (lost.empty()) {

@@ -214,6 +214,19 @@ void mark_front(std::vector<SweepPoint>& points)
     }
 }
 
+std::vector<std::pair<std::string, const SweepPoint*>> fastest_within(const SweepResult& result, double error)
+{
+    std::vector<std::pair<std::string, const SweepPoint*>> fastest{{"motley", nullptr}};
+    for (const SweepPoint& p : result.points) {
+        auto entry =
+            std::find_if(fastest.begin(), fastest.end(), [&](const auto& e) { return e.first == p.engine; });
+        if (entry == fastest.end()) entry = fastest.insert(entry, {p.engine, nullptr});
+        if (p.error <= error && (entry->second == nullptr || p.seconds < entry->second->seconds))
+            entry->second = &p;
+    }
+    return fastest;
+}
+
 SweepResult sweep(const std::string& scene, const DialGrid& grid, const SweepOptions& options)
 {
     SweepResult result;

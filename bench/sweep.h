@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "motley/motley.h"
@@ -68,8 +69,12 @@ struct SweepResult {
 /// Runs the sweep. Throws std::runtime_error for a scene that is not there, InvalidInput for dials out of range.
 SweepResult sweep(const std::string& scene, const DialGrid& grid, const SweepOptions& options);
 
-/// Marks the points that no other beats in both; `of_motley_only` leaves peers out.
+/// Marks the points that no other beats in both.
 void mark_front(std::vector<SweepPoint>& points);
+
+/// The fastest point of each engine whose error is at most `error`; of motley first, null where there is none.
+std::vector<std::pair<std::string, const SweepPoint*>> fastest_within(const SweepResult& result,
+                                                                      double error);
 
 std::string csv_of(const SweepResult& result);
 std::string json_of(const SweepResult& result);

@@ -108,6 +108,14 @@ std::string table_of(const SweepResult& result)
         text += fmt::format("{:<14}{:<44}{:>12.4f}{:>14.4g}{:>14.4g}\n", p.engine, p.label, p.seconds * 1e3,
                             p.error, p.worst);
     }
+    for (double error = 1e-1; error > 5e-5; error /= 10) {
+        text += fmt::format("fastest within {:<8.0e}", error);
+        for (const auto& [engine, point] : fastest_within(result, error)) {
+            text += point == nullptr ? fmt::format("  {}: none", engine)
+                                     : fmt::format("  {}: {:.4f} ms", engine, point->seconds * 1e3);
+        }
+        text += "\n";
+    }
     text += fmt::format("{} points lie behind this front; error: {}\n", behind, result.error_name);
     for (const std::string& note : result.notes) text += "note: " + note + "\n";
     return text;

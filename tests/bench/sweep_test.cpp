@@ -28,6 +28,27 @@ TEST(Front, IsWhatNobodyBeatsInBoth)
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(points[i].on_front, expected[i]) << i;
 }
 
+TEST(Front, TellsTheFastestOfEachEngineWithinAnError)
+{
+    SweepResult result;
+    const auto add = [&](const char* engine, double seconds, double error) {
+        result.points.emplace_back();
+        result.points.back().engine = engine;
+        result.points.back().seconds = seconds;
+        result.points.back().error = error;
+    };
+    add("other", 1, 0.1);
+    add("motley", 2, 0.02);
+    add("motley", 3, 0.01);
+    add("other", 4, 0.05);
+    const auto fastest = fastest_within(result, 0.02);
+    ASSERT_EQ(fastest.size(), 2U);
+    EXPECT_EQ(fastest[0].first, "motley");
+    ASSERT_NE(fastest[0].second, nullptr);
+    EXPECT_EQ(fastest[0].second->seconds, 2);
+    EXPECT_EQ(fastest[1].second, nullptr);
+}
+
 TEST(Dials, EveryCombinationOnceUnderItsOwnName)
 {
     DialGrid grid;
