@@ -69,7 +69,7 @@ std::string svg_of(const Plot& plot)
     script += fmt::format("set xlabel {}\nset ylabel {}\nset key outside bottom center horizontal\n",
                           quoted(plot.x_name), quoted(plot.y_name));
     script +=
-        "set format '%g'\nset autoscale noextend\nset offsets graph 0.05, graph 0.14, graph 0.05, graph "
+        "set format '%g'\nset autoscale noextend\nset offsets graph 0.16, graph 0.14, graph 0.05, graph "
         "0.05\n";
     std::string clauses, labels;
     for (std::size_t i = 0; i < plot.series.size(); ++i) {

@@ -1,0 +1,81 @@
+// The page of `motley report`: what it says of a sweep, and that its charts have every point.
+#include "page.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "plot.h"
+
+namespace motley::bench {
+namespace {
+
+SweepPoint point(const char* engine, const char* label, double seconds, double error)
+{
+    SweepPoint p;
+    p.engine = engine;
+    p.label = label;
+    p.seconds = seconds;
+    p.error = p.worst = error;
+    return p;
+}
+
+SweepResult small_result()
+{
+    SweepResult result;
+    result.scene = "made-up";
+    result.description = "five points & <one> that came apart";
+    result.error_name = "error (m)";
+    result.points = {point("motley", "soft 1 x 1+1, 60 Hz", 1e-3, 0.1),
+                     point("Peer 1", "fast", 2e-3, 0.5),
+                     point("motley", "soft 4 x 1+1, 60 Hz", 4e-3, 0.02),
+                     point("Peer 1", "fine", 8e-3, 0.001),
+                     point("motley", "impulse 1 x 8, Baumgarte", 2e-3, 0.02),
+                     point("Peer 1", "lost", 1e-3, std::numeric_limits<double>::infinity())};
+    return result;
+}
+
+std::size_t count_of(const std::string& text, const std::string& part)
+{
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+TEST(Page, NamesThePeersPointsThatMotleyHasNoAnswerTo)
+{
+    const SweepResult result = small_result();
+    const auto lost = unanswered(result);
+    ASSERT_EQ(lost.size(), 1U);
+    EXPECT_EQ(lost[0]->label, "fine");
+}
+
+TEST(Page, PricesTheDefaultAgainstTheFastestThatIsAsExact)
+{
+    EXPECT_DOUBLE_EQ(price_of_default(small_result()), 2);
+    EXPECT_EQ(price_of_default({}), 0);
+}
+
+TEST(Page, DrawsEveryPointAndNeedsNothingFromElsewhere)
+{
+    try {
+        require_gnuplot();
+    } catch (const std::runtime_error& error) {
+        GTEST_SKIP() << error.what();
+    }
+    Report report;
+    report.machine = machine_facts();
+    report.sweeps = {small_result()};
+    report.ways = {{"scalar, 1 thread", 1e6}, {"avx2, 1 thread", 3e6}};
+    report.costs = {{"a group", "first", 1e-3, -1}, {"a group", "second", 2e-3, 0.01}};
+    const std::string page = page_of(report);
+    EXPECT_EQ(count_of(page, "<svg"), 3U);
+    // Five points that have an error, and a key for each of three series.
+    EXPECT_EQ(count_of(page, "<use "), 5U + 3U);
+    EXPECT_EQ(count_of(page, "src=") + count_of(page, "<link") + count_of(page, "@import"), 0U);
+    EXPECT_NE(page.find("five points &amp; &lt;one> that came apart"), std::string::npos);
+    EXPECT_NE(page.find("The default settings take 2.00 times"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace motley::bench
