@@ -73,6 +73,7 @@ std::vector<Case> all_cases()
     const char* friction = "friction: the same net, rigid bodies";
     net(friction, "without", "smooth_contact/rigid");
     net(friction, "with", "contact/rigid");
+    net(friction, "manifolds of four points, friction of the whole", "manifold/rigid");
     const char* six = "six degrees of freedom set up as a hinge: a net of 19,800 joints";
     net(six, "hinge", "hinge/rigid");
     net(six, "six degrees of freedom", "six_dof_hinge/rigid");

@@ -33,7 +33,10 @@ void expand_method(const DialGrid& grid, Method method, const SolverOptions& sol
                                 s.drift_correction = drift;
                                 s.warm_start = warm != 0;
                                 s.tolerance = tolerance;
-                                all.push_back({s, solver});
+                                for (const int exact : soft ? grid.exact : std::vector<int>{0}) {
+                                    s.exact_joints = exact != 0;
+                                    all.push_back({s, solver});
+                                }
                             }
                         }
                     }
@@ -82,6 +85,7 @@ std::string label_of(const Dials& dials)
     } else {
         label = fmt::format("direct {}, {}", s.substeps, name_of(s.drift_correction));
     }
+    if (s.exact_joints) label += ", exact";
     if (!s.warm_start) label += ", cold";
     if (s.tolerance > 0) label += fmt::format(", tolerance {:g}", s.tolerance);
     if (dials.solver.threads != 1) label += fmt::format(", {} threads", dials.solver.threads);

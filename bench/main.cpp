@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "demo.h"
+#include "extremes.h"
 #include "page.h"
 #include "runner.h"
 #include "sweep.h"
@@ -64,6 +65,7 @@ struct RunCommand {
             ->capture_default_str();
         app.add_option("--joint-hertz", options.settings.joint_hertz, "soft_step: stiffness of joints")
             ->capture_default_str();
+        app.add_flag("--exact", options.settings.exact_joints, "soft_step: joints solved all at once");
         app.add_option("--isa", isa,
                        "scalar, sse2, avx2, avx512 or neon; default: MOTLEY_ISA, else the widest here");
         app.add_option("--threads", options.solver.threads, "threads, the caller's counted")
@@ -147,6 +149,7 @@ struct SweepCommand {
         dial("--iterations", grid.iterations, "sweeps a substep");
         dial("--relaxations", grid.relaxations, "soft_step: sweeps without bias a substep");
         dial("--hertz", grid.hertz, "soft_step: stiffness of joints; contacts have half of it");
+        dial("--exact", grid.exact, "soft_step: joints solved all at once: 1, 0 or both: 0,1");
         dial("--warm-start", grid.warm_starts, "1, 0 or both: 0,1");
         dial("--tolerance", grid.tolerances, "m/s at which an island's sweeps end; 0: never");
         dial("--threads", grid.threads, "threads");
@@ -203,6 +206,8 @@ int main(int count, char** arguments)
         ->capture_default_str();
     report_app->add_flag("--quick", report.quick, "small scenes: a page in a few minutes, for a look");
     report_app->add_flag("!--without-peers", report.with_peers, "motley alone");
+    CLI::App* extremes_app = app.add_subcommand(
+        "extremes", "run scenes at the edge of what numbers can bear under every method: figures and bounds");
     DemoOptions demo;
     demo_app->add_option("--seconds", demo.seconds, "simulated time of each crowd run")
         ->check(CLI::PositiveNumber)
@@ -221,6 +226,7 @@ int main(int count, char** arguments)
         if (*compare_app) return compare_command();
         if (*report_app) write_report(report);
         if (*demo_app) return run_demo(demo);
+        if (*extremes_app) return print_extremes({}) == 0 ? 0 : 1;
         if (*list_app) {
             for (const SceneEntry& entry : scene_list())
                 fmt::print("{:<12}{}\n", entry.name, entry.description);

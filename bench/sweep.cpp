@@ -108,6 +108,9 @@ class RigSubject {
     [[nodiscard]] std::function<Run()> candidate(const Dials& dials) const
     {
         if (dials.settings.method == Method::direct && !suits_direct_) return {};
+        // Nets and loops have no trees to solve exactly.
+        const bool has_trees = !rig_.joints.empty() && rig_.joints.size() <= rig_.bodies.size();
+        if (dials.settings.exact_joints && !has_trees) return {};
         return [this, dials] {
             const auto engine = make_motley_engine(rig_, dials.settings, dials.solver);
             return run_rig(rig_, *engine, times_);
@@ -138,7 +141,7 @@ class CrowdSubject {
     }
     [[nodiscard]] std::function<Run()> candidate(const Dials& dials) const
     {
-        if (dials.settings.method == Method::direct) return {};
+        if (dials.settings.method == Method::direct || dials.settings.exact_joints) return {};
         return [this, dials] {
             RunOptions run;
             run.agents = options_.agents;

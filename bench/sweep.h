@@ -20,6 +20,7 @@ struct DialGrid {
     std::vector<float> hertz{60, 1e6F};  ///< of joints, and half of it of contacts; capped at 0.25 / substep
     std::vector<DriftCorrection> drift_corrections{DriftCorrection::baumgarte, DriftCorrection::projection};
     std::vector<int> warm_starts{1};  ///< 0 or 1
+    std::vector<int> exact{0, 1};     ///< SolverSettings::exact_joints, of soft_step and scenes of joints
     std::vector<float> tolerances{0};
     std::vector<int> threads{1};
     std::vector<Isa> isas{};  ///< empty: the widest here

@@ -5,9 +5,16 @@ namespace motley {
 
 const char* stage_name(Stage stage)
 {
-    static constexpr const char* names[stage_count] = {"colour",     "prepare",     "integrate velocities",
-                                                       "warm start", "solve",       "integrate positions",
-                                                       "relax",      "restitution", "store"};
+    static constexpr const char* names[stage_count] = {"colour",
+                                                       "prepare",
+                                                       "figures",
+                                                       "integrate velocities",
+                                                       "warm start",
+                                                       "solve",
+                                                       "integrate positions",
+                                                       "relax",
+                                                       "restitution",
+                                                       "store"};
     return names[static_cast<int>(stage)];
 }
 

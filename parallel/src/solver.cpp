@@ -8,6 +8,7 @@
 
 #include "budget.h"
 #include "convergence.h"
+#include "figure_step.h"
 #include "layout.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/step_constants.h"
@@ -99,6 +100,14 @@ struct Solver::Impl {
     void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least = every_block);
     int iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations);
     void measure_residual(StepReport& report);
+    /// All substeps of the figures that nothing else touches.
+    void step_figures();
+    /// What is left to do for those that something touches: their trees, where they have any.
+    template <class Work>
+    void for_each_touched_tree(const Work& work);
+    void solve_touched_trees(float rate);
+    [[nodiscard]] FigureUse use_of_figures() const;
+    [[nodiscard]] float exact_rate() const;
     void integrate_positions();
     void move_bodies(Scene& scene, StepReport& report);
     void solve_substeps(Scene& scene, StepReport& report);
@@ -219,12 +228,16 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     }
     transfer(&ConstraintKernels::prepare);
     clock.charge(Stage::prepare);
+    step_figures();
+    clock.charge(Stage::figures);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool replays = substep > 0 && layout.has_constant_responses();
         integrate_velocities(replays ? &BodyKernels::integrate_and_replay
                                      : &BodyKernels::integrate_velocities);
         clock.charge(Stage::integrate_velocities);
+        for_each_touched_tree(prepare_tree);
         if (!replays) sweep(&ConstraintKernels::warm_start);
+        solve_touched_trees(exact_rate());
         clock.charge(Stage::warm_start);
         const int iterations = iterate(&ConstraintKernels::solve, settings.iterations);
         report.iterations = std::max(report.iterations, iterations);
@@ -280,8 +293,9 @@ std::string Solver::Impl::take_in(Scene& scene, std::span<const Contact> contact
 
 std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contacts)
 {
+    decide_on_blocks(scene);
     ContactCache& cache = scene.contact_cache();
-    layout.begin(scene, contacts.size());
+    layout.begin(scene, contacts.size(), use_of_figures());
     // What only one thread can do is one chunk among those of whatever else is ready.
     runner.run(1 + cache.survey_parts(), [&](std::int64_t chunk) {
         if (chunk == 0) {
@@ -301,7 +315,6 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
     if (!admitted) return ContactIntake::repeated_key(contacts);
     layout.contacts.open(layout.kernels());
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
-    decide_on_blocks(scene);
     layout.cut(scene, contacts, tells_blocks_apart);
     return {};
 }
@@ -352,8 +365,12 @@ void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, in
 /// many sweeps there were.
 int Solver::Impl::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations)
 {
+    const float rate = kernel == &ConstraintKernels::solve ? exact_rate() : 0;
     if (!picks_blocks) {
-        for (int i = 0; i < iterations; ++i) sweep(kernel);
+        for (int i = 0; i < iterations; ++i) {
+            sweep(kernel);
+            solve_touched_trees(rate);
+        }
         return iterations;
     }
     convergence.start_over(layout.sweeps());
@@ -367,6 +384,7 @@ int Solver::Impl::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, i
         const bool measured = settings.tolerance > 0 && (done == 2 || done % 4 == 0 || done == most);
         layout.context.measure = measured ? Measure::while_solving : Measure::nothing;
         sweep(kernel, done <= iterations ? 0 : done);
+        solve_touched_trees(rate);
         if (measured) convergence.judge(layout.sweeps(), settings.tolerance);
     }
     layout.context.measure = Measure::nothing;
@@ -392,15 +410,59 @@ void Solver::Impl::measure_residual(StepReport& report)
     report.measures.residual_max = sum.largest;
 }
 
+/// Figures take part alone or not at all where blocks are told apart, and where positions are projected.
+FigureUse Solver::Impl::use_of_figures() const
+{
+    const bool projects = settings.method == Method::sequential_impulse &&
+                          settings.drift_correction == DriftCorrection::projection;
+    const bool possible = settings.method != Method::direct && !projects;
+    return {possible && !tells_blocks_apart, possible && settings.exact_joints};
+}
+
+/// Soft steps take a lock's whole error away in one substep, and the speed that this took away again when they relax.
+float Solver::Impl::exact_rate() const
+{
+    const StepConstants& step = layout.context.step;
+    return settings.method == Method::soft_step ? step.inverse_substep : step.joint.rate;
+}
+
+void Solver::Impl::step_figures()
+{
+    const std::span<const std::int32_t> lone = layout.figures.lone();
+    const FigureSteps steps{settings.substeps, settings.iterations,
+                            settings.method == Method::soft_step ? settings.relaxations : 0, exact_rate()};
+    runner.run(static_cast<std::int64_t>(lone.size()), [&](std::int64_t i) {
+        step_figure(layout.context, layout.kernels().figures,
+                    layout.figures.blocks()[static_cast<std::size_t>(lone[static_cast<std::size_t>(i)])],
+                    layout.data(), steps);
+    });
+}
+
+template <class Work>
+void Solver::Impl::for_each_touched_tree(const Work& work)
+{
+    const std::span<const std::int32_t> trees = layout.figures.touched_trees();
+    runner.run(static_cast<std::int64_t>(trees.size()), [&](std::int64_t i) {
+        work(layout.context, layout.kernels().figures,
+             layout.figures.blocks()[static_cast<std::size_t>(trees[static_cast<std::size_t>(i)])]);
+    });
+}
+
+void Solver::Impl::solve_touched_trees(float rate)
+{
+    for_each_touched_tree([&](const KernelContext& context, const FigureKernels& kernels,
+                              const FigureBlock& block) { solve_tree(context, kernels, block, rate); });
+}
+
 void Solver::Impl::integrate_velocities(BodyKernels::Move BodyKernels::*kernel)
 {
     for (int kind = 0; kind < body_kind_count; ++kind) {
         const BodyKernels::Move integrate = layout.kernels().bodies[kind].*kernel;
-        const std::int64_t rows = layout.context.bodies[kind].size;
-        if (integrate == nullptr || rows == 1) continue;  // the null row alone
-        runner.run(chunks_of(rows, rows_per_chunk), [&](std::int64_t chunk) {
-            integrate(layout.context, static_cast<std::int32_t>(chunk * rows_per_chunk),
-                      static_cast<std::int32_t>(std::min((chunk + 1) * rows_per_chunk, rows)));
+        if (integrate == nullptr) continue;
+        const auto& ranges = layout.rows(kind);
+        runner.run(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
+            const RowRange& range = ranges[static_cast<std::size_t>(i)];
+            integrate(layout.context, range.begin, range.end);
         });
     }
 }
@@ -409,11 +471,10 @@ void Solver::Impl::integrate_positions()
 {
     for (int kind = 0; kind < body_kind_count; ++kind) {
         const auto integrate = layout.kernels().bodies[kind].integrate_positions;
-        const std::int64_t rows = layout.context.bodies[kind].size;
-        if (rows == 1) continue;
-        runner.run(chunks_of(rows, rows_per_chunk), [&](std::int64_t chunk) {
-            integrate(layout.context, static_cast<std::int32_t>(chunk * rows_per_chunk),
-                      static_cast<std::int32_t>(std::min((chunk + 1) * rows_per_chunk, rows)));
+        const auto& ranges = layout.rows(kind);
+        runner.run(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
+            const RowRange& range = ranges[static_cast<std::size_t>(i)];
+            integrate(layout.context, range.begin, range.end);
         });
     }
 }

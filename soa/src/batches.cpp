@@ -28,6 +28,7 @@ void BatchSet::Pool::make_room(std::int32_t blocks)
     grow(bodies, static_cast<std::size_t>(blocks));
     grow(who, static_cast<std::size_t>(blocks));
     grow(counts, static_cast<std::size_t>(blocks));
+    grow(skipped, static_cast<std::size_t>(blocks));
 }
 
 /// Makes lanes [first, 16) padding: the null bodies, and the parameters of a real constraint, so that no lane ever
@@ -38,6 +39,14 @@ void BatchSet::Pool::pad(std::size_t block, int first, std::int32_t constraint)
     std::fill(bodies[block].b + first, bodies[block].b + block_lanes, 0);
     std::fill(who[block].lane + first, who[block].lane + block_lanes, constraint);
     counts[block] = static_cast<std::uint8_t>(first);
+    skipped[block] = skip_nothing;
+}
+
+void BatchSet::Pool::leave_gap(std::size_t block, int lane, std::int32_t constraint)
+{
+    bodies[block].a[lane] = bodies[block].b[lane] = 0;
+    who[block].lane[lane] = constraint;
+    counts[block] = std::min(counts[block], static_cast<std::uint8_t>(lane));
 }
 
 bool BatchSet::Pool::holds(std::size_t block, BodyRow a, BodyRow b) const
@@ -161,6 +170,10 @@ void BatchSet::fill(std::int64_t chunk)
         const std::int32_t place = places[key]++;
         const int lane = place % block_lanes;
         const auto block = static_cast<std::size_t>(pool.first_block[placement.colour] + place / block_lanes);
+        if (placement.is_gap()) {
+            pool.leave_gap(block, lane, ~placement.constraint);
+            continue;
+        }
         pool.set_lane(block, lane, placement);
         // Whoever has the first lane sees to the padding, which no other writes.
         if (lane == 0) {
@@ -168,6 +181,13 @@ void BatchSet::fill(std::int64_t chunk)
                      placement.constraint);
         }
     }
+}
+
+BatchSet::Block BatchSet::block(int constraint_class, int colour, std::int32_t nth)
+{
+    Pool& pool = pools_[static_cast<std::size_t>(constraint_class - first_class_)];
+    const std::int32_t index = pool.first_block[static_cast<std::size_t>(colour)] + nth;
+    return {pool.streams(false), index, &pool.skipped[static_cast<std::size_t>(index)]};
 }
 
 BlockStreams BatchSet::Pool::streams(bool tells_apart)
@@ -198,13 +218,18 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
         for (std::size_t colour = 0; colour < colours; ++colour) {
             const std::int32_t end = pool.first_block[colour + 1];
             tiles = std::max(tiles, (end - pool.first_block[colour]) / blocks_per_tile);
-            for (std::int32_t begin = pool.first_block[colour]; begin < end; begin += blocks_per_chunk) {
-                sweeps[colour].push_back(
-                    {&kernels, pool.streams(tells_apart), begin, std::min(begin + blocks_per_chunk, end),
-                     constraint_class / (body_kind_count * body_kind_count), kind_a_of(constraint_class),
-                     kind_b_of(constraint_class), tells_apart ? pool.finished.data() : nullptr,
-                     tells_apart ? pool.islands.data() : nullptr,
-                     tells_apart ? pool.wanted.data() : nullptr});
+            for (std::int32_t begin = pool.first_block[colour], next = begin; begin < end; begin = next) {
+                next = begin + 1;
+                if (pool.skipped[static_cast<std::size_t>(begin)] != skip_nothing) continue;
+                while (next < std::min(begin + blocks_per_chunk, end) &&
+                       pool.skipped[static_cast<std::size_t>(next)] == skip_nothing)
+                    ++next;
+                sweeps[colour].push_back({&kernels, pool.streams(tells_apart), begin, next,
+                                          constraint_class / (body_kind_count * body_kind_count),
+                                          kind_a_of(constraint_class), kind_b_of(constraint_class),
+                                          tells_apart ? pool.finished.data() : nullptr,
+                                          tells_apart ? pool.islands.data() : nullptr,
+                                          tells_apart ? pool.wanted.data() : nullptr});
             }
         }
     }
@@ -217,12 +242,19 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
                 const std::int32_t first = pool.first_block[colour];
                 const std::int64_t blocks = pool.first_block[colour + 1] - first;
                 if (blocks == 0) continue;
-                const auto begin = first + static_cast<std::int32_t>(blocks * tile / tiles);
+                auto begin = first + static_cast<std::int32_t>(blocks * tile / tiles);
                 const auto end = first + static_cast<std::int32_t>(blocks * (tile + 1) / tiles);
-                if (begin == end) continue;
-                transfers.parts.push_back({&table.constraints[constraint_class], pool.streams(false),
-                                           constraint_class / (body_kind_count * body_kind_count), begin,
-                                           end});
+                const auto transferred = [&](std::int32_t block) {
+                    return pool.skipped[static_cast<std::size_t>(block)] != skip_altogether;
+                };
+                for (std::int32_t next = begin; begin < end; begin = next) {
+                    while (begin < end && !transferred(begin)) ++begin;
+                    for (next = begin; next < end && transferred(next);) ++next;
+                    if (begin == next) continue;
+                    transfers.parts.push_back({&table.constraints[constraint_class], pool.streams(false),
+                                               constraint_class / (body_kind_count * body_kind_count), begin,
+                                               next});
+                }
             }
         }
         const auto last_part = static_cast<std::int32_t>(transfers.parts.size());
@@ -236,8 +268,9 @@ BatchSet::Count BatchSet::count(const KernelTable& table) const
     for (std::size_t p = 0; p < pools_.size(); ++p) {
         const Pool& pool = pools_[p];
         if (pool.block_count() == 0) continue;
-        std::int64_t constraints = pool.overflow;
-        for (const std::int32_t some : pool.constraints) constraints += some;
+        std::int64_t constraints = 0;
+        for (std::int32_t block = 0; block < pool.block_count(); ++block)
+            constraints += pool.counts[static_cast<std::size_t>(block)];
         const ConstraintKernels& kernels = table.constraints[static_cast<std::size_t>(first_class_) + p];
         const double floats = kernels.swept_floats + kernels.impulse_floats + 2;  // two body indices
         total.blocks += pool.block_count();

@@ -22,6 +22,8 @@ struct Placement {
     std::int32_t constraint = 0;  ///< index in the list or store of its type
     std::uint8_t type = 0;
     std::uint8_t colour = no_colour;
+    /// Takes a lane in the block of the constraints before it and leaves it empty; `constraint` is ~ of one of them.
+    [[nodiscard]] bool is_gap() const { return constraint < 0; }
 };
 
 inline constexpr std::int32_t several_islands = -1;
@@ -70,8 +72,17 @@ class BatchSet {
     void count(std::int64_t chunk);
     /// When all are counted: makes room, and puts the overflow into its blocks, in order.
     void open(const KernelTable& kernels);
-    /// Puts the constraints of a chunk into their lanes. Chunks may run on different threads.
+    /// Puts the constraints of a chunk into their lanes. Chunks may run on different threads, unless there are gaps.
     void fill(std::int64_t chunk);
+
+    /// Block number `nth` of a class and colour. Pointers stay good until the next begin().
+    struct Block {
+        BlockStreams streams;
+        std::int32_t index;
+        std::uint8_t* skipped;  ///< what the next cut() leaves out
+    };
+    static constexpr std::uint8_t skip_nothing = 0, skip_sweeps = 1, skip_altogether = 2;
+    [[nodiscard]] Block block(int constraint_class, int colour, std::int32_t nth);
 
     /// Appends this set's chunks to the lists, with room to tell blocks apart, by residuals and wishes, if asked. Pointers in them
     /// stay good until the next begin().
@@ -91,7 +102,7 @@ class BatchSet {
     struct Pool {
         AlignedVector<BlockBodies> bodies;
         AlignedVector<BlockConstraints> who;
-        AlignedVector<std::uint8_t> counts;
+        AlignedVector<std::uint8_t> counts, skipped;
         AlignedVector<float> rows, substep_rows, impulses;
         AlignedVector<float> residuals;                            ///< only when blocks are told apart
         AlignedVector<std::uint8_t> finished;                      ///< likewise
@@ -109,6 +120,7 @@ class BatchSet {
             who[block].lane[lane] = placement.constraint;
         }
         void pad(std::size_t block, int first, std::int32_t constraint);
+        void leave_gap(std::size_t block, int lane, std::int32_t constraint);
         [[nodiscard]] bool holds(std::size_t block, BodyRow a, BodyRow b) const;
     };
 

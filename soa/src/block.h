@@ -90,6 +90,20 @@ struct ConstraintKernels {
     Sweep restitute = nullptr;  ///< null for types that do not bounce
     Sweep project = nullptr;
     Transfer store = nullptr;  ///< impulses -> memory
+
+    /// The same over one block whose lanes are copies of a figure, with body a and body b already in lanes (see
+    /// CopyBody). Null for pairs with a particle or planar body, and for types that bounce.
+    using CopiesSweep = void (*)(const KernelContext&, const BlockStreams&, std::int32_t block, float* body_a,
+                                 float* body_b);
+    CopiesSweep warm_start_copies = nullptr;
+    CopiesSweep solve_copies = nullptr;
+    CopiesSweep relax_copies = nullptr;
+    /// Writes EqualityRows, `equality_count` of them, sixteen floats a field. Null for types that lock nothing.
+    using CopiesRows = void (*)(const BlockStreams&, std::int32_t block, const float* body_a,
+                                const float* body_b, float* rows);
+    CopiesRows equality_rows = nullptr;
+    int equality_count = 0;
+
     int row_floats = 0, substep_floats = 0, impulse_floats = 0;
     int swept_floats = 0;  ///< of row and substep row, what a sweep reads
 };
@@ -102,6 +116,21 @@ struct BodyKernels {
     /// sweep, exact where M^-1 J^T is constant through the step (contacts of particles and planar bodies).
     Move integrate_and_replay = nullptr;
     Move integrate_positions = nullptr;
+};
+
+struct FigureBlock;
+/// The kernels of a figure's bodies, and of all its locks at once, over the copies of a block: see figure.h.
+struct FigureKernels {
+    using Move = void (*)(const KernelContext&, const FigureBlock&);
+    Move load = nullptr;   ///< rows -> lanes
+    Move store = nullptr;  ///< lanes -> rows: velocities and deltas
+    Move load_velocities = nullptr;
+    Move store_velocities = nullptr;
+    Move integrate_velocities = nullptr;
+    Move integrate_positions = nullptr;
+    void (*factor)(const FigureBlock&) = nullptr;  ///< after equality_rows of each lock
+    /// Velocities and impulses such that J v + rate C = 0 for every lock.
+    void (*solve)(const FigureBlock&, float rate) = nullptr;
 };
 
 /// A constraint type with a pair of body kinds: the key of batches and kernels.
@@ -123,6 +152,7 @@ inline constexpr int class_count = constraint_type_count * body_kind_count * bod
 struct KernelTable {
     ConstraintKernels constraints[class_count];
     BodyKernels bodies[body_kind_count];
+    FigureKernels figures;
 };
 
 /// The table compiled for an instruction set; only for those of available_isas().

@@ -77,7 +77,9 @@ std::int32_t Convergence::root_of(std::int32_t body)
 void Convergence::tie(std::span<const Placement> placements)
 {
     for (const Placement& placement : placements) {
-        if (placement.a.kind() == BodyKind::fixed || placement.b.kind() == BodyKind::fixed) continue;
+        if (placement.is_gap() || placement.a.kind() == BodyKind::fixed ||
+            placement.b.kind() == BodyKind::fixed)
+            continue;
         const auto index = [&](BodyRow row) {
             return first_[static_cast<std::size_t>(row.kind())] + static_cast<std::int32_t>(row.row());
         };

@@ -2,11 +2,6 @@
 // Kernels are flattened: a call that stays a call would pass sixteen-lane vectors through memory.
 // What a kernel does not use of a loaded body is never fetched: the compiler drops loads without a reader.
 
-template <class... Numbers>
-void unused(const Numbers&...)
-{
-}
-
 template <BodyKind kind>
 using Body = LaneBody<Lanes, kind>;
 
@@ -117,6 +112,15 @@ using Body = LaneBody<Lanes, kind>;
 {
 }
 
+/// The same of a body that is in lanes already: fields of sixteen floats in line.
+[[gnu::always_inline]] inline void store_copy_velocity(const Body<BodyKind::rigid>& body, float* lanes)
+{
+    store_row(body.linear, lanes);
+    store_row(body.angular, lanes + 4 * block_lanes);
+}
+/// What cannot be moved is never written.
+[[gnu::always_inline]] inline void store_copy_velocity(const Body<BodyKind::fixed>&, float*) {}
+
 /// Asks for the rows of a whole block. Fixed bodies are few and stay in cache.
 template <BodyKind kind>
 void prefetch_bodies(const BodyArrays& arrays, const std::int32_t* rows)
@@ -172,17 +176,23 @@ inline void accelerate(const KernelContext& context, const BodyArrays& arrays, c
                   h * Vec2<Lanes>{a[0] + Lanes(context.step.gravity.x), a[1] + Lanes(context.step.gravity.y)};
     body.yaw_rate = body.yaw_rate + h * a[2];
 }
+/// `a` and `t`: acceleration and torque, three and a spare each.
+inline void accelerate(const StepConstants& step, const Lanes (&a)[4], const Lanes (&t)[4],
+                       Body<BodyKind::rigid>& body)
+{
+    const Lanes h(step.substep);
+    const Vec3<float>& g = step.gravity;
+    body.linear = body.linear + h * Vec3<Lanes>{a[0] + Lanes(g.x), a[1] + Lanes(g.y), a[2] + Lanes(g.z)};
+    const Vec3<Lanes> turned = gyrate(inverse(body.inverse_inertia), body.angular, h);
+    body.angular = turned + h * (body.inverse_inertia * Vec3<Lanes>{t[0], t[1], t[2]});
+}
 inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* rows,
                        Body<BodyKind::rigid>& body)
 {
     Lanes a[4], t[4];
     load_quads(arrays.acceleration, 8, rows, a);
     load_quads(arrays.acceleration + 4, 8, rows, t);
-    const Lanes h(context.step.substep);
-    const Vec3<float>& g = context.step.gravity;
-    body.linear = body.linear + h * Vec3<Lanes>{a[0] + Lanes(g.x), a[1] + Lanes(g.y), a[2] + Lanes(g.z)};
-    const Vec3<Lanes> turned = gyrate(inverse(body.inverse_inertia), body.angular, h);
-    body.angular = turned + h * (body.inverse_inertia * Vec3<Lanes>{t[0], t[1], t[2]});
+    accelerate(context.step, a, t, body);
 }
 
 /// The consecutive rows first ... first + width - 1 as an index; past `end`, the null row.
@@ -242,6 +252,16 @@ template <BodyKind kind, bool replay>
 // -----------------------------------------------------------------------------------------------
 
 template <BodyKind kind>
+void advance(Body<kind>& body, const Lanes& h)
+{
+    body.delta = body.delta + h * body.linear;
+    if constexpr (kind == BodyKind::planar) body.delta_yaw = body.delta_yaw + h * body.yaw_rate;
+    if constexpr (kind == BodyKind::rigid || kind == BodyKind::fixed) {
+        body.delta_rotation = normalised(rotation_by(h * body.angular) * body.delta_rotation);
+    }
+}
+
+template <BodyKind kind>
 [[gnu::flatten]] void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
@@ -249,11 +269,7 @@ template <BodyKind kind>
     for (std::int32_t first = begin; first < end; first += Lanes_width) {
         const RowIndex index(first, end);
         Body<kind> body = load_body(arrays, index.rows, static_cast<Body<kind>*>(nullptr));
-        body.delta = body.delta + h * body.linear;
-        if constexpr (kind == BodyKind::planar) body.delta_yaw = body.delta_yaw + h * body.yaw_rate;
-        if constexpr (kind == BodyKind::rigid || kind == BodyKind::fixed) {
-            body.delta_rotation = normalised(rotation_by(h * body.angular) * body.delta_rotation);
-        }
+        advance(body, h);
         if constexpr (kind == BodyKind::fixed) {
             const Quat<Lanes>& q = body.delta_rotation;
             store_quads(arrays.delta, 8, index.rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)},

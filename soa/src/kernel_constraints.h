@@ -1,37 +1,6 @@
 // The kernels of a constraint type and pair of body kinds, over blocks: gather, maths, scatter, written once
 // for every type, every pair and every instruction set. Included inside an anonymous namespace, after
-// kernel_bodies.h.
-
-template <class Row>
-inline constexpr int fields_of = std::is_empty_v<Row> ? 0 : static_cast<int>(sizeof(Row) / sizeof(Lanes));
-
-/// A row is nothing but Reals, so it is its fields in line: field i of lanes l ... is at stream[16 i + l].
-template <class Row, int... field>
-void load_fields(Row& row, const float* stream, std::integer_sequence<int, field...>)
-{
-    Lanes* fields = reinterpret_cast<Lanes*>(&row);
-    ((fields[field] = load_lanes(stream + block_lanes * field)), ...);
-    unused(fields, stream);
-}
-template <class Row, int... field>
-void store_fields(const Row& row, float* stream, std::integer_sequence<int, field...>)
-{
-    const Lanes* fields = reinterpret_cast<const Lanes*>(&row);
-    (store_lanes(fields[field], stream + block_lanes * field), ...);
-    unused(fields, stream);
-}
-template <class Row>
-Row load_row(const float* stream)
-{
-    Row row;
-    load_fields(row, stream, std::make_integer_sequence<int, fields_of<Row>>{});
-    return row;
-}
-template <class Row>
-void store_row(const Row& row, float* stream)
-{
-    store_fields(row, stream, std::make_integer_sequence<int, fields_of<Row>>{});
-}
+// kernel_copies.h.
 
 /// Entries of a table of structs, an entry a lane, turned into a struct of lanes.
 template <class Struct>
@@ -170,6 +139,7 @@ struct Kernels {
         float* impulse;
         float* residual;
         int count;  ///< lanes of this bundle that are not padding
+        int lane;   ///< of the block, where it begins
         [[nodiscard]] A load_a() const { return load_body(arrays_a, rows_a, static_cast<A*>(nullptr)); }
         [[nodiscard]] B load_b() const { return load_body(arrays_b, rows_b, static_cast<B*>(nullptr)); }
     };
@@ -190,7 +160,7 @@ struct Kernels {
                 substep_stride == 0 ? nullptr : streams.substep_rows + block * substep_stride + lane,
                 streams.impulses + block * impulse_stride + lane,
                 streams.residuals == nullptr ? nullptr : streams.residuals + block * residual_stride + lane,
-                count - lane});
+                count - lane, lane});
         }
     }
 
@@ -346,8 +316,68 @@ struct Kernels {
         }
     }
 
+    // ---- the same for blocks of copies ----
+    static constexpr bool has_copies = !Type::has_restitution &&
+                                       (kind_a == BodyKind::rigid || kind_a == BodyKind::fixed) &&
+                                       (kind_b == BodyKind::rigid || kind_b == BodyKind::fixed);
+
+    [[gnu::flatten]] static void warm_start_copies(const KernelContext& context, const BlockStreams& streams,
+                                                   std::int32_t block, float* body_a, float* body_b)
+    {
+        for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+            A a = load_row<A>(body_a + bundle.lane);
+            B b = load_row<B>(body_b + bundle.lane);
+            Substep substep;
+            Type::template warm_start<Lanes>(context.step, load_row<Row>(bundle.row), substep,
+                                             load_row<Impulse>(bundle.impulse), a, b);
+            if constexpr (Type::recomputes_each_substep) store_row(substep, bundle.substep);
+            store_copy_velocity(a, body_a + bundle.lane);
+            store_copy_velocity(b, body_b + bundle.lane);
+        });
+    }
+
+    template <bool relax>
+    [[gnu::flatten]] static void sweep_copies(const KernelContext& context, const BlockStreams& streams,
+                                              std::int32_t block, float* body_a, float* body_b)
+    {
+        for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+            A a = load_row<A>(body_a + bundle.lane);
+            B b = load_row<B>(body_b + bundle.lane);
+            auto impulse = load_row<Impulse>(bundle.impulse);
+            const auto row = load_row<Row>(bundle.row);
+            Type::template solve<relax, Lanes>(context.step, swept<Type::recomputes_each_substep>(row),
+                                               load_row<Substep>(bundle.substep), impulse, a, b);
+            store_row(impulse, bundle.impulse);
+            store_copy_velocity(a, body_a + bundle.lane);
+            store_copy_velocity(b, body_b + bundle.lane);
+        });
+    }
+
+    [[gnu::flatten]] static void equality_rows(const BlockStreams& streams, std::int32_t block,
+                                               const float* body_a, const float* body_b, float* out)
+    {
+        const int count = streams.counts[block];
+        for (int lane = 0; lane < count; lane += Lanes_width) {
+            EqualityRow<Lanes> rows[Type::equality_count];
+            Type::template equality_rows<Lanes>(
+                load_row<Row>(streams.rows + static_cast<std::int64_t>(block) * row_stride + lane),
+                load_row<A>(body_a + lane), load_row<B>(body_b + lane), rows);
+            for (int i = 0; i < Type::equality_count; ++i)
+                store_row(rows[i], out + i * fields_of<EqualityRow<Lanes>> * block_lanes + lane);
+        }
+    }
+
     static void enter(ConstraintKernels& kernels)
     {
+        if constexpr (has_copies) {
+            kernels.warm_start_copies = warm_start_copies;
+            kernels.solve_copies = sweep_copies<false>;
+            kernels.relax_copies = sweep_copies<true>;
+            if constexpr (requires { Type::equality_count; }) {
+                kernels.equality_rows = equality_rows;
+                kernels.equality_count = Type::equality_count;
+            }
+        }
         kernels.prepare = prepare;
         kernels.warm_start = warm_start;
         kernels.solve = sweep<false>;

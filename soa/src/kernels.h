@@ -3,7 +3,10 @@
 
 inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float));
 
+#include "kernel_rows.h"
+
 #include "kernel_bodies.h"
+
 #include "kernel_constraints.h"
 
 template <class Type, BodyKind a, BodyKind b>

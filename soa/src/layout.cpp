@@ -1,13 +1,22 @@
 // Colouring and placing. Constraints that persist keep their colour; the rest take the first that is free.
 #include "layout.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace motley {
+namespace {
 
-void Layout::begin(Scene& scene, std::size_t contact_count)
+/// Bodies a range: a few microseconds of streaming.
+constexpr std::int32_t rows_per_range = 1024;
+
+}  // namespace
+
+void Layout::begin(Scene& scene, std::size_t contact_count, const FigureUse& use)
 {
-    if (!scene.joints().version || scene.joints().version != joint_version_) {
+    const bool plants_trees = std::exchange(use_, use).exactly != use.exactly;
+    if (!scene.joints().version || scene.joints().version != joint_version_ || plants_trees) {
         place_joints(scene);
         if (!scene.joints().version) scene.joints().version = std::make_shared<const char>('\0');
         joint_version_ = scene.joints().version;
@@ -28,21 +37,27 @@ void Layout::place_joints(Scene& scene)
                                   bodies.row_of(store.definitions[i].body_b), store.colours[i]);
         }
     });
-    joint_placements_.clear();
+    candidates_.clear();
     scene.joints().for_each([&](auto& store, int type) {
+        using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         for (std::size_t i = 0; i < store.size(); ++i) {
             const BodyRow a = bodies.row_of(store.definitions[i].body_a);
             const BodyRow b = bodies.row_of(store.definitions[i].body_b);
             if (store.colours[i] == no_colour) store.colours[i] = joint_masks_.take_first(a, b);
-            joint_placements_.push_back({a, b, static_cast<std::int32_t>(i),
-                                         static_cast<std::uint8_t>(contact_type_count + type),
-                                         store.colours[i]});
+            int equalities = 0;
+            if constexpr (requires { Type::equality_count; })
+                equalities = Type::is_equality(store.definitions[i]) ? Type::equality_count : 0;
+            candidates_.push_back({{a, b, static_cast<std::int32_t>(i),
+                                    static_cast<std::uint8_t>(contact_type_count + type), store.colours[i]},
+                                   equalities});
         }
     });
+    figures.find(candidates_, bodies.rows(BodyKind::rigid).size(), kernels_, use_.exactly, joint_placements_);
     joints_.begin(joint_placements_);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.count(chunk);
     joints_.open(kernels_);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.fill(chunk);
+    figures.bind(joints_, kernels_);
 }
 
 void Layout::colour_contacts(ContactList& list)
@@ -69,9 +84,32 @@ void Layout::cut(Scene& scene, std::span<const Contact> list, bool tells_apart)
     for (auto& chunks : sweeps_) chunks.clear();
     transfers_.parts.clear();
     transfers_.tiles.clear();
+    if (!figures.is_empty()) figures.find_lone_blocks(contacts.placements(), use_.in_lockstep);
+    list_rows(scene);
     joints_.cut(kernels_, tells_apart, sweeps_, transfers_);
     contacts.cut(kernels_, tells_apart, sweeps_, transfers_);
     point_at_data(scene, list);
+}
+
+void Layout::list_rows(const Scene& scene)
+{
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        std::vector<RowRange>& ranges = rows_[static_cast<std::size_t>(kind)];
+        const auto size = static_cast<std::int32_t>(scene.bodies().rows(static_cast<BodyKind>(kind)).size());
+        const bool has_lone = static_cast<BodyKind>(kind) == BodyKind::rigid && !figures.lone().empty();
+        const auto left_out = [&](std::int32_t row) {
+            return has_lone && figures.is_alone(static_cast<std::size_t>(row));
+        };
+        ranges.clear();
+        if (size == 1) continue;  // the null row alone
+        for (std::int32_t begin = 0; begin < size;) {
+            while (begin < size && left_out(begin)) ++begin;
+            std::int32_t end = has_lone ? begin : std::min(begin + rows_per_range, size);
+            while (end < std::min(begin + rows_per_range, size) && !left_out(end)) ++end;
+            if (begin < end) ranges.push_back({begin, end});
+            begin = end;
+        }
+    }
 }
 
 void Layout::point_at_data(Scene& scene, std::span<const Contact> list)
@@ -125,6 +163,7 @@ void Layout::report(StepReport& report) const
     report.contacts = touches.constraints;
     report.blocks = joints.blocks + touches.blocks;
     report.overflow = joints.overflow + touches.overflow;
+    report.joints_in_lockstep = figures.lone_joints();
     const auto constraints = static_cast<double>(joints.constraints + touches.constraints);
     if (constraints > 0) {
         report.lane_occupancy = constraints / (block_lanes * static_cast<double>(report.blocks));

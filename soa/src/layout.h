@@ -9,10 +9,22 @@
 
 #include "batches.h"
 #include "contact_intake.h"
+#include "figures.h"
 #include "motley/core/scene.h"
 #include "motley/core/step_report.h"
 
 namespace motley {
+
+/// Rows of bodies begin ... end - 1: the unit of work of an integration.
+struct RowRange {
+    std::int32_t begin, end;
+};
+
+/// How joints may be solved in this step.
+struct FigureUse {
+    bool in_lockstep = false;  ///< figures that nothing else touches, away from all others
+    bool exactly = false;      ///< locks that form trees, at once
+};
 
 /// Lives as long as its solver; buffers are kept from step to step. What persists of a result (colours,
 /// impulses) lives in the scene.
@@ -23,7 +35,7 @@ class Layout {
     /// First the host's contacts are taken in...
     ContactIntake intake;
     /// ...then room is made, and joints that changed are coloured and placed...
-    void begin(Scene& scene, std::size_t contact_count);
+    void begin(Scene& scene, std::size_t contact_count, const FigureUse& use);
     /// ...then every contact gets a colour, in order, by one thread, without allocating...
     void colour_contacts(ContactList& list);
     /// ...then the contacts are sorted into blocks (count, open, fill)...
@@ -42,8 +54,16 @@ class Layout {
     [[nodiscard]] const SweepLists& sweeps() const { return sweeps_; }
     [[nodiscard]] std::span<const Placement> joint_placements() const { return joint_placements_; }
     [[nodiscard]] std::span<const Placement> contact_placements() const { return contacts.placements(); }
+    /// The figures of the scene, and which of them are solved on their own.
+    Figures figures;
+    /// The bodies of a kind, less those of figures that are alone.
+    [[nodiscard]] const std::vector<RowRange>& rows(int kind) const
+    {
+        return rows_[static_cast<std::size_t>(kind)];
+    }
     [[nodiscard]] const TransferList& transfers() const { return transfers_; }
     [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
+    [[nodiscard]] std::span<const ConstraintData> data() const { return data_; }
     [[nodiscard]] const KernelTable& kernels() const { return kernels_; }
     /// True when M^-1 J^T of no constraint turns within the step: contacts alone, and no rigid body, whose
     /// inertia turns with it.
@@ -61,12 +81,16 @@ class Layout {
     std::vector<Placement> joint_placements_;
     std::vector<std::uint32_t> uncoloured_;
     std::shared_ptr<const char> joint_version_;
+    FigureUse use_;
+    std::vector<Figures::Candidate> candidates_;
+    std::array<std::vector<RowRange>, body_kind_count> rows_;
     ColourMasks joint_masks_, masks_;
     SweepLists sweeps_;
     TransferList transfers_;
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(Scene& scene);
+    void list_rows(const Scene& scene);
     void point_at_data(Scene& scene, std::span<const Contact> contacts);
 };
 

@@ -1,6 +1,7 @@
 // Everything that a host includes.
 #pragma once
 
+#include "motley/core/assembly.h"
 #include "motley/core/scene.h"
 #include "motley/core/settings.h"
 #include "motley/core/six_dof.h"

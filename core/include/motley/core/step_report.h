@@ -13,6 +13,7 @@ namespace motley {
 enum class Stage {
     colour,
     prepare,
+    figures,
     integrate_velocities,
     warm_start,
     solve,
@@ -21,7 +22,7 @@ enum class Stage {
     restitution,
     store
 };
-inline constexpr int stage_count = 9;
+inline constexpr int stage_count = 10;
 /// "colour", "prepare", ...
 const char* stage_name(Stage stage);
 
@@ -61,15 +62,16 @@ struct StepReport {
 
     std::int64_t contacts = 0;
     std::int64_t joints = 0;
-    int colours = 0;                  ///< colours in use, the overflow not counted
-    std::int64_t overflow = 0;        ///< constraints that found no colour and ran in order
-    std::int64_t blocks = 0;          ///< blocks of 16 lanes
-    double lane_occupancy = 0;        ///< constraints / (16 blocks); 0 without constraints
-    double bytes_per_constraint = 0;  ///< streamed by one sweep of solve: rows, impulses and indices
-    std::int64_t sweeps = 0;          ///< sweeps over all constraints: warm starts, solves and relaxations
-    int substeps = 0;                 ///< that were made; with a budget: that were picked
-    int iterations = 0;               ///< most sweeps of solve in a substep
-    std::int64_t islands = 0;         ///< found when SolverSettings::tolerance is above 0
+    std::int64_t joints_in_lockstep = 0;  ///< of them, those of copies of a figure that nothing else touched
+    int colours = 0;                      ///< colours in use, the overflow not counted
+    std::int64_t overflow = 0;            ///< constraints that found no colour and ran in order
+    std::int64_t blocks = 0;              ///< blocks of 16 lanes
+    double lane_occupancy = 0;            ///< constraints / (16 blocks); 0 without constraints
+    double bytes_per_constraint = 0;      ///< streamed by one sweep of solve: rows, impulses and indices
+    std::int64_t sweeps = 0;   ///< sweeps over all constraints: warm starts, solves and relaxations
+    int substeps = 0;          ///< that were made; with a budget: that were picked
+    int iterations = 0;        ///< most sweeps of solve in a substep
+    std::int64_t islands = 0;  ///< found when SolverSettings::tolerance is above 0
     std::int64_t islands_above_tolerance = 0;  ///< after the last sweep of solve that was allowed
     StepMeasures measures;  ///< with SolverSettings::measures; with a budget its residuals alone
     double direct_violation =

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "motley/core/constraints/ball_socket_definition.h"
+#include "motley/core/equality_row.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_pose.h"
@@ -21,6 +22,7 @@ struct BallSocket {
     static constexpr const char* name = "ball-socket";
     static constexpr bool has_restitution = false;
     static constexpr bool recomputes_each_substep = true;
+    static constexpr int equality_count = 3;
 
     template <class Real>
     struct Parameters {
@@ -97,6 +99,20 @@ struct BallSocket {
         impulse.push = impulse.push + change;
         apply_impulse(a, substep.arm_a, -change);
         apply_impulse(b, substep.arm_b, change);
+    }
+
+    /// Between bodies that turn.
+    static bool is_equality(const Definition&) { return true; }
+    template <class Real, class Row, class A, class B>
+    static void equality_rows(const Row& row, const A& a, const B& b, EqualityRow<Real>* rows)
+    {
+        const Vec3<Real> arm_a = turned(a, row.start_arm_a), arm_b = turned(b, row.start_arm_b);
+        const Vec3<Real> error =
+            anchor_error(row.start_error, row.start_arm_a, row.start_arm_b, arm_a, arm_b, a, b);
+        const Real zero(0), one(1);
+        rows[0] = {{one, zero, zero}, {zero, arm_a.z, -arm_a.y}, {zero, arm_b.z, -arm_b.y}, error.x};
+        rows[1] = {{zero, one, zero}, {-arm_a.z, zero, arm_a.x}, {-arm_b.z, zero, arm_b.x}, error.y};
+        rows[2] = {{zero, zero, one}, {arm_a.y, -arm_a.x, zero}, {arm_b.y, -arm_b.x, zero}, error.z};
     }
 
     template <class Real, class Row, class Substep, class A, class B>

@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "motley/core/constraints/frame_joint_definition.h"
+#include "motley/core/equality_row.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_report.h"
@@ -40,6 +41,7 @@ struct FrameJoint {
     static constexpr int linear_rows = rows_of(linear_lock);
     static constexpr int angular_rows = rows_of(angular_lock);
     static constexpr int rows = linear_rows + angular_rows;
+    static constexpr int equality_count = rows;
 
     template <class Real>
     struct Parameters {
@@ -158,6 +160,19 @@ struct FrameJoint {
         });
     }
 
+    /// A joint with a stiffness of its own is a spring.
+    static bool is_equality(const Definition& joint) { return joint.stiffness.hertz == 0; }
+    template <class Real, class Row, class A, class B>
+    static void equality_rows(const Row& row, const A& a, const B& b, EqualityRow<Real>* out)
+    {
+        SubstepRow<Real, A::kind, B::kind> here;
+        const Vec3<Real> none{Real(0), Real(0), Real(0)};
+        Vec3<Real> e[3], lever_a[rows], lever_b[rows];
+        locate(row, here, a, b, e, lever_a, lever_b);
+        for (int i = 0; i < rows; ++i)
+            out[i] = {i < linear_rows ? e[i < 3 ? i : 0] : none, lever_a[i], lever_b[i], here.error[i]};
+    }
+
     template <class Real, class Row, class Substep, class A, class B>
     static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
     {
@@ -243,14 +258,13 @@ struct FrameJoint {
         }
     }
 
-    /// J, its C and the factors of J M^-1 J^T where the bodies are now.
-    template <class Row, class Substep, class A, class B>
-    static void build(const Row& row, Substep& substep, const A& a, const B& b)
+    /// J, row by row, and C where the bodies are now.
+    template <class Real, class Row, class Substep, class A, class B>
+    static void locate(const Row& row, Substep& substep, const A& a, const B& b, Vec3<Real> (&e)[3],
+                       Vec3<Real> (&lever_a)[rows], Vec3<Real> (&lever_b)[rows])
     {
-        using Real = std::remove_cvref_t<decltype(row.in_sweep.rate)>;
         Quat<Real> frame_a{};
         if constexpr (has_axes || has_turns) frame_a = turn_of(a) * row.start_frame_a;
-        Vec3<Real> e[3], lever_a[rows], lever_b[rows];
         if constexpr (has_arms) {
             const Vec3<Real> arm_a = rotate(turn_of(a), row.start.arm_a);
             substep.arm.b = rotate(turn_of(b), row.start.arm_b);
@@ -270,6 +284,15 @@ struct FrameJoint {
             for (int i = linear_rows; i < rows; ++i)
                 lever_a[i] = lever_b[i] = substep.angular.axis[i - linear_rows];
         }
+    }
+
+    /// J, its C and the factors of J M^-1 J^T where the bodies are now.
+    template <class Row, class Substep, class A, class B>
+    static void build(const Row& row, Substep& substep, const A& a, const B& b)
+    {
+        using Real = std::remove_cvref_t<decltype(row.in_sweep.rate)>;
+        Vec3<Real> e[3], lever_a[rows], lever_b[rows];
+        locate(row, substep, a, b, e, lever_a, lever_b);
         Real k[rows][rows];
         for (int i = 0; i < rows; ++i) {
             const Vec3<Real> turn_a = over_inertia(a, lever_a[i]), turn_b = over_inertia(b, lever_b[i]);

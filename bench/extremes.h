@@ -1,0 +1,44 @@
+// Scenes at the edge of what numbers can bear, each with a figure and a bound that follows from physics or rounding.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "motley/motley.h"
+
+namespace motley::bench {
+
+/// The ways to solve that each case is run under.
+enum class ExtremeWay { soft_step, exact_joints, baumgarte, projection, direct };
+inline constexpr int extreme_way_count = 5;
+const char* name_of(ExtremeWay way);
+/// The default settings of a way, without gravity.
+SolverSettings settings_of(ExtremeWay way);
+
+/// Stands for a bound where no claim is made: the figure is shown all the same.
+inline constexpr double no_claim = std::numeric_limits<double>::infinity();
+
+struct ExtremeRun {
+    ExtremeWay way;
+    SolverOptions options;
+};
+
+struct ExtremeCase {
+    const char* name;
+    const char* must;  ///< what must happen, and why
+    const char* unit;
+    /// Of each way, in the unit of the figure: at most.
+    std::array<double, extreme_way_count> bound;
+    /// Infinite when a state was not finite, a body was contained, or a step was refused.
+    double (*figure)(const ExtremeRun& run);
+};
+
+std::span<const ExtremeCase> extreme_cases();
+
+/// Runs every case under every way and prints a table. Returns how many figures are beyond their bounds.
+int print_extremes(const SolverOptions& options);
+
+}  // namespace motley::bench

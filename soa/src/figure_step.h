@@ -1,0 +1,27 @@
+// A step of a figure's block.
+#pragma once
+
+#include <span>
+
+#include "figure.h"
+
+namespace motley {
+
+/// What is done in each substep.
+struct FigureSteps {
+    int substeps, iterations, relaxations;
+    float exact_rate;  ///< 1/s: the share of a lock's error that its tree removes a second
+};
+
+/// The whole step of a block that nothing but its own joints touches, in cache: prepare, all substeps, store. `data` is
+/// that of each type.
+void step_figure(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
+                 std::span<const ConstraintData> data, const FigureSteps& steps);
+
+/// Of blocks that something else touches, what is left to do beside ordinary sweeps: the tree. Before the first sweep of
+/// a substep, and after each.
+void prepare_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block);
+void solve_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
+                float rate);
+
+}  // namespace motley

@@ -1,0 +1,178 @@
+// Locks that close loops of a figure: a small dense system of what the tree answers to each of their rows. Included inside
+// an anonymous namespace, after kernel_trees.h.
+//
+// With the tree's locks held, a push along row j changes J v of row i by K_ij. Loops are often redundant (a flat four-bar
+// closes by five rows and needs two): rows whose pivot is lost get nothing, and those before them hold.
+
+/// Share of J M^-1 J^T of its two bodies alone below which a row depends on those before it.
+constexpr float closure_rounding = 1e-4F;
+
+/// One row of a closure and its ends in lanes.
+struct ClosureRow {
+    EqualityRow<Lanes> row;
+    float* a;
+    float* b;
+    bool a_moves, b_moves;
+};
+inline ClosureRow closure_row(const FigureBlock& figure, const FigureClosure& closure, int i, int lane)
+{
+    const FigureShape::Joint& joint = figure.shape->joints[static_cast<std::size_t>(closure.joint)];
+    const float* row = figure.system + figure.shape->closure_jacobian +
+                       std::int64_t{FigureNode::row_floats} * (closure.first_row + i) + lane;
+    return {load_row<EqualityRow<Lanes>>(row), figure.body(joint.a) + lane, figure.body(joint.b) + lane,
+            joint.kind_a == BodyKind::rigid, joint.kind_b == BodyKind::rigid};
+}
+/// Calls work(row, its number) for each row of each closure.
+template <class Work>
+void for_each_closure_row(const FigureBlock& figure, int lane, const Work& work)
+{
+    for (const FigureClosure& closure : figure.shape->closures) {
+        for (int i = 0; i < closure.rows; ++i)
+            work(closure_row(figure, closure, i, lane), closure.first_row + i);
+    }
+}
+
+/// linear . v + lever . w of one end.
+inline Lanes end_speed(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, const float* body, bool moves)
+{
+    if (moves) {
+        const Mover m = load_row<Mover>(body);
+        return dot(linear, m.linear) + dot(lever, m.angular);
+    }
+    const Standing s = load_row<Standing>(body);
+    return dot(linear, s.linear) + dot(lever, s.angular);
+}
+inline Lanes speed_along(const ClosureRow& c)
+{
+    return end_speed(c.row.linear, c.row.lever_b, c.b, c.b_moves) -
+           end_speed(c.row.linear, c.row.lever_a, c.a, c.a_moves);
+}
+/// v += M^-1 J^T lambda, and what that is of J M^-1 J^T.
+inline Lanes push_end(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, float* body, bool moves,
+                      const Lanes& lambda)
+{
+    if (!moves) return Lanes(0);
+    Mover m = load_row<Mover>(body);
+    const Vec3<Lanes> turn = m.inverse_inertia * lever;
+    m.linear = m.linear + (m.inverse_mass * lambda) * linear;
+    m.angular = m.angular + lambda * turn;
+    store_copy_velocity(m, body);
+    return m.inverse_mass * dot(linear, linear) + dot(lever, turn);
+}
+inline Lanes push_along(const ClosureRow& c, const Lanes& lambda)
+{
+    return push_end(c.row.linear, c.row.lever_b, c.b, c.b_moves, lambda) +
+           push_end(c.row.linear, c.row.lever_a, c.a, c.a_moves, -lambda);
+}
+
+/// K of the closures, and its factors, once the tree has its own.
+inline void factor_closures(const FigureBlock& figure, int lane)
+{
+    const FigureShape& shape = *figure.shape;
+    float* k = figure.system + shape.closure_factor + lane;
+    float* own = figure.system + shape.closure_target + lane;
+    const auto at = [&](int row, int column) { return k + in_triangle(row, column) * block_lanes; };
+    const Vec3<Lanes> still{Lanes(0), Lanes(0), Lanes(0)};
+    const auto stop = [&] {
+        for (const FigureNode& node : shape.nodes) {
+            Mover body = load_row<Mover>(figure.body(node.body) + lane);
+            body.linear = body.angular = still;
+            store_copy_velocity(body, figure.body(node.body) + lane);
+        }
+    };
+    for (const FigureNode& node : shape.nodes) {
+        const Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        Row6 velocity;
+        put(body.linear, body.angular, velocity);
+        store_array(velocity, figure.system + node.kept + lane);
+    }
+    for_each_closure_row(figure, lane, [&](const ClosureRow& pushed, int column) {
+        stop();
+        store_lanes(push_along(pushed, Lanes(1)), own + column * block_lanes);
+        sweep_tree(figure, 0, TreeSweep::answers, lane);
+        for_each_closure_row(figure, lane, [&](const ClosureRow& seen, int row) {
+            if (row < column) return;
+            const Lanes of_a =
+                seen.a_moves ? end_speed(seen.row.linear, seen.row.lever_a, seen.a, true) : Lanes(0);
+            const Lanes of_b =
+                seen.b_moves ? end_speed(seen.row.linear, seen.row.lever_b, seen.b, true) : Lanes(0);
+            store_lanes(of_b - of_a, at(row, column));
+        });
+    });
+    for (const FigureNode& node : shape.nodes) {
+        Row6 velocity;
+        load_array(figure.system + node.kept + lane, velocity);
+        Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        body.linear = {velocity[0], velocity[1], velocity[2]};
+        body.angular = {velocity[3], velocity[4], velocity[5]};
+        store_copy_velocity(body, figure.body(node.body) + lane);
+    }
+    // L D L^T in place: L below the diagonal, 1 / D on it.
+    for (int i = 0; i < shape.closure_rows; ++i) {
+        Lanes pivot = load_lanes(at(i, i));
+        for (int j = 0; j < i; ++j) {
+            Lanes scaled = load_lanes(at(i, j));
+            for (int m = 0; m < j; ++m) scaled = scaled - load_lanes(at(i, m)) * load_lanes(at(j, m));
+            store_lanes(scaled, at(i, j));  // of L D, until the row is done
+        }
+        for (int j = 0; j < i; ++j) {
+            const Lanes scaled = load_lanes(at(i, j));
+            const Lanes l = scaled * load_lanes(at(j, j));
+            pivot = pivot - scaled * l;
+            store_lanes(l, at(i, j));
+        }
+        const auto usable = pivot > Lanes(closure_rounding) * load_lanes(own + i * block_lanes);
+        store_lanes(select(usable, inverse_or_zero(pivot), Lanes(0)), at(i, i));
+    }
+}
+
+/// Pushes along the closures until they, and the tree with them, hold.
+inline void solve_closures(const FigureBlock& figure, float rate, int lane)
+{
+    const FigureShape& shape = *figure.shape;
+    const float* k = figure.system + shape.closure_factor + lane;
+    float* target = figure.system + shape.closure_target + lane;
+    const auto at = [&](int row, int column) {
+        return load_lanes(k + in_triangle(row, column) * block_lanes);
+    };
+    const auto x = [&](int row) { return target + row * block_lanes; };
+    for_each_closure_row(figure, lane, [&](const ClosureRow& c, int row) {
+        store_lanes(-(speed_along(c) + Lanes(rate) * c.row.error), x(row));
+    });
+    for (int i = 0; i < shape.closure_rows; ++i) {
+        Lanes value = load_lanes(x(i));
+        for (int j = 0; j < i; ++j) value = value - at(i, j) * load_lanes(x(j));
+        store_lanes(value, x(i));
+    }
+    for (int i = shape.closure_rows; i-- > 0;) {
+        Lanes value = load_lanes(x(i)) * at(i, i);
+        for (int j = i + 1; j < shape.closure_rows; ++j) value = value - at(j, i) * load_lanes(x(j));
+        // A row without a pivot pushes nothing.
+        store_lanes(select(at(i, i) > Lanes(0), value, Lanes(0)), x(i));
+    }
+    for (const FigureClosure& closure : shape.closures) {
+        float* impulse = impulse_of(figure, closure.joint) + lane;
+        for (int i = 0; i < closure.rows; ++i) {
+            const Lanes lambda = load_lanes(x(closure.first_row + i));
+            push_along(closure_row(figure, closure, i, lane), lambda);
+            store_lanes(load_lanes(impulse + i * block_lanes) + lambda, impulse + i * block_lanes);
+        }
+    }
+    sweep_tree(figure, rate, TreeSweep::solves, lane);
+}
+
+inline void factor_trees(const FigureBlock& figure)
+{
+    for (int lane = 0; lane < figure.count; lane += Lanes_width) {
+        factor_tree(figure, lane);
+        if (figure.shape->closure_rows > 0) factor_closures(figure, lane);
+    }
+}
+
+inline void solve_trees(const FigureBlock& figure, float rate)
+{
+    for (int lane = 0; lane < figure.count; lane += Lanes_width) {
+        sweep_tree(figure, rate, TreeSweep::solves, lane);
+        if (figure.shape->closure_rows > 0) solve_closures(figure, rate, lane);
+    }
+}

@@ -1,0 +1,113 @@
+// The bodies of a block of copies: in and out of lanes, and their integration there. Included inside an anonymous
+// namespace, after kernel_bodies.h.
+
+using Mover = Body<BodyKind::rigid>;
+using Standing = Body<BodyKind::fixed>;
+
+/// Calls work(body's kind as a type, its lanes, its rows, how many lanes are not padding) for each body and bundle.
+template <class Work>
+void for_each_copy(const FigureBlock& figure, const Work& work)
+{
+    for (std::size_t i = 0; i < figure.shape->bodies.size(); ++i) {
+        float* body = figure.body(static_cast<int>(i));
+        const std::int32_t* rows = figure.rows + i * block_lanes;
+        for (int lane = 0; lane < figure.count; lane += Lanes_width) {
+            if (figure.shape->bodies[i] == BodyKind::rigid) {
+                work(static_cast<Mover*>(nullptr), body + lane, rows + lane, figure.count - lane);
+            } else {
+                work(static_cast<Standing*>(nullptr), body + lane, rows + lane, figure.count - lane);
+            }
+        }
+    }
+}
+template <class Work>
+void for_each_moving_copy(const FigureBlock& figure, const Work& work)
+{
+    for_each_copy(figure, [&](auto* kind, float* body, const std::int32_t* rows, int count) {
+        if constexpr (std::is_same_v<decltype(kind), Mover*>) work(body, rows, count);
+    });
+}
+
+inline void load_field_quads(const float* fields, Lanes (&out)[4])
+{
+    for (int i = 0; i < 3; ++i) out[i] = load_lanes(fields + i * block_lanes);
+    out[3] = Lanes(0);
+}
+
+[[gnu::flatten]] inline void load_copies(const KernelContext& context, const FigureBlock& figure)
+{
+    for_each_copy(figure, [&](auto* kind, float* body, const std::int32_t* rows, int) {
+        const BodyArrays& arrays =
+            context.bodies[static_cast<int>(std::remove_pointer_t<decltype(kind)>::kind)];
+        store_row(load_body(arrays, rows, kind), body);
+        if constexpr (std::is_same_v<decltype(kind), Mover*>) {
+            Lanes a[4], t[4];
+            load_quads(arrays.acceleration, 8, rows, a);
+            load_quads(arrays.acceleration + 4, 8, rows, t);
+            float* acceleration = body + CopyBody::acceleration * block_lanes;
+            store_row(Vec3<Lanes>{a[0], a[1], a[2]}, acceleration);
+            store_row(Vec3<Lanes>{t[0], t[1], t[2]}, acceleration + 3 * block_lanes);
+            store_row(load_tensor(arrays.start_inverse_inertia, rows),
+                      body + CopyBody::start_inertia * block_lanes);
+        }
+    });
+}
+
+[[gnu::flatten]] inline void store_copies(const KernelContext& context, const FigureBlock& figure)
+{
+    const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
+    for_each_moving_copy(figure, [&](const float* body, const std::int32_t* rows, int count) {
+        const Mover mover = load_row<Mover>(body);
+        store_velocity(arrays, rows, mover, count);
+        store_delta(arrays, rows, mover, count);
+    });
+}
+
+[[gnu::flatten]] inline void load_copy_velocities(const KernelContext& context, const FigureBlock& figure)
+{
+    const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
+    for_each_moving_copy(figure, [&](float* body, const std::int32_t* rows, int) {
+        store_copy_velocity(load_body(arrays, rows, static_cast<Mover*>(nullptr)), body);
+    });
+}
+
+[[gnu::flatten]] inline void store_copy_velocities(const KernelContext& context, const FigureBlock& figure)
+{
+    const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
+    for_each_moving_copy(figure, [&](const float* body, const std::int32_t* rows, int count) {
+        store_velocity(arrays, rows, load_row<Mover>(body), count);
+    });
+}
+
+[[gnu::flatten]] inline void integrate_copy_velocities(const KernelContext& context,
+                                                       const FigureBlock& figure)
+{
+    for_each_moving_copy(figure, [&](float* lanes, const std::int32_t*, int) {
+        Mover body = load_row<Mover>(lanes);
+        const Mover before = body;
+        Lanes a[4], t[4];
+        load_field_quads(lanes + CopyBody::acceleration * block_lanes, a);
+        load_field_quads(lanes + (CopyBody::acceleration + 3) * block_lanes, t);
+        accelerate(context.step, a, t, body);
+        const auto moves = body.inverse_mass > Lanes(0);
+        for_each_component(body, before,
+                           [&](Lanes& now, const Lanes& then) { now = select(moves, now, then); });
+        store_copy_velocity(body, lanes);
+    });
+}
+
+[[gnu::flatten]] inline void integrate_copy_positions(const KernelContext& context, const FigureBlock& figure)
+{
+    const Lanes h(context.step.substep);
+    for_each_copy(figure, [&](auto* kind, float* lanes, const std::int32_t*, int) {
+        using Kind = std::remove_pointer_t<decltype(kind)>;
+        auto body = load_row<Kind>(lanes);
+        advance(body, h);
+        if constexpr (std::is_same_v<Kind, Mover>) {
+            // A turned body has turned inertia.
+            body.inverse_inertia = rotate_tensor(
+                body.delta_rotation, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes));
+        }
+        store_row(body, lanes);
+    });
+}

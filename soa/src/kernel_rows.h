@@ -1,0 +1,37 @@
+// Rows in and out of lanes. Included inside an anonymous namespace, after Lanes.
+
+template <class... Numbers>
+void unused(const Numbers&...)
+{
+}
+
+template <class Row>
+inline constexpr int fields_of = std::is_empty_v<Row> ? 0 : static_cast<int>(sizeof(Row) / sizeof(Lanes));
+
+/// A row is nothing but Reals, so it is its fields in line: field i of lanes l ... is at stream[16 i + l].
+template <class Row, int... field>
+void load_fields(Row& row, const float* stream, std::integer_sequence<int, field...>)
+{
+    Lanes* fields = reinterpret_cast<Lanes*>(&row);
+    ((fields[field] = load_lanes(stream + block_lanes * field)), ...);
+    unused(fields, stream);
+}
+template <class Row, int... field>
+void store_fields(const Row& row, float* stream, std::integer_sequence<int, field...>)
+{
+    const Lanes* fields = reinterpret_cast<const Lanes*>(&row);
+    (store_lanes(fields[field], stream + block_lanes * field), ...);
+    unused(fields, stream);
+}
+template <class Row>
+Row load_row(const float* stream)
+{
+    Row row;
+    load_fields(row, stream, std::make_integer_sequence<int, fields_of<Row>>{});
+    return row;
+}
+template <class Row>
+void store_row(const Row& row, float* stream)
+{
+    store_fields(row, stream, std::make_integer_sequence<int, fields_of<Row>>{});
+}

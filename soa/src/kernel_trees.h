@@ -1,0 +1,377 @@
+// All locks of a figure at once: J M^-1 J^T factored along its tree, a copy a lane. Included inside an anonymous
+// namespace, after kernel_copies.h.
+//
+// In the system
+//
+//   | M  -J^T | | change |   |   0    |
+//   | J    0  | | lambda | = | target |,   target = -(J v + rate C)
+//
+// a body that nothing hangs on is eliminated first, then its locks, which add J_p^T K^-1 J_p to the mass of the body that
+// they hang on: the articulated inertia of R. Featherstone (Rigid Body Dynamics Algorithms, 2008, chapter 7). Masses
+// are only ever added, so nothing cancels whatever their ratio; eliminated from the locks' side, 1/m + 1/m' - ... would.
+
+using Row6 = Lanes[6];
+
+/// Calls work(i) for i = 0 ... count - 1, each i a constant: what a node computes with has to stay in registers, and
+/// compilers give up unrolling loops within loops.
+template <int count, class Work>
+[[gnu::always_inline]] inline void unrolled(const Work& work)
+{
+    [&]<int... i>(std::integer_sequence<int, i...>)
+    {
+        (work(std::integral_constant<int, i>{}), ...);
+    }
+    (std::make_integer_sequence<int, count>{});
+}
+/// Of a lower triangle row by row, the diagonal with it.
+constexpr int in_triangle(int row, int column)
+{
+    return row * (row + 1) / 2 + column;
+}
+
+/// Symmetric K = L D L^T: L below the diagonal and 1 / D on it.
+template <int n>
+struct Triangle {
+    Lanes entry[n * (n + 1) / 2];
+    Lanes& at(int row, int column) { return entry[in_triangle(row, column)]; }
+    const Lanes& at(int row, int column) const { return entry[in_triangle(row, column)]; }
+};
+/// Factors K in place, whose pivots are known to be at least `least`: what rounding takes from a pivot is given back.
+/// Rows without a pivot get nothing.
+template <int n>
+void factor_in_place(Triangle<n>& k, const Lanes (&least)[n])
+{
+    unrolled<n>([&](auto i) {
+        Lanes scaled[n];  // row i of L D
+        Lanes pivot = k.at(i, i);
+        unrolled<i>([&](auto j) {
+            scaled[j] = k.at(i, j);
+            unrolled<j>([&](auto m) { scaled[j] = scaled[j] - scaled[m] * k.at(j, m); });
+            k.at(i, j) = scaled[j] * k.at(j, j);
+            pivot = pivot - scaled[j] * k.at(i, j);
+        });
+        k.at(i, i) = inverse_or_zero(maximum(pivot, least[i]));
+    });
+}
+/// K^-1 x in place.
+template <int n>
+void solve_in_place(const Triangle<n>& f, Lanes (&x)[n])
+{
+    unrolled<n>([&](auto i) { unrolled<i>([&](auto j) { x[i] = x[i] - f.at(i, j) * x[j]; }); });
+    unrolled<n>([&](auto i) { x[i] = x[i] * f.at(i, i); });
+    unrolled<n>([&](auto back) {
+        constexpr int i = n - 1 - back;
+        unrolled<n - 1 - i>([&](auto j) { x[i] = x[i] - f.at(i + 1 + j, i) * x[i + 1 + j]; });
+    });
+}
+
+template <int count>
+void load_array(const float* from, Lanes (&to)[count])
+{
+    unrolled<count>([&](auto i) { to[i] = load_lanes(from + i * block_lanes); });
+}
+template <int count>
+void store_array(const Lanes (&from)[count], float* to)
+{
+    unrolled<count>([&](auto i) { store_lanes(from[i], to + i * block_lanes); });
+}
+inline Lanes dot6(const Row6& u, const Row6& v)
+{
+    return ((u[0] * v[0] + u[1] * v[1]) + (u[2] * v[2] + u[3] * v[3])) + (u[4] * v[4] + u[5] * v[5]);
+}
+inline void put(const Vec3<Lanes>& linear, const Vec3<Lanes>& angular, Row6& out)
+{
+    out[0] = linear.x, out[1] = linear.y, out[2] = linear.z;
+    out[3] = angular.x, out[4] = angular.y, out[5] = angular.z;
+}
+
+/// J of a node's locks on the body that hangs, on the one that it hangs on, and C.
+template <int rows>
+struct NodeRows {
+    Row6 child[rows], parent[rows];
+    Lanes error[rows];
+};
+template <int rows>
+NodeRows<rows> load_rows(const FigureNode& node, const float* system)
+{
+    NodeRows<rows> out;
+    unrolled<rows>([&](auto i) {
+        const auto row = load_row<EqualityRow<Lanes>>(system + node.jacobian + i * FigureNode::row_floats);
+        put(row.linear, row.lever_b, out.child[i]);
+        put(-row.linear, -row.lever_a, out.parent[i]);
+        out.error[i] = row.error;
+    });
+    return out;
+}
+/// Locks that have the hanging body as their body a are turned round: J v and C change sign.
+inline void turn_round(float* row)
+{
+    auto r = load_row<EqualityRow<Lanes>>(row);
+    store_row(EqualityRow<Lanes>{r.linear, r.lever_b, r.lever_a, -r.error}, row);
+}
+
+template <int n>
+Triangle<n> load_factor(const float* from)
+{
+    return load_row<Triangle<n>>(from);
+}
+
+/// M of a body; of what does not move that of a body of 1 kg, for its pivots are struck out.
+inline Triangle<6> mass_of(const Mover& body)
+{
+    const auto moves = body.inverse_mass > Lanes(0);
+    const Lanes zero(0), one(1);
+    const Lanes m = select(moves, one / select(moves, body.inverse_mass, one), one);
+    const Sym3<Lanes> inertia = inverse(body.inverse_inertia);
+    return {{m,    zero, m,    zero,       zero,       m,  //
+             zero, zero, zero, inertia.xx,                 //
+             zero, zero, zero, inertia.xy, inertia.yy,     //
+             zero, zero, zero, inertia.xz, inertia.yz, inertia.zz}};
+}
+
+/// Factors M', in whose pivots nothing is less than in those of M alone.
+inline void factor_mass(const Mover& body, Triangle<6>& mass)
+{
+    const Triangle<6> alone = mass_of(body);
+    Lanes least[6];
+    least[0] = least[1] = least[2] = alone.at(0, 0);
+    least[3] = alone.at(3, 3);
+    least[4] = alone.at(4, 4) - alone.at(4, 3) * alone.at(4, 3) * inverse_or_zero(alone.at(3, 3));
+    // The last pivot of I is 1 / (I^-1)_zz.
+    least[5] = inverse_or_zero(body.inverse_inertia.zz);
+    factor_in_place(mass, least);
+    const auto moves = body.inverse_mass > Lanes(0);
+    unrolled<6>([&](auto i) { mass.at(i, i) = select(moves, mass.at(i, i), Lanes(0)); });
+}
+
+/// Share of J M^-1 J^T of the body alone below which a pivot of K is nothing but rounding.
+constexpr float tree_rounding = 1e-7F;
+
+/// How far a substep may turn a body, rad, to mend what the last ones left of its locks. A light link that whips round
+/// leaves more than that; mended at once it would be thrown, and leave more yet.
+constexpr float tree_turn = 0.25F;
+
+/// The size of a node's levers, m (of its axes, 1): what an error divided by it turns bodies by.
+template <int rows>
+Lanes reach_of(const NodeRows<rows>& j)
+{
+    Lanes squares(0);
+    unrolled<rows>([&](auto i) {
+        unrolled<3>([&](auto c) {
+            squares =
+                squares + (j.child[i][3 + c] * j.child[i][3 + c] + j.parent[i][3 + c] * j.parent[i][3 + c]);
+        });
+    });
+    return square_root(squares);
+}
+
+template <int rows>
+void factor_locks(const Mover& body, const FigureNode& node, float* system, float* parent_mass,
+                  const Triangle<6>& mass)
+{
+    const NodeRows<rows> j = load_rows<rows>(node, system);
+    const Lanes most = Lanes(tree_turn) * reach_of(j);
+    unrolled<rows>([&](auto i) {
+        store_lanes(maximum(minimum(j.error[i], most), -most),
+                    system + node.jacobian + i * FigureNode::row_floats + 9 * block_lanes);
+    });
+    Triangle<rows> k;
+    Lanes least[rows];
+    unrolled<rows>([&](auto i) {
+        Row6 response;
+        unrolled<6>([&](auto c) { response[c] = j.child[i][c]; });
+        solve_in_place(mass, response);
+        store_array(response, system + node.response + i * 6 * block_lanes);
+        unrolled<i + 1>([&](auto m) { k.at(i, m) = dot6(j.child[m], response); });
+        const Vec3<Lanes> linear{j.child[i][0], j.child[i][1], j.child[i][2]};
+        const Vec3<Lanes> lever{j.child[i][3], j.child[i][4], j.child[i][5]};
+        least[i] = Lanes(tree_rounding) *
+                   (body.inverse_mass * dot(linear, linear) + dot(lever, body.inverse_inertia * lever));
+    });
+    factor_in_place(k, least);
+    store_row(k, system + node.factor);
+    if (parent_mass == nullptr) return;
+    // J_p^T K^-1 J_p = B^T D^-1 B, B = L^-1 J_p.
+    auto sum = load_row<Triangle<6>>(parent_mass);
+    Row6 b[rows];
+    unrolled<rows>([&](auto i) {
+        unrolled<6>([&](auto c) {
+            b[i][c] = j.parent[i][c];
+            unrolled<i>([&](auto m) { b[i][c] = b[i][c] - k.at(i, m) * b[m][c]; });
+        });
+        unrolled<6>([&](auto c) {
+            const Lanes scaled = k.at(i, i) * b[i][c];
+            unrolled<c + 1>([&](auto d) { sum.at(c, d) = sum.at(c, d) + scaled * b[i][d]; });
+        });
+    });
+    store_row(sum, parent_mass);
+}
+
+/// Whether what is solved is the step, or what the tree answers to a push while all the world stands still.
+enum class TreeSweep { solves, answers };
+
+/// From what hangs to what it hangs on: y = K^-1 (target - J_c M'^-1 f), and what it pulls with.
+template <int rows>
+void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, float* parent_force,
+              const Row6& change, const Lanes& rate, TreeSweep sweep, int lane)
+{
+    const NodeRows<rows> j = load_rows<rows>(node, system);
+    const Mover body = load_row<Mover>(figure.body(node.body) + lane);
+    Row6 child, parent;
+    put(body.linear, body.angular, child);
+    if (node.parent_node >= 0) {
+        const Mover on = load_row<Mover>(figure.body(node.parent) + lane);
+        put(on.linear, on.angular, parent);
+    } else if (sweep == TreeSweep::solves) {
+        const Standing on = load_row<Standing>(figure.body(node.parent) + lane);
+        put(on.linear, on.angular, parent);
+    } else {
+        unrolled<6>([&](auto c) { parent[c] = Lanes(0); });
+    }
+    Lanes y[rows];
+    unrolled<rows>(
+        [&](auto i) { y[i] = -((dot6(j.child[i], child) + dot6(j.parent[i], parent)) + rate * j.error[i]); });
+    if (node.has_children) unrolled<rows>([&](auto i) { y[i] = y[i] - dot6(j.child[i], change); });
+    solve_in_place(load_factor<rows>(system + node.factor), y);
+    store_array(y, system + node.target);
+    if (parent_force == nullptr) return;
+    Row6 force;
+    load_array(parent_force, force);
+    unrolled<rows>(
+        [&](auto i) { unrolled<6>([&](auto c) { force[c] = force[c] + y[i] * j.parent[i][c]; }); });
+    store_array(force, parent_force);
+}
+
+inline float* impulse_of(const FigureBlock& figure, int joint)
+{
+    const FigureBlock::Joint& lanes = figure.joints[joint];
+    return lanes.streams.impulses +
+           static_cast<std::int64_t>(lanes.block) * lanes.kernels->impulse_floats * block_lanes;
+}
+
+/// And back: lambda = y - K^-1 J_p (change of what it hangs on), change = M'^-1 (f + J_c^T lambda).
+template <int rows>
+void reach_down(const FigureBlock& figure, const FigureNode& node, float* system, const float* parent_change,
+                Row6& change, TreeSweep sweep, int lane)
+{
+    Lanes lambda[rows];
+    load_array(system + node.target, lambda);
+    if (parent_change != nullptr) {
+        const NodeRows<rows> j = load_rows<rows>(node, system);
+        Row6 above;
+        load_array(parent_change, above);
+        Lanes lacking[rows];
+        unrolled<rows>([&](auto i) { lacking[i] = dot6(j.parent[i], above); });
+        solve_in_place(load_factor<rows>(system + node.factor), lacking);
+        unrolled<rows>([&](auto i) { lambda[i] = lambda[i] - lacking[i]; });
+    }
+    unrolled<rows>([&](auto i) {
+        Row6 response;
+        load_array(system + node.response + i * 6 * block_lanes, response);
+        unrolled<6>([&](auto c) { change[c] = change[c] + lambda[i] * response[c]; });
+    });
+    if (sweep == TreeSweep::answers) return;
+    for (const FigureNode::Lock& lock : node.locks) {
+        float* impulse = impulse_of(figure, lock.joint) + lane;
+        for (int i = 0; i < lock.rows; ++i) {
+            const Lanes pushed = lambda[lock.first_row + i];
+            const Lanes before = load_lanes(impulse + i * block_lanes);
+            store_lanes(lock.reversed ? before - pushed : before + pushed, impulse + i * block_lanes);
+        }
+    }
+}
+
+/// Calls work(an integral constant) with the number of a node's rows.
+template <class Work>
+void with_rows(int rows, const Work& work)
+{
+    switch (rows) {
+        case 1:
+            work(std::integral_constant<int, 1>{});
+            break;
+        case 2:
+            work(std::integral_constant<int, 2>{});
+            break;
+        case 3:
+            work(std::integral_constant<int, 3>{});
+            break;
+        case 4:
+            work(std::integral_constant<int, 4>{});
+            break;
+        case 5:
+            work(std::integral_constant<int, 5>{});
+            break;
+        case 6:
+            work(std::integral_constant<int, 6>{});
+            break;
+        default:
+            break;
+    }
+}
+
+[[gnu::flatten]] inline void factor_tree(const FigureBlock& figure, int lane)
+{
+    const std::vector<FigureNode>& nodes = figure.shape->nodes;
+    float* system = figure.system + lane;
+    for (const FigureNode& node : nodes) {
+        for (const FigureNode::Lock& lock : node.locks) {
+            for (int i = lock.first_row; lock.reversed && i < lock.first_row + lock.rows; ++i)
+                turn_round(system + node.jacobian + i * FigureNode::row_floats);
+        }
+        store_row(mass_of(load_row<Mover>(figure.body(node.body) + lane)), system + node.mass);
+    }
+    for (const FigureNode& node : nodes) {
+        const Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        auto factor = load_row<Triangle<6>>(system + node.mass);
+        factor_mass(body, factor);
+        store_row(factor, system + node.mass);
+        float* parent_mass =
+            node.parent_node < 0 ? nullptr : system + nodes[static_cast<std::size_t>(node.parent_node)].mass;
+        with_rows(node.rows,
+                  [&](auto rows) { factor_locks<rows()>(body, node, system, parent_mass, factor); });
+    }
+}
+
+/// Changes the velocities of all bodies such that J v + rate C = 0 for the locks of the tree.
+[[gnu::flatten]] inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, int lane)
+{
+    const std::vector<FigureNode>& nodes = figure.shape->nodes;
+    float* system = figure.system + lane;
+    const auto parent_of = [&](const FigureNode& node, std::int64_t FigureNode::*part) {
+        return node.parent_node < 0 ? nullptr
+                                    : system + nodes[static_cast<std::size_t>(node.parent_node)].*part;
+    };
+    Row6 none;
+    for (Lanes& zero : none) zero = Lanes(0);
+    for (const FigureNode& node : nodes) {
+        if (node.has_children) store_array(none, system + node.force);
+    }
+    for (const FigureNode& node : nodes) {
+        Row6 change;
+        if (node.has_children) {
+            load_array(system + node.force, change);
+            solve_in_place(load_factor<6>(system + node.mass), change);
+        } else {
+            unrolled<6>([&](auto c) { change[c] = Lanes(0); });
+        }
+        store_array(change, system + node.change);
+        float* parent_force = parent_of(node, &FigureNode::force);
+        with_rows(node.rows, [&](auto rows) {
+            reach_up<rows()>(figure, node, system, parent_force, change, Lanes(rate), sweep, lane);
+        });
+    }
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        const FigureNode& node = nodes[i];
+        Row6 change;
+        load_array(system + node.change, change);
+        const float* parent_change = parent_of(node, &FigureNode::change);
+        with_rows(node.rows, [&](auto rows) {
+            reach_down<rows()>(figure, node, system, parent_change, change, sweep, lane);
+        });
+        store_array(change, system + node.change);
+        Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        body.linear = body.linear + Vec3<Lanes>{change[0], change[1], change[2]};
+        body.angular = body.angular + Vec3<Lanes>{change[3], change[4], change[5]};
+        store_copy_velocity(body, figure.body(node.body) + lane);
+    }
+}
