@@ -24,24 +24,27 @@ struct CopyBody {
 /// The locks between a body and what it hangs on, all of them solved at once with those of the other bodies: a node of
 /// the tree over which J M^-1 J^T is factored without fill.
 struct FigureNode {
-    int body;           ///< that hangs
-    int parent;         ///< body that it hangs on, moving or fixed; -1 for a root that floats
-    int parent_node;    ///< that body's node; -1 where it is fixed or none
-    bool has_children;  ///< whether other bodies hang on this one
-    int rows;           ///< of all its locks together, 0 to 6
+    int body;         ///< that hangs
+    int parent;       ///< body that it hangs on, moving or fixed; -1 for a root that floats
+    int parent_node;  ///< that body's node; -1 where it is fixed or none
+    int rows;         ///< of all its locks together, 0 to 6
     /// Where its numbers begin in FigureBlock::system, floats.
     std::int64_t jacobian;  ///< EqualityRows
     std::int64_t response;  ///< M'^-1 J^T, six floats a row
     std::int64_t factor;    ///< of K = J M'^-1 J^T
-    std::int64_t target;    ///< K^-1 of what the rows lack; a float a row
-    std::int64_t change;    ///< of the body's velocity, six
-    std::int64_t mass;      ///< M', of the body and all that hangs on it: lower triangle; then its factor
-    std::int64_t force;     ///< on the body, of what hangs on it, six
-    std::int64_t kept;      ///< the body's velocity while responses are tried, six
+    std::int64_t
+        target;  ///< K^-1 of what the rows lack; a float a row. Before it is factored: lambda of the last
+                 ///< substep times its length, N s2
+    std::int64_t change;  ///< of the body's velocity, six
+    std::int64_t mass;    ///< M', of the body and all that hangs on it: lower triangle; then its factor
+    std::int64_t force;   ///< on the body, of what hangs on it, six
+    std::int64_t kept;    ///< the body's velocity while responses are tried, six
+    std::int64_t pull;    ///< what stiffened locks take from its spin at the first solve, three
     struct Lock {
         int joint;  ///< of the shape
         int first_row, rows;
-        bool reversed;  ///< the hanging body is the joint's body a: errors and impulses change sign
+        bool locks_point;  ///< its first three rows are a point's, along x, y and z
+        bool reversed;     ///< the hanging body is the joint's body a: errors and impulses change sign
     };
     std::vector<Lock> locks;
     static constexpr int row_floats = 10 * block_lanes;  ///< of an EqualityRow
@@ -59,8 +62,9 @@ struct FigureShape {
         int type;
         BodyKind kind_a, kind_b;
         std::uint8_t colour;
-        int a, b;        ///< bodies of the figure
-        int equalities;  ///< rows that may be solved exactly; 0 for limits, motors, springs
+        int a, b;          ///< bodies of the figure
+        int equalities;    ///< rows that may be solved exactly; 0 for limits, motors, springs
+        bool locks_point;  ///< the first three of them are a point's
         bool in_tree = false;
     };
     std::vector<BodyKind> bodies;

@@ -30,24 +30,27 @@ void transfer(const KernelContext& context, const FigureBlock& block, std::span<
 }
 
 /// J and C of every lock where the bodies are now, and the factors; the locks' impulses start from nothing.
-void factor_tree(const FigureKernels& kernels, const FigureBlock& block)
+void factor_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
 {
-    const auto start = [&](int which, float* rows) {
+    const auto start = [&](int which, float* rows, float* tensions) {
         const FigureShape::Joint& joint = block.shape->joints[static_cast<std::size_t>(which)];
         const FigureBlock::Joint& lanes = block.joints[which];
         lanes.kernels->equality_rows(lanes.streams, lanes.block, block.body(joint.a), block.body(joint.b),
                                      rows);
         const std::int64_t floats = std::int64_t{lanes.kernels->impulse_floats} * block_lanes;
         float* impulses = lanes.streams.impulses + lanes.block * floats;
+        for (std::int64_t i = 0; i < floats; ++i) tensions[i] = context.step.substep * impulses[i];
         std::fill(impulses, impulses + floats, 0.0F);
     };
     constexpr std::int64_t row_floats = FigureNode::row_floats;
     for (const FigureNode& node : block.shape->nodes) {
         for (const FigureNode::Lock& lock : node.locks)
-            start(lock.joint, block.system + node.jacobian + row_floats * lock.first_row);
+            start(lock.joint, block.system + node.jacobian + row_floats * lock.first_row,
+                  block.system + node.target + block_lanes * lock.first_row);
     }
     for (const FigureClosure& closure : block.shape->closures)
-        start(closure.joint, block.system + block.shape->closure_jacobian + row_floats * closure.first_row);
+        start(closure.joint, block.system + block.shape->closure_jacobian + row_floats * closure.first_row,
+              block.system + block.shape->closure_target + block_lanes * closure.first_row);
     kernels.factor(block);
 }
 
@@ -64,7 +67,7 @@ void step_figure(const KernelContext& context, const FigureKernels& kernels, con
     kernels.load(context, block);
     for (int substep = 0; substep < steps.substeps; ++substep) {
         kernels.integrate_velocities(context, block);
-        if (has_tree) factor_tree(kernels, block);
+        if (has_tree) factor_tree(context, kernels, block);
         if (has_others) sweep(context, block, &ConstraintKernels::warm_start_copies);
         // Limits and motors shall see bodies that hold together.
         if (has_tree && has_others) kernels.solve(block, steps.exact_rate);
@@ -85,7 +88,7 @@ void step_figure(const KernelContext& context, const FigureKernels& kernels, con
 void prepare_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
 {
     kernels.load(context, block);
-    factor_tree(kernels, block);
+    factor_tree(context, kernels, block);
 }
 
 void solve_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,

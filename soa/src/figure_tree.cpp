@@ -38,7 +38,7 @@ bool FigureShape::plant_tree()
             const Joint& j = joints[static_cast<std::size_t>(joint)];
             if (other_end(joint, body) != parent || node.rows + j.equalities > most_rows) continue;
             hangs[static_cast<std::size_t>(joint)] = 1;
-            node.locks.push_back({joint, node.rows, j.equalities, j.a == body});
+            node.locks.push_back({joint, node.rows, j.equalities, j.locks_point, j.a == body});
             node.rows += j.equalities;
         }
         node_of[static_cast<std::size_t>(body)] = static_cast<int>(reached.size());
@@ -92,10 +92,8 @@ bool FigureShape::plant_tree()
         node.mass = take(21);
         node.force = take(6);
         node.kept = take(6);
-        if (node.parent_node >= 0) {
-            reached[static_cast<std::size_t>(node.parent_node)].has_children = true;
-            node.parent_node = count - 1 - node.parent_node;
-        }
+        node.pull = take(3);
+        if (node.parent_node >= 0) node.parent_node = count - 1 - node.parent_node;
     }
     for (Joint& joint : joints) joint.in_tree = joint.equalities > 0;
     closures = std::move(loops);

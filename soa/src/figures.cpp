@@ -78,7 +78,8 @@ std::vector<std::uint32_t> signature_of(Member& member)
         signature.push_back(p.colour | std::uint32_t{p.type} << 8 |
                             static_cast<std::uint32_t>(p.a.kind()) << 16 |
                             static_cast<std::uint32_t>(p.b.kind()) << 18 |
-                            static_cast<std::uint32_t>(joint->equalities) << 20);
+                            static_cast<std::uint32_t>(joint->equalities) << 20 |
+                            static_cast<std::uint32_t>(joint->locks_point) << 24);
         signature.push_back(name(p.a));
         signature.push_back(name(p.b));
     }
@@ -93,7 +94,8 @@ std::unique_ptr<FigureShape> shape_of(const Member& member, std::span<const std:
         const Placement& p = member.joints[i]->placement;
         shape->joints.push_back({p.type, p.a.kind(), p.b.kind(), p.colour,
                                  static_cast<int>(signature[3 * i + 1]),
-                                 static_cast<int>(signature[3 * i + 2]), member.joints[i]->equalities});
+                                 static_cast<int>(signature[3 * i + 2]), member.joints[i]->equalities,
+                                 member.joints[i]->locks_point});
     }
     return shape;
 }
@@ -109,7 +111,7 @@ std::vector<Member> members_of(std::span<const Figures::Candidate> joints, std::
                                const KernelTable& kernels, std::size_t largest)
 {
     Components components(rigid_rows);
-    for (const auto& [joint, equalities] : joints) {
+    for (const auto& [joint, equalities, locks_point] : joints) {
         if (is_rigid(joint.a) && is_rigid(joint.b)) components.tie(joint.a.row(), joint.b.row());
         if (can_be_in_lanes(joint, kernels)) continue;
         if (is_rigid(joint.a)) components.exclude(joint.a.row());

@@ -17,7 +17,8 @@ class Figures {
     /// A joint as it comes from its store, with a colour.
     struct Candidate {
         Placement placement;
-        int equalities;  ///< rows that may be solved exactly, or 0
+        int equalities;    ///< rows that may be solved exactly, or 0
+        bool locks_point;  ///< the first three of them are those of a point on a point
     };
     /// Sorts the joints into `placed`: those of figures first, sixteen copies of a joint in line with gaps where a block has
     /// fewer copies, so that each has a block of its own; then the rest as they were. `exact`: figures whose locks

@@ -231,7 +231,7 @@ void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, 
     Lanes y[rows];
     unrolled<rows>(
         [&](auto i) { y[i] = -((dot6(j.child[i], child) + dot6(j.parent[i], parent)) + rate * j.error[i]); });
-    if (node.has_children) unrolled<rows>([&](auto i) { y[i] = y[i] - dot6(j.child[i], change); });
+    unrolled<rows>([&](auto i) { y[i] = y[i] - dot6(j.child[i], change); });
     solve_in_place(load_factor<rows>(system + node.factor), y);
     store_array(y, system + node.target);
     if (parent_force == nullptr) return;
@@ -309,6 +309,56 @@ void with_rows(int rows, const Work& work)
     }
 }
 
+/// Between light bodies that bear heavy loads a taut joint is a stiff spring against turning: a substep that sees its
+/// force stay where it was swings them wider each time, however exactly it holds the joint. So the spin that the end of
+/// the substep brings is taken into account: (M + h2 K) w' = M w + ..., with K = (f . r)(1 - n n^T), n = r / |r|, of a force f
+/// that pulls at the lever r. (M. Tournier and others, Stable Constrained Dynamics, 2015; S. Andrews and others,
+/// Geometric Stiffness, 2017.) Only as much of it as an explicit substep cannot follow.
+inline void stiffen(const Mover& body, const Vec3<Lanes>& lever, const Vec3<Lanes>& tension, float* mass,
+                    float* pull)
+{
+    const Sym3<Lanes>& i = body.inverse_inertia;
+    const Lanes zero(0);
+    const Lanes bearable = Lanes(0.5F) * inverse_or_zero(i.xx + i.yy + i.zz);
+    const Lanes excess = maximum(dot(tension, lever) - bearable, zero);
+    const Vec3<Lanes> n = square_root(inverse_or_zero(dot(lever, lever))) * lever;
+    const Sym3<Lanes> k{excess - excess * n.x * n.x, -(excess * n.x * n.y), -(excess * n.x * n.z),
+                        excess - excess * n.y * n.y, -(excess * n.y * n.z), excess - excess * n.z * n.z};
+    auto m = load_row<Triangle<6>>(mass);
+    m.at(3, 3) = m.at(3, 3) + k.xx;
+    m.at(4, 3) = m.at(4, 3) + k.xy;
+    m.at(4, 4) = m.at(4, 4) + k.yy;
+    m.at(5, 3) = m.at(5, 3) + k.xz;
+    m.at(5, 4) = m.at(5, 4) + k.yz;
+    m.at(5, 5) = m.at(5, 5) + k.zz;
+    store_row(m, mass);
+    store_row(load_row<Vec3<Lanes>>(pull) - k * body.angular, pull);
+}
+
+/// The lever of a point's rows along x, y and z: r x e_x = (0, r_z, -r_y), ...
+inline Vec3<Lanes> lever_of_point(const Vec3<Lanes>& along_x, const Vec3<Lanes>& along_y)
+{
+    return {along_y.z, -along_x.z, along_x.y};
+}
+
+inline void stiffen_locks(const FigureBlock& figure, const FigureNode& node, float* system, int lane)
+{
+    for (const FigureNode::Lock& lock : node.locks) {
+        if (!lock.locks_point) continue;
+        const float* rows = system + node.jacobian + lock.first_row * FigureNode::row_floats;
+        const auto x = load_row<EqualityRow<Lanes>>(rows);
+        const auto y = load_row<EqualityRow<Lanes>>(rows + FigureNode::row_floats);
+        auto tension = load_row<Vec3<Lanes>>(system + node.target + lock.first_row * block_lanes);
+        if (lock.reversed) tension = -tension;
+        stiffen(load_row<Mover>(figure.body(node.body) + lane), lever_of_point(x.lever_b, y.lever_b), tension,
+                system + node.mass, system + node.pull);
+        if (node.parent_node < 0) continue;
+        const FigureNode& parent = figure.shape->nodes[static_cast<std::size_t>(node.parent_node)];
+        stiffen(load_row<Mover>(figure.body(node.parent) + lane), lever_of_point(x.lever_a, y.lever_a),
+                -tension, system + parent.mass, system + parent.pull);
+    }
+}
+
 [[gnu::flatten]] inline void factor_tree(const FigureBlock& figure, int lane)
 {
     const std::vector<FigureNode>& nodes = figure.shape->nodes;
@@ -319,7 +369,9 @@ void with_rows(int rows, const Work& work)
                 turn_round(system + node.jacobian + i * FigureNode::row_floats);
         }
         store_row(mass_of(load_row<Mover>(figure.body(node.body) + lane)), system + node.mass);
+        store_row(Vec3<Lanes>{Lanes(0), Lanes(0), Lanes(0)}, system + node.pull);
     }
+    for (const FigureNode& node : nodes) stiffen_locks(figure, node, system, lane);
     for (const FigureNode& node : nodes) {
         const Mover body = load_row<Mover>(figure.body(node.body) + lane);
         auto factor = load_row<Triangle<6>>(system + node.mass);
@@ -341,19 +393,18 @@ void with_rows(int rows, const Work& work)
         return node.parent_node < 0 ? nullptr
                                     : system + nodes[static_cast<std::size_t>(node.parent_node)].*part;
     };
-    Row6 none;
-    for (Lanes& zero : none) zero = Lanes(0);
+    const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
     for (const FigureNode& node : nodes) {
-        if (node.has_children) store_array(none, system + node.force);
+        const bool pulls = sweep == TreeSweep::solves;
+        store_row(none, system + node.force);
+        store_row(pulls ? load_row<Vec3<Lanes>>(system + node.pull) : none,
+                  system + node.force + 3 * block_lanes);
+        if (pulls) store_row(none, system + node.pull);
     }
     for (const FigureNode& node : nodes) {
         Row6 change;
-        if (node.has_children) {
-            load_array(system + node.force, change);
-            solve_in_place(load_factor<6>(system + node.mass), change);
-        } else {
-            unrolled<6>([&](auto c) { change[c] = Lanes(0); });
-        }
+        load_array(system + node.force, change);
+        solve_in_place(load_factor<6>(system + node.mass), change);
         store_array(change, system + node.change);
         float* parent_force = parent_of(node, &FigureNode::force);
         with_rows(node.rows, [&](auto rows) {

@@ -45,11 +45,14 @@ void Layout::place_joints(Scene& scene)
             const BodyRow b = bodies.row_of(store.definitions[i].body_b);
             if (store.colours[i] == no_colour) store.colours[i] = joint_masks_.take_first(a, b);
             int equalities = 0;
+            bool locks_point = std::is_same_v<Type, BallSocket>;
             if constexpr (requires { Type::equality_count; })
                 equalities = Type::is_equality(store.definitions[i]) ? Type::equality_count : 0;
+            if constexpr (requires { Type::linear_rows; }) locks_point = Type::linear_rows == 3;
             candidates_.push_back({{a, b, static_cast<std::int32_t>(i),
                                     static_cast<std::uint8_t>(contact_type_count + type), store.colours[i]},
-                                   equalities});
+                                   equalities,
+                                   locks_point});
         }
     });
     figures.find(candidates_, bodies.rows(BodyKind::rigid).size(), kernels_, use_.exactly, joint_placements_);
