@@ -106,10 +106,10 @@ class Trial {
 template <int exponent>
 double light_tip(const ExtremeRun& run)
 {
-    Trial light(run), even(run);
-    light.chain(10, {1, 0, 0}, static_cast<float>(std::pow(10.0, -exponent)));
-    even.chain(10, {1, 0, 0}, 1);
-    return light.worst_separation(300) / (even.worst_separation(300) + 1e-6);
+    Trial trial(run);
+    trial.chain(10, {0, -1, 0}, static_cast<float>(std::pow(10.0, -exponent)));
+    trial.scene.set_velocity(trial.bodies()[4], {3, 0, 0}, {});
+    return trial.worst_separation(300) / 0.5;
 }
 template <int exponent>
 double hanging_load(const ExtremeRun& run)
@@ -252,7 +252,6 @@ double no_distance(const ExtremeRun& run)
     DistanceDefinition rod{a, b};
     rod.min_length = rod.max_length = 1;
     trial.scene.add_joint(rod);
-    trial.settings.joint_hertz = 1;
     for (int i = 0; i < 600; ++i) trial.step();
     return trial.figure(std::abs(length(trial.scene.state(b).position - trial.scene.state(a).position) - 1));
 }
@@ -495,9 +494,12 @@ constexpr std::array<double, extreme_way_count> all(double bound)
 
 // Bounds: soft_step, exact_joints, baumgarte, projection, direct.
 constexpr ExtremeCase cases[] = {
-    {"tip of 1e-6 kg", "a light tip must not part joints more than an even chain", "x", all(1.5),
+    {"tip of 1e-6 kg",
+     "hanging, pushed at 3 m/s: whips, and holds",
+     "L",
+     {0.05, 5e-3, 0.05, 0.05, 1e-6},
      light_tip<6>},
-    {"tip of 1e-4 kg", "likewise", "x", all(1.5), light_tip<4>},
+    {"tip of 1e-4 kg", "likewise", "L", {0.05, 5e-3, 0.05, 0.05, 1e-6}, light_tip<4>},
     {"load of 1e2 kg, hanging",
      "what a locked joint gives under a weight",
      "L",
@@ -520,8 +522,15 @@ constexpr ExtremeCase cases[] = {
      tumbling},
     {"spin of 1e4 rad/s", "no more energy than before, though a step turns it 166 rad", "%", all(0.1),
      fast_spin},
-    {"steps of 0.5 s", "implicit locks must not gain energy, of what falls", "x", all(1.0), coarse_steps},
-    {"steps of 1/30 s and 1/3000 s in turn", "cached impulses scale with the step", "%", all(1.0),
+    {"steps of 0.5 s",
+     "implicit locks must not gain energy, of what falls",
+     "x",
+     {no_claim, 1.0, 1.0, 1.0, 1.0},
+     coarse_steps},
+    {"steps of 1/30 s and 1/3000 s in turn",
+     "cached impulses scale with the step",
+     "%",
+     {1.0, 1.0, no_claim, 1.0, 1.0},
      alternating_steps},
     {"steps of 1e-5 s", "as steps of 1e-3 s", "%", all(2.0), tiny_steps},
     {"1e7 m from the origin", "doubles resolve 2e-9 m there: separation as at home", "m", all(1e-3),
@@ -547,7 +556,7 @@ constexpr ExtremeCase cases[] = {
     {"1e6 N for one step on 1 kg",
      "whole again within 2 s",
      "L",
-     {no_claim, 0.2, no_claim, no_claim, 0.2},
+     {no_claim, no_claim, no_claim, 0.2, 0.2},
      a_blow},
     {"overlap of 2 m", "nobody is thrown faster than the push-out speed", "x", all(1.1), deep_overlap},
     {"friction 1e6", "sticks: m crept in 10 s, a second", "m/s", all(1e-3), huge_friction},

@@ -63,8 +63,10 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
     step.gravity = settings.gravity;
     step.restitution_threshold = settings.restitution_threshold;
     step.push_out_speed = settings.push_out_speed;
-    // An impulse is a force times the substep, so a cached one is scaled when the substep changes.
-    step.warm_start_scale = settings.warm_start && last_substep > 0 ? step.substep / last_substep : 0.0F;
+    // An impulse is a force times the substep, so a cached one is scaled when the substep changes; but never up: what
+    // mended an error in a short substep is no force, and would throw things in a long one.
+    step.warm_start_scale =
+        settings.warm_start && last_substep > 0 ? std::min(1.0F, step.substep / last_substep) : 0.0F;
     if (settings.method == Method::soft_step) {
         step.joint = soft(settings.joint_hertz, settings.joint_damping_ratio, step.substep);
         step.contact = soft(settings.contact_hertz, settings.contact_damping_ratio, step.substep);
