@@ -66,6 +66,41 @@ long allocations_of_warm_steps(int threads, float tolerance = 0)
     return allocations - before;
 }
 
+/// The same of forty chains of three, in lockstep, one of which something touches now and then.
+long allocations_of_figures(bool exact, int threads)
+{
+    Scene scene;
+    std::vector<BodyId> links;
+    for (int chain = 0; chain < 40; ++chain) {
+        BodyId before = scene.ground();
+        Vec3<float> hook{static_cast<float>(chain), 0, 0};
+        for (int i = 0; i < 3; ++i) {
+            BodyDefinition link;
+            link.position = {static_cast<double>(chain), -0.25 - 0.5 * i, 0};
+            links.push_back(scene.add_body(link));
+            scene.add_joint(BallSocketDefinition{before, links.back(), hook, {0, 0.25F, 0}});
+            before = links.back();
+            hook = {0, -0.25F, 0};
+        }
+    }
+    SolverSettings settings;
+    settings.gravity = {0, -9.81F, 1};
+    settings.exact_joints = exact;
+    Solver solver(settings, {.threads = threads});
+    Contact contact;
+    contact.body_a = scene.ground();
+    contact.body_b = links[7];
+    contact.normal = {0, 0, 1};
+    const auto step = [&](int number) {
+        const bool touches = number % 4 == 0;
+        solver.step(scene, 1.0F / 60, std::span<const Contact>(&contact, touches ? 1 : 0));
+    };
+    for (int number = 0; number < 40; ++number) step(number);
+    const long before = allocations;
+    for (int number = 0; number < 40; ++number) step(number);
+    return allocations - before;
+}
+
 TEST(Allocation, TheCounterCounts)
 {
     const long before = allocations;
@@ -79,6 +114,11 @@ TEST(Allocation, AWarmStepOnOneThreadAllocatesNothing)
 TEST(Allocation, AWarmStepOnTwoThreadsAllocatesNothing)
 {
     EXPECT_EQ(allocations_of_warm_steps(2), 0);
+}
+TEST(Allocation, WarmFiguresAllocateNothing)
+{
+    EXPECT_EQ(allocations_of_figures(false, 1), 0);
+    EXPECT_EQ(allocations_of_figures(true, 2), 0);
 }
 TEST(Allocation, AWarmStepThatMeasuresAndStopsIslandsAllocatesNothing)
 {
