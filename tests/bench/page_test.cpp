@@ -70,8 +70,8 @@ TEST(Page, DrawsEveryPointAndNeedsNothingFromElsewhere)
     report.costs = {{"a group", "first", 1e-3, -1}, {"a group", "second", 2e-3, 0.01}};
     const std::string page = page_of(report);
     EXPECT_EQ(count_of(page, "<svg"), 3U);
-    // Five points that have an error, and a key for each of three series.
-    EXPECT_EQ(count_of(page, "<use "), 5U + 3U);
+    // Five points that have an error, and a key for each of three series; the other symbols are gnuplot's definitions.
+    EXPECT_EQ(count_of(page, "' transform='translate("), 5U + 3U);
     EXPECT_EQ(count_of(page, "src=") + count_of(page, "<link") + count_of(page, "@import"), 0U);
     EXPECT_NE(page.find("five points &amp; &lt;one> that came apart"), std::string::npos);
     EXPECT_NE(page.find("The default settings take 2.00 times"), std::string::npos);

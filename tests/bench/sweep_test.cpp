@@ -91,7 +91,7 @@ SweepResult small_sweep(bool with_peers)
 TEST(Sweep, MoreSubstepsAreSlowerAndMoreExact)
 {
     const SweepResult result = small_sweep(false);
-    ASSERT_EQ(result.points.size(), 2U + 4U);
+    ASSERT_EQ(result.points.size(), 4U + 4U);
     const SweepPoint *coarse = nullptr, *fine = nullptr;
     for (const SweepPoint& p : result.points) {
         if (p.label == "soft 1 x 4+1, stiffest") coarse = &p;
