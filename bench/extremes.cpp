@@ -88,6 +88,21 @@ class Trial {
         }
         return sum;
     }
+    /// The largest energy after any of so many steps, or now; `dt(i)` is the length of step i.
+    template <class Length>
+    double peak_energy(int steps, const Length& dt)
+    {
+        double peak = energy();
+        for (int i = 0; i < steps; ++i) {
+            step(dt(i));
+            peak = std::max(peak, energy());
+        }
+        return peak;
+    }
+    double peak_energy(int steps)
+    {
+        return peak_energy(steps, [](int) { return frame; });
+    }
     [[nodiscard]] double figure(double value) const
     {
         return went_wrong_ || std::isnan(value) ? no_claim : value;
@@ -152,12 +167,8 @@ double tumbling(const ExtremeRun& run)
     const BodyId body = trial.box({}, 1, {0.1F, 0.2F, 0.25F});
     trial.scene.set_velocity(body, {}, {0.01F, 5, 0.01F});
     const double before = trial.energy();
-    double most = 0;
-    for (int i = 0; i < 3600; ++i) {
-        trial.step();
-        most = std::max(most, trial.energy() / before - 1);
-    }
-    return trial.figure(100 * most);
+    const double peak = trial.peak_energy(3600);
+    return trial.figure(100 * (peak / before - 1));
 }
 double fast_spin(const ExtremeRun& run)
 {
@@ -165,36 +176,24 @@ double fast_spin(const ExtremeRun& run)
     const BodyId body = trial.box({}, 1, {0.1F, 0.2F, 0.25F});
     trial.scene.set_velocity(body, {}, {3e3F, 1e4F, 2e3F});
     const double before = trial.energy();
-    double most = 0;
-    for (int i = 0; i < 600; ++i) {
-        trial.step();
-        most = std::max(most, trial.energy() / before - 1);
-    }
-    return trial.figure(100 * most);
+    const double peak = trial.peak_energy(600);
+    return trial.figure(100 * (peak / before - 1));
 }
 double coarse_steps(const ExtremeRun& run)
 {
     Trial trial(run);
     trial.chain(5, {1, 0, 0}, 1);
     const double before = trial.energy();
-    double most = 0;
-    for (int i = 0; i < 100; ++i) {
-        trial.step(0.5F);
-        most = std::max(most, trial.energy() - before);
-    }
-    return trial.figure(most / (5 * 9.81 * 1.25));
+    const double peak = trial.peak_energy(100, [](int) { return 0.5F; });
+    return trial.figure((peak - before) / (5 * 9.81 * 1.25));
 }
 double alternating_steps(const ExtremeRun& run)
 {
     Trial trial(run);
     trial.chain(5, {1, 0, 0}, 1);
     const double before = trial.energy();
-    double most = 0;
-    for (int i = 0; i < 1200; ++i) {
-        trial.step(i % 2 == 0 ? 1.0F / 30 : 1.0F / 3000);
-        most = std::max(most, trial.energy() - before);
-    }
-    return trial.figure(100 * most / (5 * 9.81 * 1.25));
+    const double peak = trial.peak_energy(1200, [](int i) { return i % 2 == 0 ? 1.0F / 30 : 1.0F / 3000; });
+    return trial.figure(100 * (peak - before) / (5 * 9.81 * 1.25));
 }
 double tiny_steps(const ExtremeRun& run)
 {
@@ -365,12 +364,8 @@ double limits_at_speed(const ExtremeRun& run)
     trial.scene.add_joint(range);
     trial.scene.set_velocity(body, {200, 0, 0}, {});
     const double before = trial.energy();
-    double most = 0;
-    for (int i = 0; i < 2000; ++i) {
-        trial.step();
-        most = std::max(most, trial.energy() / before - 1);
-    }
-    return trial.figure(100 * most);
+    const double peak = trial.peak_energy(2000);
+    return trial.figure(100 * (peak / before - 1));
 }
 
 // ---- loads ----------------------------------------------------------------------------------------------------------

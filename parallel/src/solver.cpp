@@ -95,20 +95,19 @@ struct Solver::Impl {
     std::string take_in(Scene& scene, std::span<const Contact> contacts);
     std::string lay_out(Scene& scene, std::span<const Contact> contacts);
     void transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel);
-    void integrate_velocities(BodyKernels::Move BodyKernels::*kernel);
+    void integrate(BodyKernels::Move BodyKernels::*kernel);
     static constexpr int every_block = -1;
     void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least = every_block);
     int iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations);
     void measure_residual(StepReport& report);
     /// All substeps of the figures that nothing else touches.
     void step_figures();
-    /// What is left to do for those that something touches: their trees, where they have any.
     template <class Work>
-    void for_each_touched_tree(const Work& work);
+    void for_each_figure(std::span<const std::int32_t> which, const Work& work);
+    /// What is left to do for those that something touches: their trees, where they have any.
     void solve_touched_trees(float rate);
     [[nodiscard]] FigureUse use_of_figures() const;
     [[nodiscard]] float exact_rate() const;
-    void integrate_positions();
     void move_bodies(Scene& scene, StepReport& report);
     void solve_substeps(Scene& scene, StepReport& report);
     void solve_directly(Scene& scene, float dt, std::span<const Contact> contacts, StepReport& report);
@@ -232,10 +231,9 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     clock.charge(Stage::figures);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool replays = substep > 0 && layout.has_constant_responses();
-        integrate_velocities(replays ? &BodyKernels::integrate_and_replay
-                                     : &BodyKernels::integrate_velocities);
+        integrate(replays ? &BodyKernels::integrate_and_replay : &BodyKernels::integrate_velocities);
         clock.charge(Stage::integrate_velocities);
-        for_each_touched_tree(prepare_tree);
+        for_each_figure(layout.figures.touched_trees(), prepare_tree);
         if (!replays) sweep(&ConstraintKernels::warm_start);
         solve_touched_trees(exact_rate());
         clock.charge(Stage::warm_start);
@@ -244,7 +242,7 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
         report.sweeps += iterations;
         if (substep + 1 == settings.substeps) measure_residual(report);
         clock.charge(Stage::solve);
-        integrate_positions();
+        integrate(&BodyKernels::integrate_positions);
         for (int i = 0; projects && i < settings.projections; ++i) sweep(&ConstraintKernels::project);
         clock.charge(Stage::integrate_positions);
         if (soft) report.sweeps += iterate(&ConstraintKernels::relax, settings.relaxations);
@@ -345,12 +343,9 @@ void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, in
         const auto runs = [&](std::int32_t block) {
             return chunk.finished[block] == 0 && (at_least == 0 || chunk.wanted[block] >= at_least);
         };
-        for (std::int32_t begin = chunk.begin, end = begin; begin < chunk.end; begin = end) {
-            while (begin < chunk.end && !runs(begin)) ++begin;
-            end = begin;
-            while (end < chunk.end && runs(end)) ++end;
-            if (begin < end) run(layout.context, chunk.streams, begin, end);
-        }
+        for_each_run(chunk.begin, chunk.end, runs, [&](std::int32_t begin, std::int32_t end) {
+            run(layout.context, chunk.streams, begin, end);
+        });
     };
     // The overflow first and in order, so that the colours have the last word.
     for (const SweepChunk& chunk : layout.sweeps(overflow_colour)) run_chunk(chunk);
@@ -426,55 +421,42 @@ float Solver::Impl::exact_rate() const
     return settings.method == Method::soft_step ? step.inverse_substep : step.joint.rate;
 }
 
-void Solver::Impl::step_figures()
+template <class Work>
+void Solver::Impl::for_each_figure(std::span<const std::int32_t> which, const Work& work)
 {
-    const std::span<const std::int32_t> lone = layout.figures.lone();
-    const FigureSteps steps{settings.substeps, settings.iterations,
-                            settings.method == Method::soft_step ? settings.relaxations : 0, exact_rate()};
-    runner.run(static_cast<std::int64_t>(lone.size()), [&](std::int64_t i) {
-        step_figure(layout.context, layout.kernels().figures,
-                    layout.figures.blocks()[static_cast<std::size_t>(lone[static_cast<std::size_t>(i)])],
-                    layout.data(), steps);
+    runner.run(static_cast<std::int64_t>(which.size()), [&](std::int64_t i) {
+        work(layout.context, layout.kernels().figures,
+             layout.figures.blocks()[static_cast<std::size_t>(which[static_cast<std::size_t>(i)])]);
     });
 }
 
-template <class Work>
-void Solver::Impl::for_each_touched_tree(const Work& work)
+void Solver::Impl::step_figures()
 {
-    const std::span<const std::int32_t> trees = layout.figures.touched_trees();
-    runner.run(static_cast<std::int64_t>(trees.size()), [&](std::int64_t i) {
-        work(layout.context, layout.kernels().figures,
-             layout.figures.blocks()[static_cast<std::size_t>(trees[static_cast<std::size_t>(i)])]);
+    const FigureSteps steps{settings.substeps, settings.iterations,
+                            settings.method == Method::soft_step ? settings.relaxations : 0, exact_rate()};
+    for_each_figure(layout.figures.lone(), [&](const KernelContext& context, const FigureKernels& kernels,
+                                               const FigureBlock& block) {
+        step_figure(context, kernels, block, layout.data(), steps);
     });
 }
 
 void Solver::Impl::solve_touched_trees(float rate)
 {
-    for_each_touched_tree([&](const KernelContext& context, const FigureKernels& kernels,
-                              const FigureBlock& block) { solve_tree(context, kernels, block, rate); });
+    for_each_figure(layout.figures.touched_trees(),
+                    [&](const KernelContext& context, const FigureKernels& kernels,
+                        const FigureBlock& block) { solve_tree(context, kernels, block, rate); });
 }
 
-void Solver::Impl::integrate_velocities(BodyKernels::Move BodyKernels::*kernel)
+/// v += h a or x += h v, by the kernel of each kind that has it.
+void Solver::Impl::integrate(BodyKernels::Move BodyKernels::*kernel)
 {
     for (int kind = 0; kind < body_kind_count; ++kind) {
-        const BodyKernels::Move integrate = layout.kernels().bodies[kind].*kernel;
-        if (integrate == nullptr) continue;
+        const BodyKernels::Move move = layout.kernels().bodies[kind].*kernel;
+        if (move == nullptr) continue;
         const auto& ranges = layout.rows(kind);
         runner.run(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
             const RowRange& range = ranges[static_cast<std::size_t>(i)];
-            integrate(layout.context, range.begin, range.end);
-        });
-    }
-}
-
-void Solver::Impl::integrate_positions()
-{
-    for (int kind = 0; kind < body_kind_count; ++kind) {
-        const auto integrate = layout.kernels().bodies[kind].integrate_positions;
-        const auto& ranges = layout.rows(kind);
-        runner.run(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
-            const RowRange& range = ranges[static_cast<std::size_t>(i)];
-            integrate(layout.context, range.begin, range.end);
+            move(layout.context, range.begin, range.end);
         });
     }
 }

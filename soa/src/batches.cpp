@@ -218,19 +218,20 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
         for (std::size_t colour = 0; colour < colours; ++colour) {
             const std::int32_t end = pool.first_block[colour + 1];
             tiles = std::max(tiles, (end - pool.first_block[colour]) / blocks_per_tile);
-            for (std::int32_t begin = pool.first_block[colour], next = begin; begin < end; begin = next) {
-                next = begin + 1;
-                if (pool.skipped[static_cast<std::size_t>(begin)] != skip_nothing) continue;
-                while (next < std::min(begin + blocks_per_chunk, end) &&
-                       pool.skipped[static_cast<std::size_t>(next)] == skip_nothing)
-                    ++next;
-                sweeps[colour].push_back({&kernels, pool.streams(tells_apart), begin, next,
+            const auto add_chunk = [&](std::int32_t first, std::int32_t last) {
+                sweeps[colour].push_back({&kernels, pool.streams(tells_apart), first, last,
                                           constraint_class / (body_kind_count * body_kind_count),
                                           kind_a_of(constraint_class), kind_b_of(constraint_class),
                                           tells_apart ? pool.finished.data() : nullptr,
                                           tells_apart ? pool.islands.data() : nullptr,
                                           tells_apart ? pool.wanted.data() : nullptr});
-            }
+            };
+            for_each_run(
+                pool.first_block[colour], end,
+                [&](std::int32_t block) { return pool.skips(block) == skip_nothing; },
+                [&](std::int32_t first, std::int32_t last) {
+                    for_each_piece(first, last, blocks_per_chunk, add_chunk);
+                });
         }
     }
     for (std::int32_t tile = 0; tile < tiles; ++tile) {
@@ -242,19 +243,15 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
                 const std::int32_t first = pool.first_block[colour];
                 const std::int64_t blocks = pool.first_block[colour + 1] - first;
                 if (blocks == 0) continue;
-                auto begin = first + static_cast<std::int32_t>(blocks * tile / tiles);
-                const auto end = first + static_cast<std::int32_t>(blocks * (tile + 1) / tiles);
-                const auto transferred = [&](std::int32_t block) {
-                    return pool.skipped[static_cast<std::size_t>(block)] != skip_altogether;
-                };
-                for (std::int32_t next = begin; begin < end; begin = next) {
-                    while (begin < end && !transferred(begin)) ++begin;
-                    for (next = begin; next < end && transferred(next);) ++next;
-                    if (begin == next) continue;
-                    transfers.parts.push_back({&table.constraints[constraint_class], pool.streams(false),
-                                               constraint_class / (body_kind_count * body_kind_count), begin,
-                                               next});
-                }
+                for_each_run(
+                    first + static_cast<std::int32_t>(blocks * tile / tiles),
+                    first + static_cast<std::int32_t>(blocks * (tile + 1) / tiles),
+                    [&](std::int32_t block) { return pool.skips(block) != skip_altogether; },
+                    [&](std::int32_t begin, std::int32_t end) {
+                        transfers.parts.push_back({&table.constraints[constraint_class], pool.streams(false),
+                                                   constraint_class / (body_kind_count * body_kind_count),
+                                                   begin, end});
+                    });
             }
         }
         const auto last_part = static_cast<std::int32_t>(transfers.parts.size());

@@ -5,6 +5,7 @@
 // lane. Blocks of one colour lie in line, and so do their streams: a sweep reads memory from front to back.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -53,6 +54,23 @@ struct TransferTile {
     };
     std::int32_t first_part, last_part;
 };
+
+/// Calls work(first, last) for each run of numbers in [begin, end) that `takes` takes.
+template <class Takes, class Work>
+void for_each_run(std::int32_t begin, std::int32_t end, const Takes& takes, const Work& work)
+{
+    for (std::int32_t next = begin; begin < end; begin = next) {
+        while (begin < end && !takes(begin)) ++begin;
+        for (next = begin; next < end && takes(next);) ++next;
+        if (begin < next) work(begin, next);
+    }
+}
+/// Calls work(first, last) for each piece of at most `most` numbers of [begin, end).
+template <class Work>
+void for_each_piece(std::int32_t begin, std::int32_t end, std::int32_t most, const Work& work)
+{
+    for (; begin < end; begin += most) work(begin, std::min(begin + most, end));
+}
 
 using SweepLists = std::array<std::vector<SweepChunk>, parallel_colours + 1>;
 struct TransferList {
@@ -110,6 +128,10 @@ class BatchSet {
         std::array<std::int32_t, colours + 1> first_block{};       ///< of each colour, and one past the last
         std::array<std::int32_t, parallel_colours> constraints{};  ///< of each colour
         std::int64_t overflow = 0;
+        [[nodiscard]] std::uint8_t skips(std::int32_t block) const
+        {
+            return skipped[static_cast<std::size_t>(block)];
+        }
         [[nodiscard]] std::int32_t block_count() const { return first_block[colours]; }
         [[nodiscard]] BlockStreams streams(bool tells_apart);
         void make_room(std::int32_t blocks);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <numeric>
 
 namespace motley {
 namespace {
@@ -64,16 +63,6 @@ ResidualSum sum_residuals(const SweepLists& sweeps)
     return sum;
 }
 
-std::int32_t Convergence::root_of(std::int32_t body)
-{
-    while (parent_[static_cast<std::size_t>(body)] != body) {
-        std::int32_t& up = parent_[static_cast<std::size_t>(body)];
-        up = parent_[static_cast<std::size_t>(up)];
-        body = up;
-    }
-    return body;
-}
-
 void Convergence::tie(std::span<const Placement> placements)
 {
     for (const Placement& placement : placements) {
@@ -83,9 +72,7 @@ void Convergence::tie(std::span<const Placement> placements)
         const auto index = [&](BodyRow row) {
             return first_[static_cast<std::size_t>(row.kind())] + static_cast<std::int32_t>(row.row());
         };
-        const std::int32_t a = root_of(index(placement.a)), b = root_of(index(placement.b));
-        // The smaller index stays the root, so that an island's name does not depend on the order of its ties.
-        parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+        bodies_.tie(index(placement.a), index(placement.b));
     }
 }
 
@@ -97,12 +84,10 @@ void Convergence::find_islands(const KernelContext& context, std::span<const Pla
         first_[kind] = moving;
         moving += context.bodies[kind].size;
     }
-    parent_.resize(static_cast<std::size_t>(moving));
-    std::iota(parent_.begin(), parent_.end(), 0);
+    bodies_.reset(static_cast<std::size_t>(moving));
     tie(joints);
     tie(contacts);
-    for (std::int32_t body = 0; body < moving; ++body)
-        parent_[static_cast<std::size_t>(body)] = root_of(body);
+    bodies_.flatten();
     worst_.assign(static_cast<std::size_t>(moving), unseen);
     islands_ = 0;
     count(joints);
@@ -117,7 +102,7 @@ void Convergence::count(std::span<const Placement> placements)
         const BodyRow body = placement.a.kind() == BodyKind::fixed ? placement.b : placement.a;
         const std::int32_t index =
             first_[static_cast<std::size_t>(body.kind())] + static_cast<std::int32_t>(body.row());
-        std::int32_t& seen = worst_[static_cast<std::size_t>(parent_[static_cast<std::size_t>(index)])];
+        std::int32_t& seen = worst_[static_cast<std::size_t>(bodies_.root(static_cast<std::size_t>(index)))];
         islands_ += seen == unseen ? 1 : 0;
         seen = 0;
     }
@@ -142,12 +127,13 @@ void Convergence::name_islands(const SweepLists& sweeps)
 void Convergence::take_wishes(const Scene& scene, const SweepLists& sweeps)
 {
     most_wanted_ = 0;
-    wanted_.assign(parent_.size(), 0);
+    wanted_.assign(bodies_.size(), 0);
     for (const Scene::IslandIterations& asked : scene.island_iterations()) {
         const BodyRow row = scene.bodies().row_of(asked.body);
         const std::int32_t body =
             first_[static_cast<std::size_t>(row.kind())] + static_cast<std::int32_t>(row.row());
-        std::int32_t& wanted = wanted_[static_cast<std::size_t>(parent_[static_cast<std::size_t>(body)])];
+        std::int32_t& wanted =
+            wanted_[static_cast<std::size_t>(bodies_.root(static_cast<std::size_t>(body)))];
         wanted = std::max(wanted, asked.at_least);
     }
     std::array<const std::uint32_t*, constraint_type_count> slots{};
@@ -179,7 +165,7 @@ std::int32_t Convergence::island_of(const SweepChunk& chunk, std::int32_t block,
     const std::int32_t row =
         use_b ? chunk.streams.bodies[block].b[lane] : chunk.streams.bodies[block].a[lane];
     const auto kind = static_cast<std::size_t>(use_b ? chunk.kind_b : chunk.kind_a);
-    return parent_[static_cast<std::size_t>(first_[kind] + row)];
+    return bodies_.root(static_cast<std::size_t>(first_[kind] + row));
 }
 
 void Convergence::start_over(const SweepLists& sweeps)

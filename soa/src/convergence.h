@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "batches.h"
+#include "disjoint_sets.h"
 #include "motley/core/scene.h"
 
 namespace motley {
@@ -44,13 +45,12 @@ class Convergence {
   private:
     static constexpr int moving_kinds = body_kind_count - 1;
     std::array<std::int32_t, moving_kinds> first_{};  ///< index of the first row of a kind
-    std::vector<std::int32_t> parent_;                ///< by moving body; then its island's root
+    DisjointSets bodies_;                             ///< moving ones; an island is named by its root
     std::vector<std::int32_t> worst_;                 ///< bits of m/s, by root
     std::vector<std::int32_t> wanted_;                ///< sweeps, by root
     std::int64_t islands_ = 0, unfinished_ = 0;
     int most_wanted_ = 0;
 
-    [[nodiscard]] std::int32_t root_of(std::int32_t body);
     void tie(std::span<const Placement> placements);
     void count(std::span<const Placement> placements);
     void name_islands(const SweepLists& sweeps);

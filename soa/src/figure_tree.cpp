@@ -34,7 +34,7 @@ bool FigureShape::plant_tree()
         node.body = body;
         node.parent = parent;
         node.parent_node = parent < 0 ? -1 : node_of[static_cast<std::size_t>(parent)];
-        for (const int joint : parent < 0 ? std::vector<int>{} : locks_on[static_cast<std::size_t>(body)]) {
+        for (const int joint : locks_on[static_cast<std::size_t>(body)]) {
             const Joint& j = joints[static_cast<std::size_t>(joint)];
             if (other_end(joint, body) != parent || node.rows + j.equalities > most_rows) continue;
             hangs[static_cast<std::size_t>(joint)] = 1;

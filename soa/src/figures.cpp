@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
+
+#include "disjoint_sets.h"
 
 namespace motley {
 namespace {
@@ -13,37 +14,6 @@ namespace {
 constexpr std::size_t fewest_copies = 8;
 /// Bodies of a figure whose lanes still fit a second level cache with its joints.
 constexpr std::size_t most_bodies = 64;
-
-class Components {
-  public:
-    explicit Components(std::size_t size) : parent_(size), size_(size, 1), excluded_(size, 0)
-    {
-        std::iota(parent_.begin(), parent_.end(), 0U);
-    }
-    std::uint32_t root_of(std::uint32_t row)
-    {
-        while (parent_[row] != row) {
-            parent_[row] = parent_[parent_[row]];
-            row = parent_[row];
-        }
-        return row;
-    }
-    void tie(std::uint32_t a, std::uint32_t b)
-    {
-        const std::uint32_t u = root_of(a), v = root_of(b);
-        if (u == v) return;
-        parent_[std::max(u, v)] = std::min(u, v);
-        excluded_[std::min(u, v)] |= excluded_[std::max(u, v)];
-        size_[std::min(u, v)] += size_[std::max(u, v)];
-    }
-    std::size_t size_of(std::uint32_t row) { return size_[root_of(row)]; }
-    void exclude(std::uint32_t row) { excluded_[root_of(row)] = 1; }
-    bool is_excluded(std::uint32_t row) { return excluded_[root_of(row)] != 0; }
-
-  private:
-    std::vector<std::uint32_t> parent_, size_;
-    std::vector<std::uint8_t> excluded_;
-};
 
 bool is_rigid(BodyRow body)
 {
@@ -110,19 +80,28 @@ bool can_be_in_lanes(const Placement& joint, const KernelTable& kernels)
 std::vector<Member> members_of(std::span<const Figures::Candidate> joints, std::size_t rigid_rows,
                                const KernelTable& kernels, std::size_t largest)
 {
-    Components components(rigid_rows);
+    DisjointSets components;
+    components.reset(rigid_rows);
     for (const auto& [joint, equalities, locks_point] : joints) {
-        if (is_rigid(joint.a) && is_rigid(joint.b)) components.tie(joint.a.row(), joint.b.row());
+        if (is_rigid(joint.a) && is_rigid(joint.b))
+            components.tie(static_cast<std::int32_t>(joint.a.row()),
+                           static_cast<std::int32_t>(joint.b.row()));
+    }
+    components.flatten();
+    std::vector<std::size_t> size(rigid_rows, 0);
+    for (std::size_t row = 0; row < rigid_rows; ++row) ++size[static_cast<std::size_t>(components.root(row))];
+    std::vector<std::uint8_t> excluded(rigid_rows, 0);
+    for (const auto& [joint, equalities, locks_point] : joints) {
         if (can_be_in_lanes(joint, kernels)) continue;
-        if (is_rigid(joint.a)) components.exclude(joint.a.row());
-        if (is_rigid(joint.b)) components.exclude(joint.b.row());
+        for (const BodyRow body : {joint.a, joint.b})
+            if (is_rigid(body)) excluded[static_cast<std::size_t>(components.root(body.row()))] = 1;
     }
     std::vector<std::int32_t> member_of_root(rigid_rows, -1);
     std::vector<Member> members;
     for (const Figures::Candidate& joint : joints) {
         if (!can_be_in_lanes(joint.placement, kernels)) continue;
-        const std::uint32_t root = components.root_of(rigid_row_of(joint.placement));
-        if (components.is_excluded(root) || components.size_of(root) > largest) continue;
+        const auto root = static_cast<std::size_t>(components.root(rigid_row_of(joint.placement)));
+        if (excluded[root] != 0 || size[root] > largest) continue;
         if (member_of_root[root] < 0) {
             member_of_root[root] = static_cast<std::int32_t>(members.size());
             members.emplace_back();

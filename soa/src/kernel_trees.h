@@ -285,28 +285,9 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
 template <class Work>
 void with_rows(int rows, const Work& work)
 {
-    switch (rows) {
-        case 1:
-            work(std::integral_constant<int, 1>{});
-            break;
-        case 2:
-            work(std::integral_constant<int, 2>{});
-            break;
-        case 3:
-            work(std::integral_constant<int, 3>{});
-            break;
-        case 4:
-            work(std::integral_constant<int, 4>{});
-            break;
-        case 5:
-            work(std::integral_constant<int, 5>{});
-            break;
-        case 6:
-            work(std::integral_constant<int, 6>{});
-            break;
-        default:
-            break;
-    }
+    unrolled<6>([&](auto i) {
+        if (rows == i + 1) work(std::integral_constant<int, i + 1>{});
+    });
 }
 
 /// Between light bodies that bear heavy loads a taut joint is a stiff spring against turning: a substep that sees its

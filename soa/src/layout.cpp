@@ -45,10 +45,11 @@ void Layout::place_joints(Scene& scene)
             const BodyRow b = bodies.row_of(store.definitions[i].body_b);
             if (store.colours[i] == no_colour) store.colours[i] = joint_masks_.take_first(a, b);
             int equalities = 0;
-            bool locks_point = std::is_same_v<Type, BallSocket>;
-            if constexpr (requires { Type::equality_count; })
+            bool locks_point = false;
+            if constexpr (requires { Type::equality_count; }) {
                 equalities = Type::is_equality(store.definitions[i]) ? Type::equality_count : 0;
-            if constexpr (requires { Type::linear_rows; }) locks_point = Type::linear_rows == 3;
+                locks_point = Type::locks_point;
+            }
             candidates_.push_back({{a, b, static_cast<std::int32_t>(i),
                                     static_cast<std::uint8_t>(contact_type_count + type), store.colours[i]},
                                    equalities,
@@ -100,17 +101,19 @@ void Layout::list_rows(const Scene& scene)
         std::vector<RowRange>& ranges = rows_[static_cast<std::size_t>(kind)];
         const auto size = static_cast<std::int32_t>(scene.bodies().rows(static_cast<BodyKind>(kind)).size());
         const bool has_lone = static_cast<BodyKind>(kind) == BodyKind::rigid && !figures.lone().empty();
-        const auto left_out = [&](std::int32_t row) {
-            return has_lone && figures.is_alone(static_cast<std::size_t>(row));
-        };
         ranges.clear();
         if (size == 1) continue;  // the null row alone
-        for (std::int32_t begin = 0; begin < size;) {
-            while (begin < size && left_out(begin)) ++begin;
-            std::int32_t end = has_lone ? begin : std::min(begin + rows_per_range, size);
-            while (end < std::min(begin + rows_per_range, size) && !left_out(end)) ++end;
-            if (begin < end) ranges.push_back({begin, end});
-            begin = end;
+        const auto add = [&](std::int32_t first, std::int32_t last) {
+            for_each_piece(first, last, rows_per_range, [&](std::int32_t begin, std::int32_t end) {
+                ranges.push_back({begin, end});
+            });
+        };
+        if (has_lone) {
+            for_each_run(
+                0, size, [&](std::int32_t row) { return !figures.is_alone(static_cast<std::size_t>(row)); },
+                add);
+        } else {
+            add(0, size);
         }
     }
 }

@@ -26,6 +26,9 @@
 //   project<Real>(step, row, substep, a&, b&)                           positions along J^T
 //   remember<Real>(row, impulse) -> Memory                              or (row, impulse, a, b), to look at the bodies
 //   report(definition, memory, state_a, state_b, inverse_substep)       force, torque, error, state, in double
+//   equality_count, locks_point, is_equality(definition), equality_rows<Real>(row, a, b, rows*)
+//                                         if it locks: its J and C row by row, for SolverSettings::exact_joints;
+//                                         locks_point: the first three rows are of a point on a point, along x, y and z
 //   world_points(definition) -> WorldPoints                             if it has any; prepare then gets a WorldPose
 #pragma once
 

@@ -23,6 +23,7 @@ struct BallSocket {
     static constexpr bool has_restitution = false;
     static constexpr bool recomputes_each_substep = true;
     static constexpr int equality_count = 3;
+    static constexpr bool locks_point = true;
 
     template <class Real>
     struct Parameters {

@@ -42,6 +42,7 @@ struct FrameJoint {
     static constexpr int angular_rows = rows_of(angular_lock);
     static constexpr int rows = linear_rows + angular_rows;
     static constexpr int equality_count = rows;
+    static constexpr bool locks_point = linear_lock == LinearLock::point;
 
     template <class Real>
     struct Parameters {

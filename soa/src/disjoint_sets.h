@@ -1,0 +1,46 @@
+// Sets that grow together: what hangs together by constraints.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace motley {
+
+/// Union-find. The smallest member names its set, so that a set's name does not depend on the order of its ties.
+class DisjointSets {
+  public:
+    /// Starts over with so many sets of one.
+    void reset(std::size_t size)
+    {
+        parent_.resize(size);
+        std::iota(parent_.begin(), parent_.end(), 0);
+    }
+    [[nodiscard]] std::size_t size() const { return parent_.size(); }
+    [[nodiscard]] std::int32_t root_of(std::int32_t member)
+    {
+        while (parent_[static_cast<std::size_t>(member)] != member) {
+            std::int32_t& up = parent_[static_cast<std::size_t>(member)];
+            up = parent_[static_cast<std::size_t>(up)];
+            member = up;
+        }
+        return member;
+    }
+    void tie(std::int32_t a, std::int32_t b)
+    {
+        const std::int32_t u = root_of(a), v = root_of(b);
+        parent_[static_cast<std::size_t>(std::max(u, v))] = std::min(u, v);
+    }
+    /// Points every member at its root: then root() tells it without looking further, until the next tie.
+    void flatten()
+    {
+        for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = root_of(static_cast<std::int32_t>(i));
+    }
+    [[nodiscard]] std::int32_t root(std::size_t member) const { return parent_[member]; }
+
+  private:
+    std::vector<std::int32_t> parent_;
+};
+
+}  // namespace motley
