@@ -229,7 +229,7 @@ int main(int count, char** arguments)
         if (*extremes_app) return print_extremes({}) == 0 ? 0 : 1;
         if (*list_app) {
             for (const SceneEntry& entry : scene_list())
-                fmt::print("{:<12}{}\n", entry.name, entry.description);
+                fmt::print("{:<18}{}\n", entry.name, entry.description);
             fmt::print("instruction sets here:");
             for (const Isa isa : available_isas()) fmt::print(" {}", isa_name(isa));
             fmt::print("\n");

@@ -39,11 +39,15 @@ bool is_available(Isa isa)
     switch (isa) {
         case Isa::scalar:
             return true;
-#ifdef MOTLEY_X86
+#ifdef MOTLEY_SSE2
         case Isa::sse2:
             return true;
+#endif
+#ifdef MOTLEY_AVX2
         case Isa::avx2:
             return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#endif
+#ifdef MOTLEY_AVX512
         case Isa::avx512:
             return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                    __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
@@ -125,11 +129,15 @@ const KernelTable& table_of()
 const KernelTable& kernel_table(Isa isa)
 {
     switch (isa) {
-#ifdef MOTLEY_X86
+#ifdef MOTLEY_SSE2
         case Isa::sse2:
             return table_of<enter_kernels_sse2, enter_figure_kernels_sse2>();
+#endif
+#ifdef MOTLEY_AVX2
         case Isa::avx2:
             return table_of<enter_kernels_avx2, enter_figure_kernels_avx2>();
+#endif
+#ifdef MOTLEY_AVX512
         case Isa::avx512:
             return table_of<enter_kernels_avx512, enter_figure_kernels_avx512>();
 #endif

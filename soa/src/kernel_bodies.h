@@ -1,5 +1,5 @@
 // Bodies in and out of lanes, and their integration. Included inside an anonymous namespace, after Lanes.
-// Kernels are flattened: a call that stays a call would pass sixteen-lane vectors through memory.
+// The build inlines everything here: a call that stays a call would pass sixteen-lane vectors through memory.
 // What a kernel does not use of a loaded body is never fetched: the compiler drops loads without a reader.
 
 template <BodyKind kind>
@@ -222,7 +222,7 @@ void for_each_component(Body& body, const Body& other, const Change& change)
 }
 
 template <BodyKind kind, bool replay>
-[[gnu::flatten]] void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
+void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
     BodyArrays unpushed = arrays;
@@ -262,7 +262,7 @@ void advance(Body<kind>& body, const Lanes& h)
 }
 
 template <BodyKind kind>
-[[gnu::flatten]] void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
+void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
     const Lanes h(context.step.substep);

@@ -164,8 +164,8 @@ struct Kernels {
         }
     }
 
-    [[gnu::flatten]] static void prepare(const KernelContext& context, const BlockStreams& streams,
-                                         const ConstraintData& data, std::int32_t begin, std::int32_t end)
+    static void prepare(const KernelContext& context, const BlockStreams& streams, const ConstraintData& data,
+                        std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
@@ -209,8 +209,8 @@ struct Kernels {
         }
     }
 
-    [[gnu::flatten]] static void warm_start(const KernelContext& context, const BlockStreams& streams,
-                                            std::int32_t begin, std::int32_t end)
+    static void warm_start(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
+                           std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
             prefetch(context, streams, block, end);
@@ -239,8 +239,8 @@ struct Kernels {
     }
 
     template <bool relax>
-    [[gnu::flatten]] static void sweep(const KernelContext& context, const BlockStreams& streams,
-                                       std::int32_t begin, std::int32_t end)
+    static void sweep(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
+                      std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
             prefetch(context, streams, block, end);
@@ -263,8 +263,9 @@ struct Kernels {
         }
     }
 
-    [[gnu::flatten]] static void restitute(const KernelContext& context, const BlockStreams& streams,
-                                           std::int32_t begin, std::int32_t end)
+    // Cold is what runs at most once a step or on request: small code rather than inlined code, in minutes less to compile.
+    [[gnu::cold]] static void restitute(const KernelContext& context, const BlockStreams& streams,
+                                        std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
             prefetch(context, streams, block, end);
@@ -280,8 +281,8 @@ struct Kernels {
         }
     }
 
-    [[gnu::flatten]] static void project(const KernelContext& context, const BlockStreams& streams,
-                                         std::int32_t begin, std::int32_t end)
+    [[gnu::cold]] static void project(const KernelContext& context, const BlockStreams& streams,
+                                      std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
             prefetch(context, streams, block, end);
@@ -296,8 +297,8 @@ struct Kernels {
         }
     }
 
-    [[gnu::flatten]] static void store(const KernelContext& context, const BlockStreams& streams,
-                                       const ConstraintData& data, std::int32_t begin, std::int32_t end)
+    static void store(const KernelContext& context, const BlockStreams& streams, const ConstraintData& data,
+                      std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
@@ -321,8 +322,8 @@ struct Kernels {
                                        (kind_a == BodyKind::rigid || kind_a == BodyKind::fixed) &&
                                        (kind_b == BodyKind::rigid || kind_b == BodyKind::fixed);
 
-    [[gnu::flatten]] static void warm_start_copies(const KernelContext& context, const BlockStreams& streams,
-                                                   std::int32_t block, float* body_a, float* body_b)
+    static void warm_start_copies(const KernelContext& context, const BlockStreams& streams,
+                                  std::int32_t block, float* body_a, float* body_b)
     {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
             A a = load_row<A>(body_a + bundle.lane);
@@ -337,8 +338,8 @@ struct Kernels {
     }
 
     template <bool relax>
-    [[gnu::flatten]] static void sweep_copies(const KernelContext& context, const BlockStreams& streams,
-                                              std::int32_t block, float* body_a, float* body_b)
+    static void sweep_copies(const KernelContext& context, const BlockStreams& streams, std::int32_t block,
+                             float* body_a, float* body_b)
     {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
             A a = load_row<A>(body_a + bundle.lane);
@@ -353,8 +354,8 @@ struct Kernels {
         });
     }
 
-    [[gnu::flatten]] static void equality_rows(const BlockStreams& streams, std::int32_t block,
-                                               const float* body_a, const float* body_b, float* out)
+    static void equality_rows(const BlockStreams& streams, std::int32_t block, const float* body_a,
+                              const float* body_b, float* out)
     {
         const int count = streams.counts[block];
         for (int lane = 0; lane < count; lane += Lanes_width) {

@@ -34,7 +34,7 @@ inline void load_field_quads(const float* fields, Lanes (&out)[4])
     out[3] = Lanes(0);
 }
 
-[[gnu::flatten]] inline void load_copies(const KernelContext& context, const FigureBlock& figure)
+inline void load_copies(const KernelContext& context, const FigureBlock& figure)
 {
     for_each_copy(figure, [&](auto* kind, float* body, const std::int32_t* rows, int) {
         const BodyArrays& arrays =
@@ -53,7 +53,7 @@ inline void load_field_quads(const float* fields, Lanes (&out)[4])
     });
 }
 
-[[gnu::flatten]] inline void store_copies(const KernelContext& context, const FigureBlock& figure)
+inline void store_copies(const KernelContext& context, const FigureBlock& figure)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
     for_each_moving_copy(figure, [&](const float* body, const std::int32_t* rows, int count) {
@@ -63,7 +63,7 @@ inline void load_field_quads(const float* fields, Lanes (&out)[4])
     });
 }
 
-[[gnu::flatten]] inline void load_copy_velocities(const KernelContext& context, const FigureBlock& figure)
+inline void load_copy_velocities(const KernelContext& context, const FigureBlock& figure)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
     for_each_moving_copy(figure, [&](float* body, const std::int32_t* rows, int) {
@@ -71,7 +71,7 @@ inline void load_field_quads(const float* fields, Lanes (&out)[4])
     });
 }
 
-[[gnu::flatten]] inline void store_copy_velocities(const KernelContext& context, const FigureBlock& figure)
+inline void store_copy_velocities(const KernelContext& context, const FigureBlock& figure)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
     for_each_moving_copy(figure, [&](const float* body, const std::int32_t* rows, int count) {
@@ -79,8 +79,7 @@ inline void load_field_quads(const float* fields, Lanes (&out)[4])
     });
 }
 
-[[gnu::flatten]] inline void integrate_copy_velocities(const KernelContext& context,
-                                                       const FigureBlock& figure)
+inline void integrate_copy_velocities(const KernelContext& context, const FigureBlock& figure)
 {
     for_each_moving_copy(figure, [&](float* lanes, const std::int32_t*, int) {
         Mover body = load_row<Mover>(lanes);
@@ -96,7 +95,7 @@ inline void load_field_quads(const float* fields, Lanes (&out)[4])
     });
 }
 
-[[gnu::flatten]] inline void integrate_copy_positions(const KernelContext& context, const FigureBlock& figure)
+inline void integrate_copy_positions(const KernelContext& context, const FigureBlock& figure)
 {
     const Lanes h(context.step.substep);
     for_each_copy(figure, [&](auto* kind, float* lanes, const std::int32_t*, int) {

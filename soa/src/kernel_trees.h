@@ -340,7 +340,7 @@ inline void stiffen_locks(const FigureBlock& figure, const FigureNode& node, flo
     }
 }
 
-[[gnu::flatten]] inline void factor_tree(const FigureBlock& figure, int lane)
+inline void factor_tree(const FigureBlock& figure, int lane)
 {
     const std::vector<FigureNode>& nodes = figure.shape->nodes;
     float* system = figure.system + lane;
@@ -366,7 +366,7 @@ inline void stiffen_locks(const FigureBlock& figure, const FigureNode& node, flo
 }
 
 /// Changes the velocities of all bodies such that J v + rate C = 0 for the locks of the tree.
-[[gnu::flatten]] inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, int lane)
+inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, int lane)
 {
     const std::vector<FigureNode>& nodes = figure.shape->nodes;
     float* system = figure.system + lane;
