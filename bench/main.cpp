@@ -9,6 +9,7 @@
 #include "demo.h"
 #include "extremes.h"
 #include "page.h"
+#include "replay.h"
 #include "runner.h"
 #include "sweep.h"
 
@@ -33,56 +34,76 @@ const std::map<std::string, DriftCorrection> drift_names{{"none", DriftCorrectio
                                                          {"baumgarte", DriftCorrection::baumgarte},
                                                          {"projection", DriftCorrection::projection}};
 
+/// The dials of one solver.
+struct SolverCommand {
+    std::string isa;
+    SolverSettings settings;
+    SolverOptions solver;
+
+    void declare(CLI::App& app)
+    {
+        app.add_option("--method", settings.method, "soft_step, sequential_impulse or direct")
+            ->transform(CLI::CheckedTransformer(method_names));
+        app.add_option("--drift-correction", settings.drift_correction,
+                       "sequential_impulse: none, baumgarte or projection")
+            ->transform(CLI::CheckedTransformer(drift_names));
+        app.add_option("--substeps", settings.substeps, "substeps a step")
+            ->check(CLI::Range(1, 1024))
+            ->capture_default_str();
+        app.add_option("--iterations", settings.iterations, "sweeps a substep")
+            ->check(CLI::Range(1, 10000))
+            ->capture_default_str();
+        app.add_option("--relaxations", settings.relaxations, "soft_step: sweeps without bias a substep")
+            ->check(CLI::Range(0, 10000))
+            ->capture_default_str();
+        app.add_option("--contact-hertz", settings.contact_hertz, "soft_step: stiffness of contacts")
+            ->capture_default_str();
+        app.add_option("--joint-hertz", settings.joint_hertz, "soft_step: stiffness of joints")
+            ->capture_default_str();
+        app.add_flag("--exact", settings.exact_joints, "soft_step: joints solved all at once");
+        app.add_option("--isa", isa,
+                       "scalar, sse2, avx2, avx512 or neon; default: MOTLEY_ISA, else the widest here");
+        app.add_option("--threads", solver.threads, "threads, the caller's counted")
+            ->check(CLI::Range(1, 1024))
+            ->capture_default_str();
+        app.add_option("--tolerance", settings.tolerance, "m/s at which an island's sweeps end; 0: never")
+            ->capture_default_str();
+        app.add_option("--budget", settings.budget_ms,
+                       "ms a step may take; substeps or iterations are then the most; 0: no budget")
+            ->capture_default_str();
+    }
+    /// Says so and returns false when there is no such instruction set.
+    bool pick_isa()
+    {
+        if (isa.empty()) return true;
+        solver.isa = isa_from_name(isa);
+        if (!solver.isa)
+            fmt::print(stderr, "motley: --isa is {}; expected scalar, sse2, avx2, avx512 or neon\n", isa);
+        return solver.isa.has_value();
+    }
+};
+
 struct RunCommand {
-    std::string scene, isa, json;
+    std::string scene, json;
+    SolverCommand dials;
     RunOptions options;
     RunOutputs outputs;
 
     void declare(CLI::App& app)
     {
+        dials.declare(app);
         app.add_option("scene", scene, "one of `motley list`")->required();
         app.add_option("--agents", options.agents, "people or bodies; default: the scene's")
             ->check(CLI::PositiveNumber);
         app.add_option("--seconds", options.seconds, "simulated time; default: the scene's")
             ->check(CLI::PositiveNumber);
         app.add_option("--dt", options.dt, "s a step")->check(CLI::Range(1e-6, 1.0))->capture_default_str();
-        app.add_option("--method", options.settings.method, "soft_step, sequential_impulse or direct")
-            ->transform(CLI::CheckedTransformer(method_names));
-        app.add_option("--drift-correction", options.settings.drift_correction,
-                       "sequential_impulse: none, baumgarte or projection")
-            ->transform(CLI::CheckedTransformer(drift_names));
-        app.add_option("--substeps", options.settings.substeps, "substeps a step")
-            ->check(CLI::Range(1, 1024))
-            ->capture_default_str();
-        app.add_option("--iterations", options.settings.iterations, "sweeps a substep")
-            ->check(CLI::Range(1, 10000))
-            ->capture_default_str();
-        app.add_option("--relaxations", options.settings.relaxations,
-                       "soft_step: sweeps without bias a substep")
-            ->check(CLI::Range(0, 10000))
-            ->capture_default_str();
-        app.add_option("--contact-hertz", options.settings.contact_hertz, "soft_step: stiffness of contacts")
-            ->capture_default_str();
-        app.add_option("--joint-hertz", options.settings.joint_hertz, "soft_step: stiffness of joints")
-            ->capture_default_str();
-        app.add_flag("--exact", options.settings.exact_joints, "soft_step: joints solved all at once");
-        app.add_option("--isa", isa,
-                       "scalar, sse2, avx2, avx512 or neon; default: MOTLEY_ISA, else the widest here");
-        app.add_option("--threads", options.solver.threads, "threads, the caller's counted")
-            ->check(CLI::Range(1, 1024))
-            ->capture_default_str();
         app.add_option("--friction", options.friction, "between people; default: the scene's")
             ->check(CLI::Range(0.0, 1e6));
         app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();
         app.add_option("--data", options.data, "bottleneck: a trajectory file; default: the experiment's")
             ->check(CLI::ExistingFile);
-        app.add_option("--tolerance", options.settings.tolerance,
-                       "m/s at which an island's sweeps end; 0: never")
-            ->capture_default_str();
-        app.add_option("--budget", options.settings.budget_ms,
-                       "ms a step may take; substeps or iterations are then the most; 0: no budget")
-            ->capture_default_str();
-        app.add_flag("--measures", options.settings.measures, "report what each step left unsolved");
+        app.add_flag("--measures", dials.settings.measures, "report what each step left unsolved");
         app.add_option("--direct-every", options.direct_every,
                        "compare every so many steps with the simultaneous solution of the same step; slow")
             ->check(CLI::PositiveNumber);
@@ -103,16 +124,59 @@ struct RunCommand {
             fmt::print(stderr, "motley: no scene '{}'; `motley list` names them\n", scene);
             return 2;
         }
-        if (!isa.empty()) {
-            options.solver.isa = isa_from_name(isa);
-            if (!options.solver.isa) {
-                fmt::print(stderr, "motley: --isa is {}; expected scalar, sse2, avx2, avx512 or neon\n", isa);
-                return 2;
-            }
-        }
+        if (!dials.pick_isa()) return 2;
+        options.settings = dials.settings;
+        options.solver = dials.solver;
         const RunResult result = run_scene(*entry, options, outputs);
         fmt::print("{}", table_of(result));
         if (!json.empty()) write_text(json, json_of(result));
+        return 0;
+    }
+};
+
+struct RecordCommand {
+    RunCommand run;
+
+    void declare(CLI::App& app)
+    {
+        run.declare(app);
+        app.add_option("file", run.outputs.problem, "where the step's problem is written to")->required();
+        app.add_option("--step", run.outputs.problem_step, "which step, the first is 0")
+            ->check(CLI::NonNegativeNumber)
+            ->capture_default_str();
+    }
+    int operator()()
+    {
+        run.outputs.hash_every = 1;
+        run.options.seconds =
+            static_cast<double>(run.options.dt) * (static_cast<double>(run.outputs.problem_step) + 0.5);
+        return run();
+    }
+};
+
+struct ReplayCommand {
+    std::string file;
+    SolverCommand dials;
+    int steps = 1;
+
+    void declare(CLI::App& app)
+    {
+        app.add_option("file", file, "a problem of `motley record`, or of save_problem()")->required();
+        app.add_option("--steps", steps, "steps to go on; the contacts are those of the first")
+            ->check(CLI::Range(1, 1000000))
+            ->capture_default_str();
+        dials.declare(app);
+    }
+    /// `parse_again` puts the dials of the command line over those of the file.
+    template <class Parse>
+    int operator()(const Parse& parse_again)
+    {
+        StepProblem problem = load_problem(file);
+        dials.settings = problem.settings;
+        parse_again();
+        if (!dials.pick_isa()) return 2;
+        problem.settings = dials.settings;
+        fmt::print("{}", replay(std::move(problem), dials.solver, steps));
         return 0;
     }
 };
@@ -183,6 +247,15 @@ int main(int count, char** arguments)
     RunCommand run;
     CLI::App* run_app = app.add_subcommand("run", "run a scene and print what it cost and how well it held");
     run.declare(*run_app);
+    RecordCommand record;
+    CLI::App* record_app = app.add_subcommand(
+        "record",
+        "run a scene up to a step and write that step's problem to a file, to send with a bug report");
+    record.declare(*record_app);
+    ReplayCommand replay_command;
+    CLI::App* replay_app =
+        app.add_subcommand("replay", "solve a recorded problem again, as it was or with other dials");
+    replay_command.declare(*replay_app);
     CLI::App* list_app =
         app.add_subcommand("list", "name the scenes and the instruction sets of this machine");
     CLI::App* demo_app = app.add_subcommand(
@@ -222,6 +295,8 @@ int main(int count, char** arguments)
     }
     try {
         if (*run_app) return run();
+        if (*record_app) return record();
+        if (*replay_app) return replay_command([&] { app.parse(count, arguments); });
         if (*sweep_app) return sweep_command();
         if (*compare_app) return compare_command();
         if (*report_app) write_report(report);

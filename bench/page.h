@@ -33,8 +33,12 @@ std::string page_of(const Report& report);
 /// Peers' points that motley has no answer to: no point of it is at least as fast and as exact.
 std::vector<const SweepPoint*> unanswered(const SweepResult& result);
 
-/// How much slower the default settings are than the fastest point that is as exact; 1 is the best. 0: not in the sweep.
-double price_of_default(const SweepResult& result);
+/// How many times the fastest point that is as exact the default settings take; 1 is the best, 0: not in the sweep.
+struct DefaultPrice {
+    double settings = 0;  ///< as they are
+    double front = 0;     ///< the worst point of the front that they form when `substeps` alone is turned
+};
+DefaultPrice price_of_default(const SweepResult& result);
 
 struct ReportOptions {
     std::string output = "motley-report.html";

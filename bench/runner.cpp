@@ -179,6 +179,9 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         const double searched = now() - steered;
         const bool compares = options.direct_every > 0 && step % options.direct_every == 0;
         if (compares) direct.solve(scene->scene, contacts);
+        if (step == outputs.problem_step && !outputs.problem.empty())
+            save_problem({scene->scene, options.settings, options.dt, {contacts.begin(), contacts.end()}},
+                         outputs.problem);
         const double found = now();
         result.last = solver.step(scene->scene, options.dt, contacts);
         const double solved = now();

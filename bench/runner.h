@@ -41,6 +41,8 @@ struct RunOutputs {
     std::string trajectories, frames;  ///< empty: none
     int frame_every = 30;              ///< steps
     int hash_every = 0;                ///< steps; 0: never
+    std::string problem;               ///< the file for the problem of step `problem_step`; empty: none
+    std::int64_t problem_step = 0;
     bool progress = true;
 };
 

@@ -108,8 +108,8 @@ class RigSubject {
     [[nodiscard]] std::function<Run()> candidate(const Dials& dials) const
     {
         if (dials.settings.method == Method::direct && !suits_direct_) return {};
-        // Nets and loops have no trees to solve exactly.
-        const bool has_trees = !rig_.joints.empty() && rig_.joints.size() <= rig_.bodies.size();
+        // Nets have more loops than are closed exactly; four-bars, with four joints for three bodies, have not.
+        const bool has_trees = !rig_.joints.empty() && 2 * rig_.joints.size() <= 3 * rig_.bodies.size();
         if (dials.settings.exact_joints && !has_trees) return {};
         return [this, dials] {
             const auto engine = make_motley_engine(rig_, dials.settings, dials.solver);

@@ -3,11 +3,30 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../bench_scene.h"
 
 namespace motley::bench {
+
+/// The root of the mean of squares.
+class MeanSquare {
+  public:
+    void add(double value)
+    {
+        sum_ += value * value;
+        ++count_;
+    }
+    [[nodiscard]] double root() const
+    {
+        return std::sqrt(sum_ / static_cast<double>(std::max<std::int64_t>(1, count_)));
+    }
+
+  private:
+    double sum_ = 0;
+    std::int64_t count_ = 0;
+};
 
 /// Rows of planar discs that touch only their neighbours in line; the host knows who they are.
 class Rows : public BenchScene {
@@ -21,7 +40,8 @@ class Rows : public BenchScene {
     std::vector<BodyId> bodies_;
     std::vector<Vec3<double>> positions_;
     std::vector<Contact> contacts_;
-    int length_ = 0;  ///< discs a row
+    int length_ = 0;         ///< discs a row
+    float restitution_ = 0;  ///< of each contact between them
 
     /// Adds rows of `length` discs from x = 0 on, `gap` apart.
     void add_rows(std::int64_t agents, int length, double gap)
@@ -56,20 +76,22 @@ class Rows : public BenchScene {
         contact.key = key;
         contact.normal = {1, 0, 0};
         contact.separation = static_cast<float>(gap);
+        contact.restitution = restitution_;
         contact.arm_a = {arm_a, 0, 0};
         contact.arm_b = {-static_cast<float>(radius + gap / 2), 0, 0};
         contacts_.push_back(contact);
     }
 };
 
-/// Rows of 100, each disc leaning on the next with 50 N towards a wall: contact k from the back carries 50 k N.
+/// Rows of `length`, each disc leaning on the next with 50 N towards a wall: contact k from the back carries 50 k N.
+template <int length>
 class Lean final : public Rows {
   public:
     static constexpr double force = 50;  ///< N
     static constexpr double settle = 4;  ///< s until the load has run through a row and back
     explicit Lean(const RunOptions& options)
     {
-        add_rows(options.agents, 100, 0);
+        add_rows(options.agents, length, 0);
         std::vector<Vec3<float>> forces(bodies_.size(), {-static_cast<float>(force), 0, 0});
         scene.set_forces(bodies_, forces);
     }
@@ -101,65 +123,110 @@ class Lean final : public Rows {
                 (static_cast<double>(impulses[i].normal) / static_cast<double>(scene.last_substep) -
                  behind * force) /
                 (length_ * force);
-            squares_ += off * off;
-            ++samples_;
+            off_.add(off);
         }
     }
     [[nodiscard]] std::optional<SceneError> error() const override
     {
-        return SceneError{"force profile off kF, rms (share of nF)",
-                          std::sqrt(squares_ / static_cast<double>(std::max<std::int64_t>(1, samples_)))};
+        return SceneError{"force profile off kF, rms (share of nF)", off_.root()};
     }
 
   private:
-    double squares_ = 0;
-    std::int64_t samples_ = 0;
+    MeanSquare off_;
 };
 
-/// Rows of 20 discs 0.1 m apart; the first comes with 1.5 m/s and takes all with it (restitution 0): n + 1 of them move at
-/// 1.5/(n + 1) m/s once the n-th is hit, at t = g n (n + 1)/(2 v).
-class Pulse final : public Rows {
+/// Rows of discs a gap apart, the first of which comes with some speed.
+class Pulse : public Rows {
   public:
-    static constexpr double gap = 0.1, speed = 1.5;
-    explicit Pulse(const RunOptions& options) : dt_(static_cast<double>(options.dt))
-    {
-        add_rows(options.agents, 20, gap);
-        for (std::size_t i = 0; i < bodies_.size(); i += static_cast<std::size_t>(length_))
-            scene.set_velocity(bodies_[i], {static_cast<float>(speed), 0, 0}, {});
-    }
+    struct Shape {
+        int length;         ///< discs a row
+        double gap, speed;  ///< m, m/s
+        float restitution;
+    };
     std::span<const Contact> find_contacts(Executor&) override
     {
         touch_neighbours();
         return contacts_;
     }
+
+  protected:
+    Pulse(const RunOptions& options, const Shape& shape) : shape_(shape), dt_(static_cast<double>(options.dt))
+    {
+        restitution_ = shape.restitution;
+        add_rows(options.agents, shape.length, shape.gap);
+        for (std::size_t i = 0; i < bodies_.size(); i += static_cast<std::size_t>(length_))
+            scene.set_velocity(bodies_[i], {static_cast<float>(shape.speed), 0, 0}, {});
+    }
+    Shape shape_;
+    double dt_;
+    MeanSquare off_;  ///< share of the gap
+    /// How far disc `i` of the first row is from where it began.
+    [[nodiscard]] double moved(int i) const
+    {
+        return scene.state(bodies_[static_cast<std::size_t>(i)]).position.x - (2 * radius + shape_.gap) * i;
+    }
+};
+
+/// Restitution 0: the first takes all with it. n + 1 of them move at v/(n + 1) once the n-th is hit, at
+/// t = g n (n + 1)/(2 v).
+class InelasticPulse final : public Pulse {
+  public:
+    static constexpr Shape row{20, 0.1, 1.5, 0};
+    /// What a push of 150 N s makes of a crowd 2 cm apart, were it one row wide.
+    static constexpr Shape strip{100, 0.02, 150 / static_cast<double>(mass), 0};
+    InelasticPulse(const RunOptions& options, const Shape& shape) : Pulse(options, shape) {}
+
     void observe(double time, const Solver&) override
     {
-        const double off = scene.state(bodies_[0]).position.x - exact(time + dt_);
-        squares_ += off * off;
-        ++samples_;
+        off_.add((moved(0) - exact(time + dt_)) / shape_.gap);
     }
     [[nodiscard]] std::optional<SceneError> error() const override
     {
-        return SceneError{
-            "first body off the exact law, rms (share of the gap)",
-            std::sqrt(squares_ / static_cast<double>(std::max<std::int64_t>(1, samples_))) / gap};
+        return SceneError{"first body off the exact law, rms (share of the gap)", off_.root()};
     }
 
   private:
-    double dt_, squares_ = 0;
-    std::int64_t samples_ = 0;
-
     /// Where the first body is: each gap takes n times as long as the first one did.
     [[nodiscard]] double exact(double time) const
     {
         double left = time, x = 0;
         for (int moving = 1; moving < length_; ++moving) {
-            const double takes = gap * moving / speed;
-            if (left < takes) return x + left * speed / moving;
+            const double takes = shape_.gap * moving / shape_.speed;
+            if (left < takes) return x + left * shape_.speed / moving;
             left -= takes;
-            x += gap;
+            x += shape_.gap;
         }
-        return x + left * speed / length_;
+        return x + left * shape_.speed / length_;
+    }
+};
+
+/// Restitution 1: each hands its speed to the next and stands, so that the front runs at v (1 + d/g).
+class ElasticPulse final : public Pulse {
+  public:
+    explicit ElasticPulse(const RunOptions& options) : Pulse(options, {20, 0.1, 1.5, 1}) {}
+
+    void observe(double time, const Solver&) override
+    {
+        for (int i = 0; i < length_; ++i) {
+            const double since = (time + dt_) * shape_.speed - shape_.gap * i;
+            // The last has nobody to stop it.
+            const double exact = i + 1 < length_ ? std::clamp(since, 0.0, shape_.gap) : std::max(since, 0.0);
+            off_.add((moved(i) - exact) / shape_.gap);
+        }
+    }
+    [[nodiscard]] std::optional<SceneError> error() const override
+    {
+        return SceneError{"bodies off the exact law, rms (share of the gap)", off_.root()};
+    }
+    [[nodiscard]] std::vector<Figure> figures() const override
+    {
+        double energy = 0;
+        for (int i = 0; i < length_; ++i) {
+            const float v = scene.state(bodies_[static_cast<std::size_t>(i)]).linear_velocity.x;
+            energy += static_cast<double>(v * v);
+        }
+        return {
+            {"kinetic energy kept", fmt::format("{:.4f} %", 100 * energy / (shape_.speed * shape_.speed))}};
     }
 };
 

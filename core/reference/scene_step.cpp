@@ -64,10 +64,12 @@ void write_back(Scene& scene, BodyId id, const Body& body)
     }
     BodyPose& pose = rows.pose[where.row()];
     const Eigen::Quaterniond& q = body.orientation;
-    pose.position = {body.position.x(), body.position.y(), body.position.z()};
+    pose.position = convert<PoseReal>(Vec3<double>{body.position.x(), body.position.y(), body.position.z()});
     if (where.kind() == BodyKind::planar)
-        pose.yaw += std::remainder(2 * std::atan2(q.z(), q.w()) - pose.yaw, 2 * EIGEN_PI);
-    if (quads_of(where.kind()) == 2) rows.orientation[where.row()] = {q.x(), q.y(), q.z(), q.w()};
+        pose.yaw += static_cast<PoseReal>(
+            std::remainder(2 * std::atan2(q.z(), q.w()) - static_cast<double>(pose.yaw), 2 * EIGEN_PI));
+    if (quads_of(where.kind()) == 2)
+        rows.orientation[where.row()] = convert<PoseReal>(Quat<double>{q.x(), q.y(), q.z(), q.w()});
 }
 
 }  // namespace
@@ -84,10 +86,15 @@ double step_directly(Scene& scene, float dt, const SolverSettings& settings,
         ids.push_back(scene.bodies().id_of_slot(slot));
         world.bodies.push_back(body_of(scene, ids.back()));
     }
+    const BodyStore& bodies = scene.bodies();
+    const auto is_left_out = [&](BodyId a, BodyId b) {
+        return bodies.is_contained(bodies.row_of(a)) || bodies.is_contained(bodies.row_of(b));
+    };
     scene.joints().for_each([&](const auto& store, int) {
         using Store = std::remove_cvref_t<decltype(store)>;
         for (std::size_t i = 0; i < store.size(); ++i) {
             const auto& definition = store.definitions[i];
+            if (is_left_out(definition.body_a, definition.body_b)) continue;
             Joint joint{index_of_slot[definition.body_a.slot], index_of_slot[definition.body_b.slot],
                         model_of(definition)};
             joint.travelled =
@@ -96,8 +103,10 @@ double step_directly(Scene& scene, float dt, const SolverSettings& settings,
         }
     });
     std::vector<ContactPoint> points;
-    for (const Contact& contact : contacts)
+    for (const Contact& contact : contacts) {
+        if (is_left_out(contact.body_a, contact.body_b)) continue;
         points.push_back({index_of_slot[contact.body_a.slot], index_of_slot[contact.body_b.slot], contact});
+    }
 
     const double violation = world.step_directly(static_cast<double>(dt), settings, points);
 
@@ -107,6 +116,10 @@ double step_directly(Scene& scene, float dt, const SolverSettings& settings,
         using Store = std::remove_cvref_t<decltype(store)>;
         constexpr std::size_t stride = quad_floats<typename Store::Memory>;
         for (std::size_t i = 0; i < store.size(); ++i) {
+            if (is_left_out(store.definitions[i].body_a, store.definitions[i].body_b)) {
+                store.forget_impulse(i);
+                continue;
+            }
             const Joint& joint = world.joints[next++];
             const std::vector<double> memory = joint.model->memory(joint.impulses, joint.travelled);
             for (std::size_t k = 0; k < std::min(memory.size(), stride); ++k) {

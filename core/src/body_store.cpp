@@ -111,7 +111,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
 
     BodyRows& r = rows(kind);
     r.slot[row] = slot;
-    r.pose[row] = {d.position, d.yaw};
+    r.pose[row] = {convert<PoseReal>(d.position), static_cast<PoseReal>(d.yaw)};
     const float inverse_mass = dynamic ? 1 / d.mass : 0.0F;
     inverse_masses[slot] = inverse_mass;
     inverse_inertias[slot] = kind == BodyKind::planar ? 1 / d.inertia.zz : 0.0F;
@@ -135,7 +135,8 @@ BodyId BodyStore::add(const BodyDefinition& d)
             set_quad(r.acceleration, quad + 1, 0, 0, 0, 0);
             const Quat<double>& q = d.orientation;
             const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-            r.orientation[row] = {q.x / length, q.y / length, q.z / length, q.w / length};
+            r.orientation[row] =
+                convert<PoseReal>(Quat<double>{q.x / length, q.y / length, q.z / length, q.w / length});
             if (kind == BodyKind::rigid) {
                 r.inertia[row] = d.inertia;
                 r.inverse_inertia[row] = inverse_of(d.inertia);
@@ -162,6 +163,8 @@ void BodyStore::remove(BodyId body)
             set_quad(r.start_inverse_inertia, q, 0, 0, 0, 0);
         }
     }
+    if (contained[body.slot] != 0) --contained_count;
+    contained[body.slot] = 0;
     r.slot[where.row()] = 0;
     r.free_rows.push_back(where.row());
     live_[body.slot] = 0;
@@ -184,6 +187,7 @@ void BodyStore::revive(BodyId body)
     const BodyRow where = row_of(body);
     BodyRows& r = rows(where.kind());
     contained[body.slot] = 0;
+    --contained_count;
     r.velocity[std::size_t{4} * static_cast<std::size_t>(quads_of(where.kind())) * where.row() + 3] =
         inverse_masses[body.slot];
     if (where.kind() == BodyKind::planar)
@@ -210,21 +214,21 @@ int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, std
                     set_quad(r.start_inverse_inertia, q, 0, 0, 0, 0);
                 }
             }
+            count += contained[r.slot[row]] == 0 ? 1 : 0;
             contained[r.slot[row]] = 1;
             contained_slot = std::min(contained_slot, r.slot[row]);
-            ++count;
         } else {
             BodyPose& pose = r.pose[row];
-            pose.position.x += static_cast<double>(delta[0]);
-            pose.position.y += static_cast<double>(delta[1]);
+            pose.position.x += static_cast<PoseReal>(delta[0]);
+            pose.position.y += static_cast<PoseReal>(delta[1]);
             if (kind == BodyKind::planar) {
-                pose.yaw += static_cast<double>(delta[2]);
+                pose.yaw += static_cast<PoseReal>(delta[2]);
             } else {
-                pose.position.z += static_cast<double>(delta[2]);
+                pose.position.z += static_cast<PoseReal>(delta[2]);
             }
             if (quads == 2) {
-                const Quat<double> turn{delta[4], delta[5], delta[6], delta[7]};
-                const Quat<double> q = normalised(turn * r.orientation[row]);
+                const Quat<PoseReal> turn{delta[4], delta[5], delta[6], delta[7]};
+                const Quat<PoseReal> q = normalised(turn * r.orientation[row]);
                 r.orientation[row] = normalised(q);
                 if (kind == BodyKind::rigid && contained[r.slot[row]] == 0) refresh_world_inertia(row);
             }

@@ -153,4 +153,19 @@ bool ContactCache::admit()
     return true;
 }
 
+bool ContactCache::restore(std::span<const ContactList::Entry> entries, std::span<const std::uint8_t> colours,
+                           std::span<const ContactImpulse> impulses)
+{
+    begin(entries.size());
+    ContactList& list = staged();
+    std::copy(entries.begin(), entries.end(), list.entries.begin());
+    std::copy(colours.begin(), colours.end(), list.colours.begin());
+    std::copy(impulses.begin(), impulses.end(), list.impulses.begin() + 1);
+    for (std::uint32_t i = 0; i < entries.size(); ++i) claim(i, none);
+    for (std::int64_t part = 0; part < survey_parts(); ++part) survey(part);
+    if (!admit()) return false;
+    accept_staged();
+    return true;
+}
+
 }  // namespace motley

@@ -16,8 +16,8 @@ BodyState Scene::state(BodyId body) const
     const BodyRows& rows = bodies_.rows(where.kind());
     const std::size_t row = where.row();
     BodyState state;
-    state.position = rows.pose[row].position;
-    state.yaw = rows.pose[row].yaw;
+    state.position = convert<double>(rows.pose[row].position);
+    state.yaw = static_cast<double>(rows.pose[row].yaw);
     const float* v = &rows.velocity[row * 4 * static_cast<std::size_t>(quads_of(where.kind()))];
     switch (where.kind()) {
         case BodyKind::particle:
@@ -32,7 +32,7 @@ BodyState Scene::state(BodyId body) const
         case BodyKind::fixed:
             state.linear_velocity = {v[0], v[1], v[2]};
             state.angular_velocity = {v[4], v[5], v[6]};
-            state.orientation = rows.orientation[row];
+            state.orientation = convert<double>(rows.orientation[row]);
             break;
     }
     return state;
@@ -50,10 +50,11 @@ void Scene::set_pose(BodyId body, const Vec3<double>& position, const Quat<doubl
           "a quaternion with a length from 1e-6 to 1e6 (squared shown)");
     const BodyRow where = bodies_.row_of(body);
     BodyRows& rows = bodies_.rows(where.kind());
-    rows.pose[where.row()] = {position, yaw};
+    rows.pose[where.row()] = {convert<PoseReal>(position), static_cast<PoseReal>(yaw)};
     if (quads_of(where.kind()) == 2) {
         const double length = std::sqrt(length2);
-        rows.orientation[where.row()] = {q.x / length, q.y / length, q.z / length, q.w / length};
+        rows.orientation[where.row()] =
+            convert<PoseReal>(Quat<double>{q.x / length, q.y / length, q.z / length, q.w / length});
         if (where.kind() == BodyKind::rigid && bodies_.contained[body.slot] == 0)
             bodies_.refresh_world_inertia(where.row());
     }
@@ -170,7 +171,9 @@ void Scene::revive(BodyId body, const Vec3<double>& position, const Vec3<float>&
     check_position("revive.position", position);
     check_velocity(body, &linear, nullptr);
     bodies_.revive(body);
-    bodies_.rows(bodies_.row_of(body).kind()).pose[bodies_.row_of(body).row()].position = position;
+    joints_.version.reset();
+    bodies_.rows(bodies_.row_of(body).kind()).pose[bodies_.row_of(body).row()].position =
+        convert<PoseReal>(position);
     write_velocity(body, &linear, nullptr);
 }
 
@@ -189,7 +192,7 @@ void Scene::read_positions(std::span<const BodyId> bodies, StridedSpan<Vec3<doub
     require_alive(bodies, "read_positions.bodies");
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const BodyRow where = bodies_.row_of(bodies[i]);
-        positions[i] = bodies_.rows(where.kind()).pose[where.row()].position;
+        positions[i] = convert<double>(bodies_.rows(where.kind()).pose[where.row()].position);
     }
 }
 
@@ -227,7 +230,7 @@ void Scene::read_yaws(std::span<const BodyId> bodies, StridedSpan<double> yaws) 
     require_alive(bodies, "read_yaws.bodies");
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const BodyRow where = bodies_.row_of(bodies[i]);
-        yaws[i] = bodies_.rows(where.kind()).pose[where.row()].yaw;
+        yaws[i] = static_cast<double>(bodies_.rows(where.kind()).pose[where.row()].yaw);
     }
 }
 

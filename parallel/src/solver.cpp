@@ -297,7 +297,7 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
     // What only one thread can do is one chunk among those of whatever else is ready.
     runner.run(1 + cache.survey_parts(), [&](std::int64_t chunk) {
         if (chunk == 0) {
-            layout.colour_contacts(cache.staged());
+            layout.colour_contacts(scene.bodies(), cache.staged());
         } else {
             cache.survey(chunk - 1);
         }
@@ -467,11 +467,20 @@ void Solver::Impl::move_bodies(Scene& scene, StepReport& report)
     std::atomic<std::uint32_t> lowest_slot{UINT32_MAX};
     for (int kind = 0; kind < body_kind_count; ++kind) {
         const std::int64_t rows = layout.context.bodies[kind].size;
+        const auto commit = layout.kernels().bodies[kind].commit;
         runner.run(chunks_of(rows, rows_per_chunk), [&](std::int64_t chunk) {
             std::uint32_t slot = UINT32_MAX;
-            const int count = scene.bodies().commit(
-                static_cast<BodyKind>(kind), static_cast<std::uint32_t>(chunk * rows_per_chunk),
-                static_cast<std::uint32_t>(std::min((chunk + 1) * rows_per_chunk, rows)), slot);
+            int count = 0;
+            const std::int64_t end = std::min((chunk + 1) * rows_per_chunk, rows);
+            for (std::int64_t row = chunk * rows_per_chunk; row < end; row += block_lanes) {
+                // In lanes, or one by one where a row is free, the last, or has come to grief.
+                if (commit != nullptr && row + block_lanes <= end &&
+                    commit(layout.context.bodies[kind], static_cast<std::int32_t>(row)))
+                    continue;
+                count +=
+                    scene.bodies().commit(static_cast<BodyKind>(kind), static_cast<std::uint32_t>(row),
+                                          static_cast<std::uint32_t>(std::min(row + block_lanes, end)), slot);
+            }
             if (count == 0) return;
             contained += count;
             std::uint32_t lowest = lowest_slot.load();
@@ -480,7 +489,10 @@ void Solver::Impl::move_bodies(Scene& scene, StepReport& report)
         });
     }
     report.bodies_contained = contained;
-    if (contained > 0) report.first_contained = scene.bodies().id_of_slot(lowest_slot);
+    if (contained == 0) return;
+    report.first_contained = scene.bodies().id_of_slot(lowest_slot);
+    scene.bodies().contained_count += static_cast<std::size_t>(contained);
+    scene.joints().version.reset();  // theirs are left out from now on
 }
 
 }  // namespace motley

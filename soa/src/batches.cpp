@@ -100,7 +100,9 @@ void BatchSet::count(std::int64_t chunk)
 {
     const std::span<std::int32_t> counts = places_of(chunk);
     std::fill(counts.begin(), counts.end(), 0);
-    for (const Placement& placement : placements_of(chunk)) ++counts[key_of(placement)];
+    for (const Placement& placement : placements_of(chunk)) {
+        if (!placement.is_left_out()) ++counts[key_of(placement)];
+    }
 }
 
 void BatchSet::open(const KernelTable& kernels)
@@ -164,7 +166,7 @@ void BatchSet::fill(std::int64_t chunk)
 {
     const std::span<std::int32_t> places = places_of(chunk);
     for (const Placement& placement : placements_of(chunk)) {
-        if (placement.colour == overflow_colour) continue;
+        if (placement.colour >= overflow_colour) continue;  // placed already, or left out
         const std::size_t key = key_of(placement);
         Pool& pool = pools_[key / colours];
         const std::int32_t place = places[key]++;

@@ -25,6 +25,7 @@ struct Placement {
     std::uint8_t colour = no_colour;
     /// Takes a lane in the block of the constraints before it and leaves it empty; `constraint` is ~ of one of them.
     [[nodiscard]] bool is_gap() const { return constraint < 0; }
+    [[nodiscard]] bool is_left_out() const { return colour == left_out_colour; }
 };
 
 inline constexpr std::int32_t several_islands = -1;

@@ -59,9 +59,10 @@ struct BodyArrays {
     float* unpushed = nullptr;
     const float* acceleration = nullptr;
     float* world_inverse_inertia = nullptr;
-    const float* start_inverse_inertia = nullptr;
-    const BodyPose* pose = nullptr;
-    const Quat<double>* orientation = nullptr;
+    float* start_inverse_inertia = nullptr;
+    const Sym3<float>* inverse_inertia = nullptr;  ///< in the body's frame
+    BodyPose* pose = nullptr;
+    Quat<PoseReal>* orientation = nullptr;
     std::int32_t size = 0;
 };
 
@@ -116,6 +117,9 @@ struct BodyKernels {
     /// sweep, exact where M^-1 J^T is constant through the step (contacts of particles and planar bodies).
     Move integrate_and_replay = nullptr;
     Move integrate_positions = nullptr;
+    /// BodyStore::commit of sixteen rows from `first` on; false, and nothing done, unless each of them is a body that
+    /// can move and is finite. Null for fixed bodies.
+    bool (*commit)(const BodyArrays&, std::int32_t first) = nullptr;
 };
 
 struct FigureBlock;

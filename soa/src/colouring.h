@@ -19,6 +19,8 @@ namespace motley {
 /// overflow, which runs in order.
 inline constexpr int parallel_colours = 30;
 inline constexpr std::uint8_t overflow_colour = parallel_colours;
+/// Of constraints on a contained body, which nothing may push: they are in no block.
+inline constexpr std::uint8_t left_out_colour = 254;
 
 /// Which colours touch each moving body.
 class ColourMasks {

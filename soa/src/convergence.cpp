@@ -66,7 +66,7 @@ ResidualSum sum_residuals(const SweepLists& sweeps)
 void Convergence::tie(std::span<const Placement> placements)
 {
     for (const Placement& placement : placements) {
-        if (placement.is_gap() || placement.a.kind() == BodyKind::fixed ||
+        if (placement.is_gap() || placement.is_left_out() || placement.a.kind() == BodyKind::fixed ||
             placement.b.kind() == BodyKind::fixed)
             continue;
         const auto index = [&](BodyRow row) {
@@ -99,6 +99,7 @@ void Convergence::find_islands(const KernelContext& context, std::span<const Pla
 void Convergence::count(std::span<const Placement> placements)
 {
     for (const Placement& placement : placements) {
+        if (placement.is_left_out()) continue;
         const BodyRow body = placement.a.kind() == BodyKind::fixed ? placement.b : placement.a;
         const std::int32_t index =
             first_[static_cast<std::size_t>(body.kind())] + static_cast<std::int32_t>(body.row());

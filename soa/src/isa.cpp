@@ -10,15 +10,15 @@
 namespace motley {
 
 void enter_kernels_scalar(KernelTable& table);
-void enter_figure_kernels_scalar(FigureKernels& kernels);
+void enter_body_kernels_scalar(KernelTable& table);
 void enter_kernels_sse2(KernelTable& table);
-void enter_figure_kernels_sse2(FigureKernels& kernels);
+void enter_body_kernels_sse2(KernelTable& table);
 void enter_kernels_avx2(KernelTable& table);
-void enter_figure_kernels_avx2(FigureKernels& kernels);
+void enter_body_kernels_avx2(KernelTable& table);
 void enter_kernels_avx512(KernelTable& table);
-void enter_figure_kernels_avx512(FigureKernels& kernels);
+void enter_body_kernels_avx512(KernelTable& table);
 void enter_kernels_neon(KernelTable& table);
-void enter_figure_kernels_neon(FigureKernels& kernels);
+void enter_body_kernels_neon(KernelTable& table);
 
 namespace {
 
@@ -112,13 +112,13 @@ Isa default_isa()
 namespace {
 
 /// Made when first asked for.
-template <void (*enter)(KernelTable&), void (*enter_figures)(FigureKernels&)>
+template <void (*enter)(KernelTable&), void (*enter_bodies)(KernelTable&)>
 const KernelTable& table_of()
 {
     static const KernelTable table = [] {
         KernelTable entered;
         enter(entered);
-        enter_figures(entered.figures);
+        enter_bodies(entered);
         return entered;
     }();
     return table;
@@ -131,22 +131,22 @@ const KernelTable& kernel_table(Isa isa)
     switch (isa) {
 #ifdef MOTLEY_SSE2
         case Isa::sse2:
-            return table_of<enter_kernels_sse2, enter_figure_kernels_sse2>();
+            return table_of<enter_kernels_sse2, enter_body_kernels_sse2>();
 #endif
 #ifdef MOTLEY_AVX2
         case Isa::avx2:
-            return table_of<enter_kernels_avx2, enter_figure_kernels_avx2>();
+            return table_of<enter_kernels_avx2, enter_body_kernels_avx2>();
 #endif
 #ifdef MOTLEY_AVX512
         case Isa::avx512:
-            return table_of<enter_kernels_avx512, enter_figure_kernels_avx512>();
+            return table_of<enter_kernels_avx512, enter_body_kernels_avx512>();
 #endif
 #ifdef MOTLEY_NEON
         case Isa::neon:
-            return table_of<enter_kernels_neon, enter_figure_kernels_neon>();
+            return table_of<enter_kernels_neon, enter_body_kernels_neon>();
 #endif
         default:
-            return table_of<enter_kernels_scalar, enter_figure_kernels_scalar>();
+            return table_of<enter_kernels_scalar, enter_body_kernels_scalar>();
     }
 }
 

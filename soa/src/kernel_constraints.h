@@ -25,17 +25,17 @@ void scatter_struct(const Struct& value, float* table, std::int64_t stride, cons
     for (int q = 0; q < quads; ++q) store_quads(table + 4 * q, stride, index, padded[q], count);
 }
 
-/// x - point, in double, narrowed a lane at a time.
+/// x - point, narrowed a lane at a time.
 template <class Point>
 Vec3<Lanes> from_points(const BodyArrays& arrays, const std::int32_t* rows, const Point& point_of)
 {
     alignas(64) float x[Lanes_width], y[Lanes_width], z[Lanes_width];
     for (int lane = 0; lane < Lanes_width; ++lane) {
-        const Vec3<double>& at = arrays.pose[rows[lane]].position;
+        const Vec3<PoseReal>& at = arrays.pose[rows[lane]].position;
         const Vec3<double>& point = point_of(lane);
-        x[lane] = static_cast<float>(at.x - point.x);
-        y[lane] = static_cast<float>(at.y - point.y);
-        z[lane] = static_cast<float>(at.z - point.z);
+        x[lane] = static_cast<float>(static_cast<double>(at.x) - point.x);
+        y[lane] = static_cast<float>(static_cast<double>(at.y) - point.y);
+        z[lane] = static_cast<float>(static_cast<double>(at.z) - point.z);
     }
     return {load_lanes(x), load_lanes(y), load_lanes(z)};
 }
@@ -51,15 +51,15 @@ Struct only_finite(Struct value)
     return value;
 }
 
-// ---- where bodies are when a step begins: doubles, subtracted and narrowed a lane at a time ----------------
+// ---- where bodies are when a step begins: subtracted as they are kept, and narrowed, a lane at a time -------
 
 inline Vec3<Lanes> between_bodies(const BodyArrays& a, const std::int32_t* rows_a, const BodyArrays& b,
                                   const std::int32_t* rows_b)
 {
     alignas(64) float x[Lanes_width], y[Lanes_width], z[Lanes_width];
     for (int lane = 0; lane < Lanes_width; ++lane) {
-        const Vec3<double>& from = a.pose[rows_a[lane]].position;
-        const Vec3<double>& to = b.pose[rows_b[lane]].position;
+        const Vec3<PoseReal>& from = a.pose[rows_a[lane]].position;
+        const Vec3<PoseReal>& to = b.pose[rows_b[lane]].position;
         x[lane] = static_cast<float>(to.x - from.x);
         y[lane] = static_cast<float>(to.y - from.y);
         z[lane] = static_cast<float>(to.z - from.z);
@@ -75,7 +75,7 @@ Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays, const std::i
     } else if constexpr (kind == BodyKind::planar) {
         alignas(64) float yaw[Lanes_width];
         for (int lane = 0; lane < Lanes_width; ++lane) {
-            const double angle = arrays.pose[rows[lane]].yaw;
+            const auto angle = static_cast<double>(arrays.pose[rows[lane]].yaw);
             const double turns = angle * 0.15915494309189535;
             const auto whole =
                 static_cast<double>(static_cast<long long>(turns < 0 ? turns - 0.5 : turns + 0.5));
@@ -85,7 +85,7 @@ Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays, const std::i
     } else {
         alignas(64) float x[Lanes_width], y[Lanes_width], z[Lanes_width], w[Lanes_width];
         for (int lane = 0; lane < Lanes_width; ++lane) {
-            const Quat<double>& q = arrays.orientation[rows[lane]];
+            const Quat<PoseReal>& q = arrays.orientation[rows[lane]];
             x[lane] = static_cast<float>(q.x);
             y[lane] = static_cast<float>(q.y);
             z[lane] = static_cast<float>(q.z);

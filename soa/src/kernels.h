@@ -1,4 +1,4 @@
-// Everything that is compiled once an instruction set. The including file sets the namespace and Lanes up;
+// The kernels of constraints, compiled once an instruction set. The including file sets the namespace and Lanes up;
 // see kernels_avx2.cpp. No include guard: included once by each.
 
 inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float));
@@ -44,25 +44,10 @@ void enter_types(KernelTable& table, int first, TypeList<Types...>)
     (enter_type<Types>(table, first++), ...);
 }
 
-template <BodyKind kind>
-void enter_body(KernelTable& table)
-{
-    BodyKernels& kernels = table.bodies[static_cast<int>(kind)];
-    if constexpr (kind != BodyKind::fixed) {
-        kernels.integrate_velocities = integrate_velocities<kind, false>;
-        kernels.integrate_and_replay = integrate_velocities<kind, true>;
-    }
-    kernels.integrate_positions = integrate_positions<kind>;
-}
-
 /// Fills a table that was made elsewhere: the constructor of a table made here would be a weak function compiled for
 /// this instruction set.
 inline void enter_kernels(KernelTable& table)
 {
     enter_types(table, 0, ContactTypes{});
     enter_types(table, contact_type_count, JointTypes{});
-    enter_body<BodyKind::particle>(table);
-    enter_body<BodyKind::planar>(table);
-    enter_body<BodyKind::rigid>(table);
-    enter_body<BodyKind::fixed>(table);
 }

@@ -43,6 +43,10 @@ void Layout::place_joints(Scene& scene)
         for (std::size_t i = 0; i < store.size(); ++i) {
             const BodyRow a = bodies.row_of(store.definitions[i].body_a);
             const BodyRow b = bodies.row_of(store.definitions[i].body_b);
+            if (bodies.is_contained(a) || bodies.is_contained(b)) {
+                store.forget_impulse(i);
+                continue;
+            }
             if (store.colours[i] == no_colour) store.colours[i] = joint_masks_.take_first(a, b);
             int equalities = 0;
             bool locks_point = false;
@@ -64,12 +68,18 @@ void Layout::place_joints(Scene& scene)
     figures.bind(joints_, kernels_);
 }
 
-void Layout::colour_contacts(ContactList& list)
+void Layout::colour_contacts(const BodyStore& bodies, ContactList& list)
 {
     const std::span<Placement> placements(intake.placements.data(), list.count);
     std::size_t uncoloured = 0;
     for (std::uint32_t i = 0; i < placements.size(); ++i) {
-        const Placement& placement = placements[i];
+        Placement& placement = placements[i];
+        if (bodies.is_contained(placement.a) || bodies.is_contained(placement.b)) {
+            placement.colour = left_out_colour;
+            list.colours[i] = no_colour;
+            list.impulses[i + 1] = {};
+            continue;
+        }
         // A joint added since may have taken the colour; then the contact looks for another below. One in the
         // overflow looks again too: the crowd around its hub may have thinned.
         const bool keeps =
@@ -156,6 +166,7 @@ void Layout::point_at(Scene& scene, const StepConstants& step)
                                 rows.acceleration.data(),
                                 rows.world_inverse_inertia.data(),
                                 rows.start_inverse_inertia.data(),
+                                rows.inverse_inertia.data(),
                                 rows.pose.data(),
                                 rows.orientation.data(),
                                 static_cast<std::int32_t>(rows.size())};

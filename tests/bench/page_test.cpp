@@ -26,12 +26,21 @@ SweepResult small_result()
     result.scene = "made-up";
     result.description = "five points & <one> that came apart";
     result.error_name = "error (m)";
+    const auto defaults = [](int substeps) {
+        Dials dials;
+        dials.settings.substeps = substeps;
+        return dials;
+    };
     result.points = {point("motley", "soft 1 x 1+1, 60 Hz", 1e-3, 0.1),
                      point("Peer 1", "fast", 2e-3, 0.5),
                      point("motley", "soft 4 x 1+1, 60 Hz", 4e-3, 0.02),
                      point("Peer 1", "fine", 8e-3, 0.001),
                      point("motley", "impulse 1 x 8, Baumgarte", 2e-3, 0.02),
                      point("Peer 1", "lost", 1e-3, std::numeric_limits<double>::infinity())};
+    result.points[0].dials = defaults(1);
+    result.points[2].dials = defaults(4);
+    result.points[4].dials = defaults(1);
+    result.points[4].dials->settings.method = Method::sequential_impulse;
     return result;
 }
 
@@ -52,8 +61,13 @@ TEST(Page, NamesThePeersPointsThatMotleyHasNoAnswerTo)
 
 TEST(Page, PricesTheDefaultAgainstTheFastestThatIsAsExact)
 {
-    EXPECT_DOUBLE_EQ(price_of_default(small_result()), 2);
-    EXPECT_EQ(price_of_default({}), 0);
+    // Four substeps take twice as long as the impulses that are as exact; one substep is beaten by nobody.
+    EXPECT_DOUBLE_EQ(price_of_default(small_result()).settings, 2);
+    EXPECT_DOUBLE_EQ(price_of_default(small_result()).front, 2);
+    SweepResult result = small_result();
+    result.points[2].seconds = result.points[0].seconds;  // then four substeps are all of the front
+    EXPECT_DOUBLE_EQ(price_of_default(result).front, 1);
+    EXPECT_EQ(price_of_default({}).settings, 0);
 }
 
 TEST(Page, DrawsEveryPointAndNeedsNothingFromElsewhere)

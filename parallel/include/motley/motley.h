@@ -5,6 +5,7 @@
 #include "motley/core/scene.h"
 #include "motley/core/settings.h"
 #include "motley/core/six_dof.h"
+#include "motley/core/snapshot.h"
 #include "motley/core/step_report.h"
 #include "motley/core/wheel.h"
 #include "motley/parallel/executor.h"

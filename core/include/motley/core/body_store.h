@@ -7,7 +7,8 @@
 //   rigid     vx vy vz 1/m | wx wy wz -    dx dy dz  - | qx qy qz qw        ax ay az - | tx ty tz -  (torque)
 //   fixed     as rigid with 1/m = 0        as rigid                         unused
 //
-// Positions stay in double; the lanes only ever see differences and the deltas of one step.
+// Positions stay in double (or, if the build says so, in float); the lanes only ever see differences and the deltas of
+// one step.
 #pragma once
 
 #include <array>
@@ -39,10 +40,18 @@ struct BodyRow {
     [[nodiscard]] std::uint32_t row() const { return bits & 0x3FFFFFFFU; }
 };
 
+/// What positions and orientations are kept in from step to step. Floats halve their bytes, and place bodies at 1 km from
+/// the origin to 0.06 mm.
+#ifdef MOTLEY_FLOAT_POSITIONS
+using PoseReal = float;
+#else
+using PoseReal = double;
+#endif
+
 /// Where a body is. A planar body uses yaw, a rigid or fixed one the orientation, a particle neither.
 struct BodyPose {
-    Vec3<double> position{};
-    double yaw = 0;
+    Vec3<PoseReal> position{};
+    PoseReal yaw = 0;
 };
 
 /// The rows of one kind. Row 0 is the null body of padding lanes: it cannot move and nothing is tied to it.
@@ -50,7 +59,7 @@ struct BodyRows {
     AlignedVector<float> velocity, delta, acceleration;
     AlignedVector<float> unpushed;  ///< as velocity: what it was in this substep before any constraint pushed
     AlignedVector<BodyPose> pose;
-    AlignedVector<Quat<double>> orientation;     ///< rigid and fixed only
+    AlignedVector<Quat<PoseReal>> orientation;   ///< rigid and fixed only
     AlignedVector<float> world_inverse_inertia;  ///< rigid only, two quads: xx xy xz yy | yz zz - -
     AlignedVector<float> start_inverse_inertia;  ///< the same when the step began
     AlignedVector<Sym3<float>> inertia;          ///< rigid only, body frame
@@ -89,8 +98,14 @@ class BodyStore {
     [[nodiscard]] BodyModel model(BodyId body) const { return models_[body.slot]; }
     /// Joints on each slot; lets a removal skip the search for joints.
     std::vector<std::uint32_t> joint_counts;
-    /// Frozen by a step because its state was not finite.
+    /// Frozen by a step because its state was not finite: what pushes it is left out.
     std::vector<std::uint8_t> contained;
+    std::size_t contained_count = 0;
+    [[nodiscard]] bool has_contained() const { return contained_count > 0; }
+    [[nodiscard]] bool is_contained(BodyRow where) const
+    {
+        return has_contained() && contained[rows(where.kind()).slot[where.row()]] != 0;
+    }
     /// What the inverse mass was before a containment took it, for the revival.
     AlignedVector<float> inverse_masses;
     std::vector<float> inverse_inertias;  ///< likewise, planar only
@@ -105,6 +120,7 @@ class BodyStore {
     void refresh_world_inertia(std::uint32_t row);
 
   private:
+    friend struct SceneArchive;
     std::array<BodyRows, body_kind_count> rows_;
     struct Slot {
         std::uint32_t generation = 1;

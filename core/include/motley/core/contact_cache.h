@@ -96,6 +96,10 @@ class ContactCache {
     /// ...then gives new keys their tickets and forgets those that are gone. False, and nothing changed, when a key
     /// came twice.
     bool admit();
+    /// Of an empty cache: these are the contacts of the last step. False, with the cache no longer of use, when a key
+    /// comes twice.
+    bool restore(std::span<const ContactList::Entry> entries, std::span<const std::uint8_t> colours,
+                 std::span<const ContactImpulse> impulses);
     /// The staged list becomes the current one.
     void accept_staged() { current_ = 1 - current_; }
     [[nodiscard]] std::span<const ContactImpulse> impulses() const

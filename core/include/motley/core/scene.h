@@ -127,6 +127,7 @@ class Scene {
     float last_substep = 0;
 
   private:
+    friend struct SceneArchive;
     BodyStore bodies_;
     JointStores joints_;
     ContactCache contacts_;

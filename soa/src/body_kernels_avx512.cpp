@@ -1,4 +1,4 @@
-// Figures: the bodies of copies and their trees. AVX-512: sixteen lanes, a whole block at once.
+// Bodies, by row and as copies of figures. AVX-512: sixteen lanes, a whole block at once.
 #include "figure.h"
 #include "kernel_prelude.h"
 
@@ -11,13 +11,13 @@ using Arch = xsimd::avx512f;
 #include "lanes.h"
 #include "quads_avx512.h"
 
-#include "figure_kernels.h"
+#include "body_kernels.h"
 
 }  // namespace
 
-void enter_figure_kernels_avx512(FigureKernels& kernels)
+void enter_body_kernels_avx512(KernelTable& table)
 {
-    enter_figure_kernels(kernels);
+    enter_body_kernels(table);
 }
 
 }  // namespace motley

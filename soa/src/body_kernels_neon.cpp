@@ -1,4 +1,4 @@
-// Figures: the bodies of copies and their trees. NEON: four lanes.
+// Bodies, by row and as copies of figures. NEON: four lanes.
 #include "figure.h"
 #include "kernel_prelude.h"
 
@@ -11,13 +11,13 @@ using Arch = xsimd::neon64;
 #include "lanes.h"
 #include "quads_neon.h"
 
-#include "figure_kernels.h"
+#include "body_kernels.h"
 
 }  // namespace
 
-void enter_figure_kernels_neon(FigureKernels& kernels)
+void enter_body_kernels_neon(KernelTable& table)
 {
-    enter_figure_kernels(kernels);
+    enter_body_kernels(table);
 }
 
 }  // namespace motley

@@ -1,4 +1,4 @@
-// Figures: the bodies of copies and their trees. AVX2: eight lanes.
+// Bodies, by row and as copies of figures. AVX2: eight lanes.
 #include "figure.h"
 #include "kernel_prelude.h"
 
@@ -11,13 +11,13 @@ using Arch = xsimd::avx2;
 #include "lanes.h"
 #include "quads_avx.h"
 
-#include "figure_kernels.h"
+#include "body_kernels.h"
 
 }  // namespace
 
-void enter_figure_kernels_avx2(FigureKernels& kernels)
+void enter_body_kernels_avx2(KernelTable& table)
 {
-    enter_figure_kernels(kernels);
+    enter_body_kernels(table);
 }
 
 }  // namespace motley

@@ -1,0 +1,174 @@
+// Every field of a scene that outlives a step, named once for writing and reading alike.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "motley/core/scene.h"
+
+namespace motley {
+
+/// Fields into bytes.
+class ArchiveWriter {
+  public:
+    static constexpr bool reads = false;
+    std::vector<std::byte> bytes;
+
+    template <class T>
+    void operator()(const T& value)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        append(&value, sizeof value);
+    }
+    template <class T, class Allocator>
+    void operator()(const std::vector<T, Allocator>& values)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        (*this)(static_cast<std::uint64_t>(values.size()));
+        append(values.data(), values.size() * sizeof(T));
+    }
+
+  private:
+    void append(const void* from, std::size_t size)
+    {
+        const auto* first = static_cast<const std::byte*>(from);
+        bytes.insert(bytes.end(), first, first + size);
+    }
+};
+
+/// Bytes into fields. Throws std::runtime_error rather than read past the end.
+class ArchiveReader {
+  public:
+    static constexpr bool reads = true;
+    explicit ArchiveReader(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+    template <class T>
+    void operator()(T& value)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        take(&value, sizeof value);
+    }
+    template <class T, class Allocator>
+    void operator()(std::vector<T, Allocator>& values)
+    {
+        std::uint64_t count = 0;
+        (*this)(count);
+        if (count > rest_.size() / sizeof(T)) throw std::runtime_error("ends in the middle of a list");
+        values.resize(static_cast<std::size_t>(count));
+        take(values.data(), values.size() * sizeof(T));
+    }
+    [[nodiscard]] bool is_done() const { return rest_.empty(); }
+
+  private:
+    std::span<const std::byte> rest_;
+    void take(void* to, std::size_t size)
+    {
+        if (size > rest_.size()) throw std::runtime_error("ends in the middle of a field");
+        if (size > 0) std::memcpy(to, rest_.data(), size);
+        rest_ = rest_.subspan(size);
+    }
+};
+
+/// The friend that knows the private fields.
+struct SceneArchive {
+    template <class Archive, class S>
+    static void visit(Archive& archive, S& scene)
+    {
+        visit_bodies(archive, scene.bodies_);
+        visit_joints(archive, scene.joints_);
+        visit_contacts(archive, scene.contacts_);
+        archive(scene.island_iterations_);
+        archive(scene.ground_);
+        archive(scene.body_count_);
+        archive(scene.last_substep);
+        // Room for a break event of each watched joint: a warm step allocates nothing.
+        if constexpr (Archive::reads) scene.break_events_.reserve(scene.joints_.watched.size());
+    }
+
+    /// Throws std::runtime_error unless every index of the scene leads somewhere.
+    static void check(const Scene& scene);
+
+  private:
+    template <class Archive, class Store>
+    static void visit_bodies(Archive& archive, Store& bodies)
+    {
+        for (auto& rows : bodies.rows_) {
+            archive(rows.velocity);
+            archive(rows.delta);
+            archive(rows.acceleration);
+            archive(rows.unpushed);
+            archive(rows.pose);
+            archive(rows.orientation);
+            archive(rows.world_inverse_inertia);
+            archive(rows.start_inverse_inertia);
+            archive(rows.inertia);
+            archive(rows.inverse_inertia);
+            archive(rows.slot);
+            archive(rows.free_rows);
+        }
+        archive(bodies.slots_);
+        archive(bodies.live_);
+        archive(bodies.models_);
+        archive(bodies.motions_);
+        archive(bodies.free_slots_);
+        archive(bodies.joint_counts);
+        archive(bodies.contained);
+        archive(bodies.contained_count);
+        archive(bodies.inverse_masses);
+        archive(bodies.inverse_inertias);
+    }
+    template <class Archive, class Stores>
+    static void visit_joints(Archive& archive, Stores& joints)
+    {
+        joints.for_each([&](auto& store, int) {
+            archive(store.definitions);
+            archive(store.parameters);
+            archive(store.memory);
+            archive(store.world_points);
+            archive(store.colours);
+            archive(store.slots);
+        });
+        archive(joints.slots);
+        archive(joints.free_slots);
+        archive(joints.watched);
+        archive(joints.with_iterations);
+    }
+    /// The list of the last step; where its keys lie in the table decides nothing.
+    template <class Archive, class Cache>
+    static void visit_contacts(Archive& archive, Cache& cache)
+    {
+        std::uint64_t count = cache.current().count;
+        archive(count);
+        if constexpr (Archive::reads) {
+            if (count > UINT32_MAX / 2) throw std::runtime_error("has more contacts than fit");
+            std::vector<ContactList::Entry> entries;
+            std::vector<std::uint8_t> colours;
+            std::vector<ContactImpulse> impulses;
+            archive(entries);
+            archive(colours);
+            archive(impulses);
+            if (entries.size() != count || colours.size() != count || impulses.size() != count)
+                throw std::runtime_error("has lists of different lengths");
+            if (!cache.restore(entries, colours, impulses))
+                throw std::runtime_error("has a contact key twice");
+        } else {
+            const ContactList& list = cache.current();
+            const auto in_use = [&](const auto& values, std::size_t from) {
+                using Value = std::remove_cvref_t<decltype(values[0])>;
+                const auto first = values.begin() + static_cast<std::ptrdiff_t>(from);
+                return std::vector<Value>(first, first + static_cast<std::ptrdiff_t>(list.count));
+            };
+            archive(in_use(list.entries, 0));
+            archive(in_use(list.colours, 0));
+            archive(in_use(list.impulses, 1));
+        }
+    }
+};
+
+}  // namespace motley

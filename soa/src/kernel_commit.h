@@ -1,0 +1,108 @@
+// The end of a step, sixteen rows in line: deltas go into poses. Included inside an anonymous namespace, after
+// kernel_bodies.h. What is done to poses is written as loops over lanes, which the compiler turns into as many
+// doubles at once as the instruction set has. Same bits as BodyStore::commit, which takes what is refused here.
+
+/// Whether none of so many floats in line is infinite or not a number.
+inline bool all_finite(const float* values, int count)
+{
+    std::uint32_t bad = 0;
+    for (int i = 0; i < count; ++i) bad |= std::uint32_t{!(values[i] - values[i] == 0)};
+    return bad == 0;
+}
+
+/// A body that is free or contained has no inverse mass.
+template <BodyKind kind>
+bool can_commit(const float* velocity, const float* delta)
+{
+    constexpr int floats = 4 * quads_of(kind);
+    std::uint32_t still = 0;
+    for (int lane = 0; lane < block_lanes; ++lane) still |= std::uint32_t{!(velocity[floats * lane + 3] > 0)};
+    return still == 0 && all_finite(velocity, floats * block_lanes) &&
+           all_finite(delta, floats * block_lanes);
+}
+
+/// Sixteen quaternions, a component after another.
+template <class Real>
+struct Turns {
+    alignas(64) Real x[block_lanes], y[block_lanes], z[block_lanes], w[block_lanes];
+};
+
+/// orientation = delta * orientation, towards unit length.
+inline void turn(const float* delta, Quat<PoseReal>* orientation, Turns<float>& narrowed)
+{
+    Turns<PoseReal> turned;
+    for (int lane = 0; lane < block_lanes; ++lane) {
+        const float* by = delta + 8 * lane + 4;
+        const Quat<PoseReal> q =
+            normalised(normalised(Quat<PoseReal>{by[0], by[1], by[2], by[3]} * orientation[lane]));
+        turned.x[lane] = q.x;
+        turned.y[lane] = q.y;
+        turned.z[lane] = q.z;
+        turned.w[lane] = q.w;
+    }
+    for (int lane = 0; lane < block_lanes; ++lane) {
+        orientation[lane] = {turned.x[lane], turned.y[lane], turned.z[lane], turned.w[lane]};
+        narrowed.x[lane] = static_cast<float>(turned.x[lane]);
+        narrowed.y[lane] = static_cast<float>(turned.y[lane]);
+        narrowed.z[lane] = static_cast<float>(turned.z[lane]);
+        narrowed.w[lane] = static_cast<float>(turned.w[lane]);
+    }
+}
+
+/// A turned body has turned inertia.
+inline void turn_inertia(const BodyArrays& arrays, std::int32_t first, const Turns<float>& turns)
+{
+    alignas(64) float fields[6][block_lanes];
+    for (int lane = 0; lane < block_lanes; ++lane) {
+        const Sym3<float>& m = arrays.inverse_inertia[first + lane];
+        fields[0][lane] = m.xx;
+        fields[1][lane] = m.xy;
+        fields[2][lane] = m.xz;
+        fields[3][lane] = m.yy;
+        fields[4][lane] = m.yz;
+        fields[5][lane] = m.zz;
+    }
+    for (int lane = 0; lane < block_lanes; lane += Lanes_width) {
+        const RowIndex index(first + lane, first + block_lanes);
+        const Sym3<Lanes> body{load_lanes(fields[0] + lane), load_lanes(fields[1] + lane),
+                               load_lanes(fields[2] + lane), load_lanes(fields[3] + lane),
+                               load_lanes(fields[4] + lane), load_lanes(fields[5] + lane)};
+        const Sym3<Lanes> world =
+            rotate_tensor(Quat<Lanes>{load_lanes(turns.x + lane), load_lanes(turns.y + lane),
+                                      load_lanes(turns.z + lane), load_lanes(turns.w + lane)},
+                          body);
+        for (float* tensors : {arrays.world_inverse_inertia, arrays.start_inverse_inertia}) {
+            store_quads(tensors, 8, index.rows, {world.xx, world.xy, world.xz, world.yy}, index.count);
+            store_quads(tensors + 4, 8, index.rows, {world.yz, world.zz, Lanes(0), Lanes(0)}, index.count);
+        }
+    }
+}
+
+template <BodyKind kind>
+bool commit(const BodyArrays& arrays, std::int32_t first)
+{
+    constexpr std::int64_t floats = std::int64_t{4} * quads_of(kind);
+    float* delta = arrays.delta + floats * first;
+    if (!can_commit<kind>(arrays.velocity + floats * first, delta)) return false;
+    BodyPose* pose = arrays.pose + first;
+    for (int lane = 0; lane < block_lanes; ++lane) {
+        const float* d = delta + floats * lane;
+        pose[lane].position.x += static_cast<PoseReal>(d[0]);
+        pose[lane].position.y += static_cast<PoseReal>(d[1]);
+        (kind == BodyKind::planar ? pose[lane].yaw : pose[lane].position.z) += static_cast<PoseReal>(d[2]);
+    }
+    if constexpr (kind == BodyKind::rigid) {
+        Turns<float> turns;
+        turn(delta, arrays.orientation + first, turns);
+        turn_inertia(arrays, first, turns);
+    }
+    for (int lane = 0; lane < block_lanes; ++lane) {
+        float* d = delta + floats * lane;
+        d[0] = d[1] = d[2] = 0;
+        if constexpr (kind == BodyKind::rigid) {
+            d[4] = d[5] = d[6] = 0;
+            d[7] = 1;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,73 @@
+// The exact laws of crowds, at the default settings. Independent evidence: momentum balance and kinematics on paper.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "runner.h"
+
+namespace motley::bench {
+namespace {
+
+RunResult run(const char* scene, std::int64_t agents, double seconds = 0, const SolverSettings& settings = {})
+{
+    RunOptions options;
+    options.settings = settings;
+    options.agents = agents;
+    options.seconds = seconds;
+    RunOutputs quiet;
+    quiet.progress = false;
+    return run_scene(*find_scene(scene), options, quiet);
+}
+
+TEST(CrowdLaws, LeaningRowsHandOnWhatIsBehindThem)
+{
+    // Contact k from the back carries k F. Pass mark: a hundredth of what the wall bears, every step.
+    EXPECT_LT(run("lean-10", 100).error->value, 0.01);
+    EXPECT_LT(run("lean-30", 90).error->value, 0.01);
+    // A hundred in line settle slowly at the default: README, "Limits and debts".
+    SolverSettings stiffest;
+    stiffest.substeps = 16;
+    stiffest.contact_hertz = 1e6F;
+    EXPECT_LT(run("lean", 100, 0, stiffest).error->value, 0.01);
+}
+
+TEST(CrowdLaws, AnInelasticPulseTakesAllAlong)
+{
+    // The n-th is hit at g n (n + 1)/(2 v). Pass mark: a hundredth of that time, in which the first body, at v/n, goes
+    // (n + 1)/200 gaps: 0.045 at the eighth, the last that is hit within 3 s.
+    EXPECT_LT(run("pulse", 20).error->value, 0.045);
+}
+
+TEST(CrowdLaws, AStripOfAPushedCrowdIsAnInelasticPulse)
+{
+    // Gaps are shorter than what a step covers: an impact is resolved in the substep that it falls into, so bodies may be
+    // off by a substep's way of the fastest, 1.875 m/s / 240 = 0.39 gaps of 2 cm, and must not gain or lose more.
+    EXPECT_LT(run("strip", 100).error->value, 0.39);
+}
+
+TEST(CrowdLaws, AnElasticPulseIsHandedOn)
+{
+    // Each moves on by a gap and stands. An impact falls up to a step too late (1.5 m/s / 60 s = a quarter of the gap),
+    // the n-th no later than that: what is late at one contact is early at the next.
+    const RunResult result = run("bounce", 20);
+    EXPECT_LT(result.error->value, 0.25);
+    for (const Figure& figure : result.figures) {
+        if (figure.first == "kinetic energy kept") {
+            EXPECT_NEAR(std::stod(figure.second), 100, 0.01);
+        }
+    }
+}
+
+TEST(CrowdLaws, AWaveKeepsItsMomentum)
+{
+    const RunResult result = run("wave", 1000, 1);
+    ASSERT_FALSE(result.figures.empty());
+    EXPECT_EQ(result.figures.front().first, "momentum, off what was given");
+    // Rounding of 1,000 bodies' speeds, 60 steps of 4 substeps.
+    EXPECT_LT(std::abs(std::stod(result.figures.front().second)), 1e-5) << result.figures.front().second;
+    EXPECT_LT(result.overlap_p99, 0.01);
+}
+
+}  // namespace
+}  // namespace motley::bench

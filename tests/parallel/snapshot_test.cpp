@@ -1,0 +1,240 @@
+// Scenes in files. Independent evidence: the scene that was never in a file.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "fuzz/forged_file.h"
+#include "joint_scene.h"
+
+namespace motley {
+namespace {
+
+using testing::JointScene;
+using testing::MixedScene;
+
+constexpr float dt = 1.0F / 60;
+
+/// A file of this test alone, gone at its end.
+class File {
+  public:
+    File() : path_(::testing::TempDir() + "motley-" + name_of_test() + "-" + std::to_string(::getpid())) {}
+    ~File() { std::remove(path_.c_str()); }
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    [[nodiscard]] const std::string& path() const { return path_; }
+    [[nodiscard]] std::string read() const { return testing::bytes_of(path_); }
+    void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
+
+  private:
+    std::string path_;
+    static std::string name_of_test()
+    {
+        return ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    }
+};
+
+SolverSettings settings_of(Method method)
+{
+    SolverSettings settings;
+    settings.method = method;
+    settings.gravity = {0, -9.81F, 0};
+    return settings;
+}
+
+/// Contacts with friction and restitution, joints, hubs; bodies and joints have come and gone, and one is contained.
+void live_through(MixedScene& mixed, Solver& solver)
+{
+    for (int step = 0; step < 40; ++step) {
+        if (step == 20) {
+            mixed.scene.remove_body(mixed.balls[4]);
+            mixed.scene.remove_body(mixed.balls[7]);
+            mixed.balls.erase(mixed.balls.begin() + 7);
+            mixed.balls.erase(mixed.balls.begin() + 4);
+            BodyDefinition ball;
+            ball.position = {2, 6, 0};
+            mixed.balls.push_back(mixed.scene.add_body(ball));
+        }
+        ASSERT_EQ(solver.step(mixed.scene, dt, mixed.contacts()).status, StepStatus::done);
+    }
+}
+
+TEST(Snapshot, GoesOnWithTheSameBitsByEveryMethod)
+{
+    for (const Method method : {Method::soft_step, Method::sequential_impulse}) {
+        const File file;
+        MixedScene mixed;
+        Solver solver(settings_of(method));
+        live_through(mixed, solver);
+        save_scene(mixed.scene, file.path());
+        MixedScene back = mixed;
+        back.scene = load_scene(file.path());
+        EXPECT_EQ(back.scene.state_hash(), mixed.scene.state_hash());
+        EXPECT_EQ(back.scene.body_count(), mixed.scene.body_count());
+        Solver other(settings_of(method), {.threads = 2});
+        for (int step = 0; step < 60; ++step) {
+            if (step == 5) {  // new rows and handles are the same ones
+                for (MixedScene* scene : {&mixed, &back}) {
+                    BodyDefinition ball;
+                    ball.position = {1, 9, 0};
+                    scene->balls.push_back(scene->scene.add_body(ball));
+                }
+                ASSERT_EQ(mixed.balls.back(), back.balls.back());
+            }
+            ASSERT_EQ(solver.step(mixed.scene, dt, mixed.contacts()).status, StepStatus::done);
+            ASSERT_EQ(other.step(back.scene, dt, back.contacts()).status, StepStatus::done);
+            ASSERT_EQ(back.scene.state_hash(), mixed.scene.state_hash()) << "step " << step;
+        }
+    }
+}
+
+TEST(Snapshot, KeepsEveryTypeOfJointBetweenEveryPairOfBodies)
+{
+    const File file;
+    JointScene joints;
+    Solver solver(settings_of(Method::soft_step));
+    for (int step = 0; step < 20; ++step) solver.step(joints.scene, dt);
+    save_scene(joints.scene, file.path());
+    Scene back = load_scene(file.path());
+    EXPECT_EQ(back.joint_count(), joints.scene.joint_count());
+    for (int step = 0; step < 20; ++step) {
+        solver.step(joints.scene, dt);
+        solver.step(back, dt);
+        ASSERT_EQ(back.state_hash(), joints.scene.state_hash()) << "step " << step;
+    }
+}
+
+TEST(Snapshot, KeepsWishesAndBreakLimits)
+{
+    const File file;
+    Scene scene;
+    BodyDefinition body;
+    body.position = {0, -1, 0};
+    const BodyId ball = scene.add_body(body);
+    const ConstraintId rope = scene.add_joint(BallSocketDefinition{scene.ground(), ball, {}, {0, 1, 0}});
+    scene.set_break_limit(rope, {1, 1});
+    scene.set_iterations(rope, 7);
+    scene.set_island_iterations(ball, 3);
+    save_scene(scene, file.path());
+    Scene back = load_scene(file.path());
+    EXPECT_TRUE(back.is_alive(rope));
+    ASSERT_EQ(back.island_iterations().size(), 1U);
+    EXPECT_TRUE(back.asks_for_iterations());
+    Solver solver(settings_of(Method::soft_step));
+    for (int step = 0; step < 5; ++step) solver.step(back, dt);
+    ASSERT_EQ(back.break_events().size(), 1U);
+    EXPECT_EQ(back.break_events()[0].joint, rope);
+}
+
+TEST(Snapshot, OfAStepIsSolvedAgainTheSame)
+{
+    const File file;
+    MixedScene mixed;
+    Solver solver(settings_of(Method::soft_step));
+    live_through(mixed, solver);
+    const StepProblem problem{mixed.scene, settings_of(Method::soft_step), dt, mixed.contacts()};
+    save_problem(problem, file.path());
+    solver.step(mixed.scene, dt, problem.contacts);
+    for (const Isa isa : available_isas()) {
+        for (const int threads : {1, 2}) {
+            StepProblem back = load_problem(file.path());
+            Solver other(back.settings, {.threads = threads, .isa = isa});
+            ASSERT_EQ(other.step(back.scene, back.dt, back.contacts).status, StepStatus::done);
+            EXPECT_EQ(back.scene.state_hash(), mixed.scene.state_hash()) << isa_name(isa);
+        }
+    }
+}
+
+std::string refusal(const File& file)
+{
+    try {
+        load_scene(file.path());
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(Snapshot, RefusesWhatIsNotWhole)
+{
+    const File file;
+    EXPECT_NE(refusal(file).find("cannot be read"), std::string::npos);
+    MixedScene mixed(4);
+    Solver solver(settings_of(Method::soft_step));
+    for (int step = 0; step < 30; ++step) solver.step(mixed.scene, dt, mixed.contacts());
+    save_scene(mixed.scene, file.path());
+    const std::string good = file.read();
+    ASSERT_TRUE(refusal(file).empty());
+
+    file.write("");
+    EXPECT_NE(refusal(file).find("is not a scene"), std::string::npos);
+    file.write(std::string(100, 'x'));
+    EXPECT_NE(refusal(file).find("is not a scene"), std::string::npos);
+    std::string other = good;
+    other[8] = 99;
+    file.write(other);
+    EXPECT_NE(refusal(file).find("has version 99"), std::string::npos) << refusal(file);
+    other = good;
+    other[12] = static_cast<char>(other[12] ^ 1);
+    file.write(other);
+    EXPECT_NE(refusal(file).find("lie otherwise"), std::string::npos);
+    for (const std::size_t size : {std::size_t{31}, std::size_t{32}, good.size() / 2, good.size() - 1}) {
+        file.write(good.substr(0, size));
+        EXPECT_FALSE(refusal(file).empty()) << size;
+    }
+    file.write(good + "x");
+    EXPECT_NE(refusal(file).find("has grown"), std::string::npos);
+    // Any bit of any field, one in some hundred bytes of them.
+    for (std::size_t at = 32; at < good.size(); at += 97) {
+        other = good;
+        other[at] = static_cast<char>(other[at] ^ (1 << at % 8));
+        file.write(other);
+        EXPECT_NE(refusal(file).find("is corrupted"), std::string::npos) << at;
+    }
+    file.write(good);
+    EXPECT_TRUE(refusal(file).empty());
+}
+
+TEST(Snapshot, RefusesNonsenseWithAGoodChecksum)
+{
+    // Whoever forges a file gets a refusal or a scene that can be stepped, never a crash.
+    const File file;
+    MixedScene mixed(3);
+    Solver solver(settings_of(Method::soft_step));
+    for (int step = 0; step < 10; ++step) solver.step(mixed.scene, dt, mixed.contacts());
+    save_scene(mixed.scene, file.path());
+    const std::string good = file.read();
+    int refused = 0, tried = 0;
+    for (std::size_t at = 32; at < good.size(); at += 61, ++tried) {
+        std::string forged = good;
+        forged[at] = static_cast<char>(forged[at] ^ (0x80 >> at % 8));
+        testing::make_whole(forged);
+        file.write(forged);
+        try {
+            Scene scene = load_scene(file.path());
+            const StepReport report = solver.step(scene, dt);
+            EXPECT_TRUE(report.status == StepStatus::done || !report.error.empty());
+        } catch (const std::runtime_error&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 0);
+    EXPECT_LT(refused, tried) << "a velocity more or less is a scene still";
+}
+
+TEST(Snapshot, LeavesTheOldFileWhenItCannotWrite)
+{
+    const std::string nowhere = "/nowhere/at/all";
+    try {
+        save_scene(Scene(), nowhere);
+        FAIL();
+    } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find(nowhere), std::string::npos);
+    }
+    EXPECT_FALSE(std::filesystem::exists(nowhere + ".part"));
+}
+
+}  // namespace
+}  // namespace motley
