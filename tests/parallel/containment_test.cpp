@@ -101,7 +101,6 @@ TEST_P(Containment, LeavesOutJointsAndContactsOfAFrozenBody)
     EXPECT_FALSE(scene.is_contained(bad));
     const StepReport report = solver.step(scene, dt, contacts);
     ASSERT_EQ(report.status, StepStatus::done) << report.error;
-    EXPECT_GT(scene.contact_impulses()[0].normal, 0);
     EXPECT_GT(scene.state(right).linear_velocity.x, 0);
     EXPECT_EQ(report.joints, GetParam() == Method::direct ? report.joints : 1);
 }
