@@ -42,7 +42,7 @@ std::string table_of(const RunResult& r)
 {
     std::string text;
     const auto line = [&](std::string_view what, const std::string& value) {
-        text += fmt::format("  {:<34}{}\n", what, value);
+        text += fmt::format("  {:<34} {}\n", what, value);
     };
     text += fmt::format("{}: {}, {}, {} thread{}, {} steps\n", r.scene, r.method, r.isa, r.threads,
                         r.threads == 1 ? "" : "s", r.steps);
