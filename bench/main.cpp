@@ -34,6 +34,14 @@ const std::map<std::string, DriftCorrection> drift_names{{"none", DriftCorrectio
                                                          {"baumgarte", DriftCorrection::baumgarte},
                                                          {"projection", DriftCorrection::projection}};
 
+/// The instruction set of that name; says so when there is none.
+std::optional<Isa> isa_called(const std::string& name)
+{
+    const std::optional<Isa> isa = isa_from_name(name);
+    if (!isa) fmt::print(stderr, "motley: --isa is {}; expected scalar, sse2, avx2, avx512 or neon\n", name);
+    return isa;
+}
+
 /// The dials of one solver.
 struct SolverCommand {
     std::string isa;
@@ -72,13 +80,11 @@ struct SolverCommand {
                        "ms a step may take; substeps or iterations are then the most; 0: no budget")
             ->capture_default_str();
     }
-    /// Says so and returns false when there is no such instruction set.
+    /// False when there is no such instruction set.
     bool pick_isa()
     {
         if (isa.empty()) return true;
-        solver.isa = isa_from_name(isa);
-        if (!solver.isa)
-            fmt::print(stderr, "motley: --isa is {}; expected scalar, sse2, avx2, avx512 or neon\n", isa);
+        solver.isa = isa_called(isa);
         return solver.isa.has_value();
     }
 };
@@ -222,12 +228,8 @@ struct SweepCommand {
     int operator()()
     {
         for (const std::string& name : isas) {
-            const std::optional<Isa> isa = isa_from_name(name);
-            if (!isa) {
-                fmt::print(stderr, "motley: --isa is {}; expected scalar, sse2, avx2, avx512 or neon\n",
-                           name);
-                return 2;
-            }
+            const std::optional<Isa> isa = isa_called(name);
+            if (!isa) return 2;
             grid.isas.push_back(*isa);
         }
         const SweepResult result = sweep(scene, grid, options);

@@ -63,11 +63,8 @@ struct Bounces {
         const double start = height();
         bool fell = true;
         for (int step = 0, bounce = 0; step < 20 * 240; ++step) {
-            const Contact contact = [&] {
-                Contact floor = floor_contact(trial, ball, 1);
-                floor.restitution = 1;
-                return floor;
-            }();
+            Contact contact = floor_contact(trial, ball, 1);
+            contact.restitution = 1;
             trial.step(1.0F / 240, {&contact, contact.separation < 0.05F ? 1U : 0U});
             const bool falls = trial.scene.state(ball).linear_velocity.y < 0;
             if (!fell && falls) {

@@ -32,20 +32,16 @@ class Wave final : public CrowdScene {
                 agent.radius = static_cast<float>(radius);
                 const double y = pitch * (j + 0.5 * (i % 2));
                 people.add(scene, agent, {rank * i, y});
+                start_.push_back(rank * i);
                 if (i > 0 || std::abs(y - middle) > pushed_width / 2) continue;
                 const auto speed = static_cast<float>(push) / agent.mass;
                 scene.set_velocity(people.agents.back().body, {speed, 0, 0}, {});
                 pushed_ += push;
             }
         }
-        start_.resize(people.agents.size());
     }
 
-    void steer(double time, Executor& executor) override
-    {
-        people.observe(scene, executor);
-        if (time == 0) std::copy(people.positions.begin(), people.positions.end(), start_.begin());
-    }
+    void steer(double, Executor& executor) override { people.observe(scene, executor); }
 
     [[nodiscard]] std::vector<Figure> figures() const override
     {
@@ -59,9 +55,9 @@ class Wave final : public CrowdScene {
             along += mass * x;
             across += mass * y;
             energy += 0.5 * mass * (x * x + y * y);
-            if (state.position.x - start_[i].x < 1e-3) continue;
+            if (state.position.x - start_[i] < 1e-3) continue;
             ++moved;
-            reached = std::max(reached, start_[i].x);
+            reached = std::max(reached, start_[i]);
         }
         const double given = pushed_ * push / static_cast<double>(people.agents[0].mass) / 2;
         return {{"momentum, off what was given",
@@ -72,8 +68,8 @@ class Wave final : public CrowdScene {
     }
 
   private:
-    double pushed_ = 0;  ///< N s
-    std::vector<Vec3<double>> start_;
+    double pushed_ = 0;          ///< N s
+    std::vector<double> start_;  ///< m: x of each
 };
 
 }  // namespace motley::bench

@@ -143,17 +143,15 @@ struct SceneArchive {
     template <class Archive, class Cache>
     static void visit_contacts(Archive& archive, Cache& cache)
     {
-        std::uint64_t count = cache.current().count;
-        archive(count);
         if constexpr (Archive::reads) {
-            if (count > UINT32_MAX / 2) throw std::runtime_error("has more contacts than fit");
             std::vector<ContactList::Entry> entries;
             std::vector<std::uint8_t> colours;
             std::vector<ContactImpulse> impulses;
             archive(entries);
             archive(colours);
             archive(impulses);
-            if (entries.size() != count || colours.size() != count || impulses.size() != count)
+            if (entries.size() > UINT32_MAX / 2) throw std::runtime_error("has more contacts than fit");
+            if (colours.size() != entries.size() || impulses.size() != entries.size())
                 throw std::runtime_error("has lists of different lengths");
             if (!cache.restore(entries, colours, impulses))
                 throw std::runtime_error("has a contact key twice");

@@ -1,14 +1,12 @@
 // Files of scenes: a header that says what they are, the fields, and a checksum over both.
 #include "motley/core/snapshot.h"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
-#include <limits>
 #include <type_traits>
 
 #include "scene_archive.h"

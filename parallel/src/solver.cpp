@@ -471,16 +471,16 @@ void Solver::Impl::move_bodies(Scene& scene, StepReport& report)
         runner.run(chunks_of(rows, rows_per_chunk), [&](std::int64_t chunk) {
             std::uint32_t slot = UINT32_MAX;
             int count = 0;
-            const std::int64_t end = std::min((chunk + 1) * rows_per_chunk, rows);
-            for (std::int64_t row = chunk * rows_per_chunk; row < end; row += block_lanes) {
+            const auto begin = static_cast<std::int32_t>(chunk * rows_per_chunk);
+            const auto end = static_cast<std::int32_t>(std::min((chunk + 1) * rows_per_chunk, rows));
+            for_each_piece(begin, end, block_lanes, [&](std::int32_t first, std::int32_t last) {
                 // In lanes, or one by one where a row is free, the last, or has come to grief.
-                if (commit != nullptr && row + block_lanes <= end &&
-                    commit(layout.context.bodies[kind], static_cast<std::int32_t>(row)))
-                    continue;
-                count +=
-                    scene.bodies().commit(static_cast<BodyKind>(kind), static_cast<std::uint32_t>(row),
-                                          static_cast<std::uint32_t>(std::min(row + block_lanes, end)), slot);
-            }
+                if (commit != nullptr && last - first == block_lanes &&
+                    commit(layout.context.bodies[kind], first))
+                    return;
+                count += scene.bodies().commit(static_cast<BodyKind>(kind), static_cast<std::uint32_t>(first),
+                                               static_cast<std::uint32_t>(last), slot);
+            });
             if (count == 0) return;
             contained += count;
             std::uint32_t lowest = lowest_slot.load();

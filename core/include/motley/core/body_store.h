@@ -101,10 +101,9 @@ class BodyStore {
     /// Frozen by a step because its state was not finite: what pushes it is left out.
     std::vector<std::uint8_t> contained;
     std::size_t contained_count = 0;
-    [[nodiscard]] bool has_contained() const { return contained_count > 0; }
     [[nodiscard]] bool is_contained(BodyRow where) const
     {
-        return has_contained() && contained[rows(where.kind()).slot[where.row()]] != 0;
+        return contained_count > 0 && contained[rows(where.kind()).slot[where.row()]] != 0;
     }
     /// What the inverse mass was before a containment took it, for the revival.
     AlignedVector<float> inverse_masses;
