@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <fstream>
 #include <map>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "page.h"
 #include "replay.h"
 #include "runner.h"
+#include "soak.h"
 #include "sweep.h"
 
 namespace {
@@ -240,6 +242,31 @@ struct SweepCommand {
     }
 };
 
+/// `motley soak`.
+struct SoakCommand {
+    SoakOptions options;
+
+    void declare(CLI::App& app)
+    {
+        app.add_option("--seconds", options.seconds, "of the clock")
+            ->check(CLI::PositiveNumber)
+            ->capture_default_str();
+        app.add_option("--steps", options.steps, "so many steps instead")->check(CLI::PositiveNumber);
+        app.add_option("--people", options.people, "about how many")
+            ->check(CLI::Range(10, 1000000))
+            ->capture_default_str();
+        app.add_option("--seed", options.seed, "of the town's random numbers")->capture_default_str();
+    }
+    int operator()() const
+    {
+        const auto began = std::chrono::steady_clock::now();
+        const SoakResult result = soak(options);
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+        fmt::print("{}", table_of(result, took.count()));
+        return result.failure.empty() ? 0 : 1;
+    }
+};
+
 }  // namespace
 
 int main(int count, char** arguments)
@@ -283,6 +310,11 @@ int main(int count, char** arguments)
     report_app->add_flag("!--without-peers", report.with_peers, "motley alone");
     CLI::App* extremes_app = app.add_subcommand(
         "extremes", "run scenes at the edge of what numbers can bear under every method: figures and bounds");
+    SoakCommand soak_command;
+    CLI::App* soak_app = app.add_subcommand(
+        "soak",
+        "a town of people who join, leave, fall and rise, checked after every step, for as long as asked");
+    soak_command.declare(*soak_app);
     DemoOptions demo;
     demo_app->add_option("--seconds", demo.seconds, "simulated time of each crowd run")
         ->check(CLI::PositiveNumber)
@@ -303,6 +335,7 @@ int main(int count, char** arguments)
         if (*compare_app) return compare_command();
         if (*report_app) write_report(report);
         if (*demo_app) return run_demo(demo);
+        if (*soak_app) return soak_command();
         if (*extremes_app) return print_extremes({}) == 0 ? 0 : 1;
         if (*list_app) {
             for (const SceneEntry& entry : scene_list())

@@ -78,12 +78,14 @@ inline double contradictory_welds(const ExtremeRun& run)
     }
     return trial.figure(farthest);
 }
-inline double loop_of_four(const ExtremeRun& run)
+/// Two rods and a third of 10^exponent kg between them, on four parallel hinges.
+template <int exponent>
+double loop_of_four(const ExtremeRun& run)
 {
     Trial trial(run);
     trial.settings.substeps = 8;
     const BodyId left = trial.box({0, -0.5, 0}), right = trial.box({1, -0.5, 0}),
-                 rod = trial.box({0.5, -1, 0});
+                 rod = trial.box({0.5, -1, 0}, static_cast<float>(std::pow(10.0, exponent)));
     const auto hinge = [&](BodyId a, BodyId b, Vec3<double> at) {
         const Quat<float> z{0, -0.70710678F, 0, 0.70710678F};
         const auto arm = [&](BodyId body) { return convert<float>(at - trial.scene.state(body).position); };
@@ -95,6 +97,56 @@ inline double loop_of_four(const ExtremeRun& run)
     hinge(right, rod, {1, -1, 0});
     trial.scene.set_velocity(rod, {2, 0, 0}, {});
     return trial.worst_separation(run.way == ExtremeWay::direct ? 300 : 3600);
+}
+/// A door on two hinges of one axis, five rows too many: how far it hangs open.
+inline double door(const ExtremeRun& run)
+{
+    Trial trial(run);
+    trial.settings.substeps = 8;
+    const BodyId leaf = trial.box({0.5, 0, 0});
+    const Quat<float> y{0, 0, 0.70710678F, 0.70710678F};
+    for (const float height : {-0.8F, 0.8F}) {
+        trial.scene.add_joint(
+            HingeDefinition{trial.scene.ground(), leaf, {{0, height, 0}, y}, {{-0.5F, height, 0}, y}});
+    }
+    trial.scene.set_velocity(leaf, {}, {0, 5, 0});
+    return trial.worst_separation(600);
+}
+/// The same pose written as q and as -q while a chain of hinges swings: how far the two end apart.
+inline double other_hemisphere(const ExtremeRun& run)
+{
+    const auto end = [&](double sign) {
+        Trial trial(run);
+        const BodyId first = trial.box({0.5, 0, 0}), second = trial.box({1.5, 0, 0});
+        trial.scene.add_joint(HingeDefinition{trial.scene.ground(), first, {}, {{-0.5F, 0, 0}}});
+        trial.scene.add_joint(FixedDefinition{first, second, {{0.5F, 0, 0}}, {{-0.5F, 0, 0}}});
+        trial.scene.set_velocity(second, {0, 1, 2}, {3, 0, 0});
+        for (int i = 0; i < 120; ++i) {
+            if (i % 30 == 15) {
+                const BodyState s = trial.scene.state(second);
+                const Quat<double>& q = s.orientation;
+                trial.scene.set_pose(second, s.position, {sign * q.x, sign * q.y, sign * q.z, sign * q.w}, 0);
+            }
+            trial.step();
+        }
+        return trial.scene.state(second).position;
+    };
+    return length(end(-1) - end(1));
+}
+/// Axes to be kept square that start parallel, where no turn brings C nearer to first order: the fastest spin, rad/s.
+inline double parallel_axes(const ExtremeRun& run)
+{
+    Trial trial(run, {});
+    const BodyId body = trial.box({});
+    // The x axis of a on the y axis of b.
+    const JointFrame turned{{}, {0, 0, -0.70710678F, 0.70710678F}};
+    trial.scene.add_joint(PerpendicularAxesDefinition{trial.scene.ground(), body, {}, turned});
+    double fastest = 0;
+    for (int i = 0; i < 600; ++i) {
+        trial.step();
+        fastest = std::max(fastest, length(convert<double>(trial.scene.state(body).angular_velocity)));
+    }
+    return trial.figure(fastest);
 }
 inline double closed_range(const ExtremeRun& run)
 {

@@ -46,30 +46,14 @@ inline double deep_overlap(const ExtremeRun& run)
     // Each of the two contacts parts at the push-out speed, so the outer balls leave the middle one with it.
     return fastest / static_cast<double>(trial.settings.push_out_speed);
 }
-inline double huge_friction(const ExtremeRun& run)
+/// 1e-12 N on 1 kg for 10 s: off v = F t / m, of itself.
+inline double whisper(const ExtremeRun& run)
 {
-    Trial trial(run, {3, -9.81F, 0});
-    const BodyId body = trial.box({0, 0.5, 0});
-    for (int step = 0; step < 600; ++step) {
-        std::vector<Contact> contacts;
-        for (int corner = 0; corner < 4; ++corner) {
-            Contact contact;
-            contact.body_a = trial.scene.ground();
-            contact.body_b = body;
-            contact.key = static_cast<std::uint64_t>(corner);
-            contact.normal = {0, 1, 0};
-            const BodyState s = trial.scene.state(body);
-            const Vec3<double> local{corner % 2 == 0 ? -0.5 : 0.5, -0.5, corner < 2 ? -0.5 : 0.5};
-            const Vec3<double> arm = rotate(s.orientation, local);
-            contact.separation = static_cast<float>(s.position.y + arm.y);
-            contact.arm_b = convert<float>(arm);
-            contact.arm_a = convert<float>(s.position + arm);
-            contact.friction = 1e6F;
-            contacts.push_back(contact);
-        }
-        trial.step(frame, contacts);
-    }
-    return trial.figure(std::abs(trial.scene.state(body).position.x) / 10);
+    Trial trial(run, {});
+    const BodyId body = trial.box({});
+    trial.scene.set_force(body, {1e-12F, 0, 0}, {});
+    for (int i = 0; i < 600; ++i) trial.step();
+    return trial.figure(std::abs(static_cast<double>(trial.scene.state(body).linear_velocity.x) / 1e-11 - 1));
 }
 inline double weightless_hour(const ExtremeRun& run)
 {
@@ -98,6 +82,21 @@ double spring_of(const ExtremeRun& run)
         farthest = std::max(farthest, std::abs(trial.scene.state(body).position.x - 1));
     }
     return trial.figure(farthest);
+}
+/// Scenes with nothing in them, with static bodies alone, with one body: how many of them could not be stepped.
+inline double next_to_nothing(const ExtremeRun& run)
+{
+    int stuck = 0;
+    for (int what = 0; what < 3; ++what) {
+        Trial trial(run, {});
+        BodyDefinition still;
+        still.motion = BodyMotion::static_body;
+        if (what == 1) trial.scene.add_body(still);
+        if (what == 2) trial.box({});
+        for (int i = 0; i < 10; ++i) trial.step();
+        stuck += trial.figure(0) == 0 && trial.scene.errors().kinetic_energy == 0 ? 0 : 1;
+    }
+    return stuck;
 }
 inline double both_static(const ExtremeRun& run)
 {

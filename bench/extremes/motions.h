@@ -8,14 +8,23 @@
 
 namespace motley::bench {
 
-inline double needle_on_a_lever(const ExtremeRun& run)
+/// A body that spins at the end of a lever of 10 m.
+inline double on_a_lever(const ExtremeRun& run, Vec3<float> inertia)
 {
     Trial trial(run);
     trial.settings.substeps = 8;
-    const BodyId needle = trial.box({10, 0, 0}, 1, {1e-4F, 1, 1});
-    trial.scene.add_joint(BallSocketDefinition{trial.scene.ground(), needle, {}, {-10, 0, 0}});
-    trial.scene.set_velocity(needle, {}, {50, 0, 0});
+    const BodyId body = trial.box({10, 0, 0}, 1, inertia);
+    trial.scene.add_joint(BallSocketDefinition{trial.scene.ground(), body, {}, {-10, 0, 0}});
+    trial.scene.set_velocity(body, {}, {50, 0, 0});
     return trial.worst_separation(300) / 10;
+}
+inline double needle_on_a_lever(const ExtremeRun& run)
+{
+    return on_a_lever(run, {1e-4F, 1, 1});
+}
+inline double plate_on_a_lever(const ExtremeRun& run)
+{
+    return on_a_lever(run, {2e-4F, 1e-4F, 1e-4F});
 }
 /// What a free box that spins at so many rad/s gains of energy at most, in per cent.
 inline double gain_of_spin(const ExtremeRun& run, const Vec3<float>& spin, int steps)
@@ -59,7 +68,7 @@ inline double tiny_steps(const ExtremeRun& run)
         for (int i = 0; i < steps; ++i) trial.step(dt);
         return trial.scene.state(trial.bodies().back()).position;
     };
-    const Vec3<double> fine = end(1e-5F, 10000), usual = end(1e-3F, 100);
+    const Vec3<double> fine = end(1e-6F, 100000), usual = end(1e-3F, 100);
     const Vec3<double> start{1.25, 0, 0};
     return 100 * length(fine - usual) / length(usual - start);
 }

@@ -123,7 +123,7 @@ double World::step_directly(double dt, const SolverSettings& settings,
              ++i)
             project_directly(contacts, settings);
     }
-    finish_contacts(contacts, settings);
+    finish_contacts(contacts, h, settings);
     end_step(h);
     return violation;
 }

@@ -346,11 +346,31 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
             for (ContactRow& row : contacts) solve_contact(row, h, settings, true);
         }
     }
-    finish_contacts(contacts, settings);
+    finish_contacts(contacts, h, settings);
     end_step(h);
 }
 
-void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSettings& settings)
+/// Restitution: how fast a contact, `now` m apart, is to open, from the energy of the flight before and after the impact. What
+/// flies freely by v += h a, x += h v keeps (v + h a / 2)^2 / 2 - a x.
+double World::opening_speed(int a, int b, const Jacobian& normal, double approach, double now,
+                            double restitution, double h, const SolverSettings& settings) const
+{
+    const auto free_acceleration = [&](int i) -> Eigen::Vector3d {
+        Body body = bodies[static_cast<std::size_t>(i)];
+        if (body.motion != BodyMotion::dynamic_body) return Eigen::Vector3d::Zero();
+        body.velocity.setZero();
+        body.accelerate(eigen(settings.gravity), 1);
+        return body.velocity.head<3>();
+    };
+    const double along = normal.middleCols<3>(6).row(0) * (free_acceleration(b) - free_acceleration(a));
+    const double start = now - (normal * moved_since_start(a, b))(0), impact = std::min(start, 0.0);
+    const double before = approach + h * along / 2;
+    const double of_impact = std::max(before * before + 2 * along * (impact - start), 0.0);
+    const double of_leaving = restitution * restitution * of_impact + 2 * along * (now - impact);
+    return std::max(std::sqrt(std::max(of_leaving, 0.0)) - restitution * h * along / 2, 0.0);
+}
+
+void World::finish_contacts(std::vector<ContactRow>& contacts, double h, const SolverSettings& settings)
 {
     const double threshold = -static_cast<double>(settings.restitution_threshold);
     for (Joint& joint : joints) {
@@ -359,23 +379,27 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSetti
         constexpr std::size_t rounds = 8;
         for (std::size_t k = 0; k < rounds * blocks.size(); ++k) {
             const std::size_t i = k % blocks.size();
-            const double e = blocks[i].restitution;
-            if (e == 0 || joint.approaches[i] >= threshold || joint.peaks[i] == 0) continue;
-            const double leaving = speed(joint.a, joint.b, blocks[i].jacobian)(0) + e * joint.approaches[i];
+            const Block& block = blocks[i];
+            if (block.restitution == 0 || joint.approaches[i] >= threshold || joint.peaks[i] == 0) continue;
+            const double opening = opening_speed(joint.a, joint.b, block.jacobian, joint.approaches[i],
+                                                 block.error(0), block.restitution, h, settings);
+            const double leaving = speed(joint.a, joint.b, block.jacobian)(0) - opening;
             double& held = joint.impulses[i](0);
-            const double wanted = std::max(held - mass_of(joint, blocks[i])(0, 0) * leaving, 0.0);
-            apply(joint.a, joint.b, blocks[i].jacobian, Eigen::VectorXd::Constant(1, wanted - held));
+            const double wanted = std::max(held - mass_of(joint, block)(0, 0) * leaving, 0.0);
+            apply(joint.a, joint.b, block.jacobian, Eigen::VectorXd::Constant(1, wanted - held));
             held = wanted;
         }
     }
     memory_.clear();
     for (ContactRow& row : contacts) {
         const double e = static_cast<double>(row.point->contact.restitution);
-        if (e > 0 && row.approach < -static_cast<double>(settings.restitution_threshold) && row.peak > 0) {
-            const double leaving = speed(row.point->a, row.point->b, row.normal)(0) + e * row.approach;
+        if (e > 0 && row.approach < threshold && row.peak > 0) {
+            const int a = row.point->a, b = row.point->b;
+            const double opening =
+                opening_speed(a, b, row.normal, row.approach, separation(row), e, h, settings);
+            const double leaving = speed(a, b, row.normal)(0) - opening;
             const double impulse = std::max(row.impulse - row.normal_mass * leaving, 0.0);
-            apply(row.point->a, row.point->b, row.normal,
-                  Eigen::VectorXd::Constant(1, impulse - row.impulse));
+            apply(a, b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
             row.impulse = impulse;
         }
         ContactResult kept;

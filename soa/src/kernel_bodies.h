@@ -195,6 +195,25 @@ inline void accelerate(const KernelContext& context, const BodyArrays& arrays, c
     accelerate(context.step, a, t, body);
 }
 
+/// What forces and gravity make of a body's velocity a second, m/s2; nothing of what cannot move.
+template <BodyKind kind>
+Vec3<Lanes> free_acceleration(const StepConstants& step, const BodyArrays& arrays, const std::int32_t* rows,
+                              const Body<kind>& body)
+{
+    const Lanes zero(0);
+    if constexpr (kind == BodyKind::fixed) {
+        return {zero, zero, zero};
+    } else {
+        Lanes a[4];
+        load_quads(arrays.acceleration, 4 * quads_of(kind), rows, a);
+        const auto moves = body.inverse_mass > zero;
+        const Vec3<float>& g = step.gravity;
+        const Lanes z = kind == BodyKind::planar ? zero : a[2] + Lanes(g.z);
+        return {select(moves, a[0] + Lanes(g.x), zero), select(moves, a[1] + Lanes(g.y), zero),
+                select(moves, z, zero)};
+    }
+}
+
 /// The consecutive rows first ... first + width - 1 as an index; past `end`, the null row.
 struct RowIndex {
     std::int32_t rows[Lanes_width];

@@ -97,15 +97,15 @@ Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays, const std::i
 
 // ---- the kernels -------------------------------------------------------------------------------------------
 
-/// The part of a row that a sweep reads: all of it where there is no substep row; else what the type has set apart.
+/// The part of a row that a sweep reads: what the type has set apart; else all of it, unless there is a substep row.
 struct NothingInSweep {};
 template <bool recomputes, class Row>
 const auto& swept(const Row& row)
 {
-    if constexpr (!recomputes) {
-        return row;
-    } else if constexpr (requires { row.in_sweep; }) {
+    if constexpr (requires { row.in_sweep; }) {
         return row.in_sweep;
+    } else if constexpr (!recomputes) {
+        return row;
     } else {
         static constexpr NothingInSweep nothing;
         return nothing;
@@ -164,6 +164,14 @@ struct Kernels {
         }
     }
 
+    /// Of b beside a, by forces and gravity alone: what restitution asks.
+    static Vec3<Lanes> parting_acceleration(const KernelContext& context, const Bundle& bundle, const A& a,
+                                            const B& b)
+    {
+        return free_acceleration(context.step, bundle.arrays_b, bundle.rows_b, b) -
+               free_acceleration(context.step, bundle.arrays_a, bundle.rows_a, a);
+    }
+
     static void prepare(const KernelContext& context, const BlockStreams& streams, const ConstraintData& data,
                         std::int32_t begin, std::int32_t end)
     {
@@ -197,12 +205,19 @@ struct Kernels {
                                         [&](int lane) -> const Vec3<double>& { return points(lane).b; })};
                         store_row(Type::prepare(context.step, parameters, memory, in_world, a, b, impulse),
                                   bundle.row);
+                    } else if constexpr (Type::has_restitution) {
+                        store_row(
+                            Type::prepare(context.step, parameters, memory,
+                                          parting_acceleration(context, bundle, a, b), pose, a, b, impulse),
+                            bundle.row);
                     } else {
                         store_row(Type::prepare(context.step, parameters, memory, pose, a, b, impulse),
                                   bundle.row);
                     }
                 } else {
-                    store_row(Type::prepare(context.step, parameters, memory, a, b, impulse), bundle.row);
+                    store_row(Type::prepare(context.step, parameters, memory,
+                                            parting_acceleration(context, bundle, a, b), a, b, impulse),
+                              bundle.row);
                 }
                 store_row(impulse, bundle.impulse);
             });

@@ -31,8 +31,9 @@ TEST_P(Extremes, KeepWithinTheirBoundsUnderEveryMethod)
 
 TEST_P(Extremes, HaveTheSameFiguresOnEveryInstructionSet)
 {
-    if (std::string_view(extreme().name) == "an hour without weight")
-        GTEST_SKIP() << "the same step 216,000 times";
+    for (const std::string_view longest : {"an hour without weight", "10,000 bounces with restitution 1"}) {
+        if (extreme().name == longest) GTEST_SKIP() << "the same step hundreds of thousands of times";
+    }
     for (const ExtremeWay way : {ExtremeWay::soft_step, ExtremeWay::exact_joints, ExtremeWay::projection}) {
         const double scalar = extreme().figure({way, {.isa = Isa::scalar}});
         for (const Isa isa : available_isas())

@@ -244,6 +244,45 @@ TEST(Contact, HeadOnImpactLeavesWithRestitution)
     }
 }
 
+TEST(Contact, ABallThatBouncesKeepsItsEnergy)
+{
+    // Energy: a ball that falls at v rises at e v, whatever pulls it down, and wherever in a step it lands; up to what half
+    // a substep makes of the difference, (1 - e) g h / 2.
+    for (const BodyModel model : {BodyModel::particle, BodyModel::planar, BodyModel::rigid}) {
+        for (const bool by_gravity : {true, false}) {
+            for (const float e : {1.0F, 0.9F}) {
+                Scene scene;
+                const BodyId body = scene.add_body(ball(model, {0, 1.5, 0}, 2));
+                if (!by_gravity) scene.set_force(body, {0, -20, 0}, {});
+                SolverSettings settings = soft(by_gravity ? Vec3<float>{0, -10, 0} : Vec3<float>{});
+                settings.restitution_threshold = 0.1F;
+                Solver solver(settings);
+                double expected = std::sqrt(20.0);   // m/s, from 1 m
+                constexpr double half = 10.0 / 480;  // g h / 2
+                bool fell = true;
+                for (int step = 0, bounces = 0; bounces < 10; ++step) {
+                    ASSERT_LT(step, 2000);
+                    Contact contact = on_floor(scene, body, 0.5);
+                    contact.restitution = e;
+                    solver.step(scene, 1.0F / 60, {&contact, 1});
+                    const BodyState state = scene.state(body);
+                    // As it would be at the floor; at the middle of a substep, as they are integrated.
+                    const double speed = static_cast<double>(state.linear_velocity.y) - half;
+                    const bool falls = speed < 0;
+                    if (!fell && falls) {
+                        ++bounces;
+                        expected = static_cast<double>(e) * expected - (1 - static_cast<double>(e)) * half;
+                        EXPECT_NEAR(std::sqrt(speed * speed + 20 * (state.position.y - 0.5)), expected,
+                                    1e-3 * expected)
+                            << "bounce " << bounces << ", e = " << e;
+                    }
+                    fell = falls;
+                }
+            }
+        }
+    }
+}
+
 TEST(Friction, ASlidingBlockStopsWhereItsEnergyIsSpent)
 {
     // v^2 / (2 mu g); a particle cannot roll.

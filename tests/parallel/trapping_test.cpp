@@ -116,6 +116,42 @@ TEST_P(Trapping, NothingIsRaisedByFiguresInLockstep)
     }
 }
 
+TEST(Environment, OfTheHostIsLeftAsFound)
+{
+    // Of <cfenv>, and of x86 whatever the control bits of MXCSR say: flushing of denormals, masks, rounding.
+    const auto control = [] {
+#ifdef __x86_64__
+        return __builtin_ia32_stmxcsr() & 0xffc0U;
+#else
+        return 0U;
+#endif
+    };
+    const auto steps_leave_it = [&] {
+        for (const Way& way : ways()) {
+            for (const Isa isa : available_isas()) {
+                MixedScene mixed;
+                Solver solver(way.settings, {.threads = 2, .isa = isa});
+                const int rounding = std::fegetround();
+                const unsigned before = control();
+                for (int step = 0; step < 3; ++step) solver.step(mixed.scene, dt, mixed.contacts());
+                EXPECT_EQ(std::fegetround(), rounding) << way.name;
+                EXPECT_EQ(control(), before) << way.name << " on " << isa_name(isa);
+            }
+        }
+    };
+    for (const int rounding : {FE_TONEAREST, FE_UPWARD, FE_TOWARDZERO}) {
+        std::fesetround(rounding);
+        steps_leave_it();
+    }
+    std::fesetround(FE_TONEAREST);
+#ifdef __x86_64__
+    const unsigned usual = __builtin_ia32_stmxcsr();
+    __builtin_ia32_ldmxcsr(usual | 0x8040U);  // denormals are nothing, read and written
+    steps_leave_it();
+    __builtin_ia32_ldmxcsr(usual);
+#endif
+}
+
 INSTANTIATE_TEST_SUITE_P(Isas, Trapping, ::testing::ValuesIn(available_isas()),
                          [](const auto& isa) { return std::string(isa_name(isa.param)); });
 

@@ -14,15 +14,16 @@
 //   template <class Real, BodyKind a, BodyKind b>
 //   struct Row, SubstepRow, Impulse;                            per joint in lanes: of a step; of a substep; accumulated
 //
-// What a sweep reads of a row beside the substep row is its member in_sweep; a row without one gives it nothing.
+// What a sweep reads of a row is its member in_sweep; of a row without one all, or nothing if there is a substep row.
 // All five are nothing but Reals, in line: Row<float> is one joint, Row<Lanes> a bundle. The functions are written once
 // for every Real and every pair, with the operations of scalar.h, lane_body.h and wrench.h, and never branch on a lane:
 //
 //   validate(definition, bodies)          throws InvalidInput: field, value, valid range (joint_checks.h)
 //   parameters(definition)                in the units of the lanes
 //   prepare(step, parameters, memory, pose, a, b, impulse&) -> Row      once a step
+//                                         with has_restitution: (..., memory, acceleration, pose, ...), of b beside a
 //   warm_start<Real>(step, row, substep&, impulse, a&, b&)              J and K^-1 where the bodies are now; J^T lambda
-//   solve<relax, Real>(step, row.in_sweep, substep, impulse&, a&, b&)   one sweep; relax: without bias, rigid
+//   solve<relax, Real>(step, swept row, substep, impulse&, a&, b&)   one sweep; relax: without bias, rigid
 //   project<Real>(step, row, substep, a&, b&)                           positions along J^T
 //   remember<Real>(row, impulse) -> Memory                              or (row, impulse, a, b), to look at the bodies
 //   report(definition, memory, state_a, state_b, inverse_substep)       force, torque, error, state, in double

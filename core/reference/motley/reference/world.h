@@ -74,7 +74,9 @@ class World {
     [[nodiscard]] double separation(const ContactRow& row) const;
     void project_contacts(const Joint& joint, const SolverSettings& settings);
     void project(std::vector<ContactRow>& contacts, const SolverSettings& settings);
-    void finish_contacts(std::vector<ContactRow>& contacts, const SolverSettings& settings);
+    [[nodiscard]] double opening_speed(int a, int b, const Jacobian& normal, double approach, double now,
+                                       double restitution, double h, const SolverSettings& settings) const;
+    void finish_contacts(std::vector<ContactRow>& contacts, double h, const SolverSettings& settings);
     void end_step(double h);
     double solve_substep_directly(double h, const SolverSettings& settings,
                                   std::vector<ContactRow>& contacts);

@@ -12,6 +12,7 @@
 #include "motley/core/constraints/contact_definition.h"
 #include "motley/core/lever.h"
 #include "motley/core/limit.h"
+#include "motley/core/restitution.h"
 #include "motley/core/step_constants.h"
 
 namespace motley {
@@ -55,24 +56,27 @@ struct ContactKind {
         [[no_unique_address]] Lever<Real, a, is_planar_pair(a, b)> lever_a;
         [[no_unique_address]] Lever<Real, b, is_planar_pair(a, b)> lever_b;
     };
-    template <class Real, BodyKind a, BodyKind b>
-    struct PlanarRow {
+    template <class Real>
+    struct PlanarSweep {
         Vec2<Real> normal, arm_a, arm_b;
         Real separation;
         Real normal_mass, tangent_mass;
-        Real friction, restitution, approach;
+        Real friction;
     };
-    template <class Real, BodyKind a, BodyKind b>
-    struct SpatialRow {
+    template <class Real>
+    struct SpatialSweep {
         Vec3<Real> normal, arm_a, arm_b;
         Real separation;
         Real normal_mass;
         Vec3<Real> tangent;  ///< the first; the second is normal x tangent
         Sym2<Real> tangent_mass;
-        Real friction, restitution, approach;
+        Real friction;
     };
     template <class Real, BodyKind a, BodyKind b>
-    using FullRow = std::conditional_t<is_planar_pair(a, b), PlanarRow<Real, a, b>, SpatialRow<Real, a, b>>;
+    struct FullRow {
+        std::conditional_t<is_planar_pair(a, b), PlanarSweep<Real>, SpatialSweep<Real>> in_sweep;
+        Real restitution, approach, acceleration;  ///< see opening_speed
+    };
     template <class Real, BodyKind a, BodyKind b>
     using Row = std::conditional_t<smooth, SmoothRow<Real, a, b>, FullRow<Real, a, b>>;
 
@@ -111,13 +115,15 @@ struct ContactKind {
         return {-n.y, n.x};
     }
 
+    /// `acceleration`: of b beside a, by forces alone.
     template <class Real, class A, class B>
     static auto prepare(const StepConstants& step, const ContactParameters<Real>& contact,
-                        const ContactMemory<Real>& memory, const A& a, const B& b,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+                        const ContactMemory<Real>& memory, const Vec3<Real>& acceleration, const A& a,
+                        const B& b, Impulse<Real, A::kind, B::kind>& impulse)
     {
         using Vector = PairVector<Real, A::kind, B::kind>;
-        Row<Real, A::kind, B::kind> row;
+        Row<Real, A::kind, B::kind> whole;
+        auto& row = in_sweep(whole);
         row.normal = to_space<Vector>(contact.normal);
         row.separation = contact.separation;
         const Vector arm_a = to_space<Vector>(contact.arm_a), arm_b = to_space<Vector>(contact.arm_b);
@@ -132,8 +138,9 @@ struct ContactKind {
             row.arm_a = arm_a;
             row.arm_b = arm_b;
             row.friction = contact.friction;
-            row.restitution = contact.restitution;
-            row.approach = speed<Real>(row, a, b);
+            whole.restitution = contact.restitution;
+            whole.approach = speed<Real>(row, a, b);
+            whole.acceleration = dot(contact.normal, acceleration);
             impulse.peak = Real(0);
             if constexpr (is_planar_pair(A::kind, B::kind)) {
                 const Vector t = tangent_of(row.normal);
@@ -147,7 +154,7 @@ struct ContactKind {
                 impulse.tangent = {warm * dot(row.tangent, memory.friction), warm * dot(t2, memory.friction)};
             }
         }
-        return row;
+        return whole;
     }
 
     template <class Real, class Row, class Impulse>
@@ -166,8 +173,10 @@ struct ContactKind {
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep&, const Impulse& impulse, A& a, B& b)
+    static void warm_start(const StepConstants&, const Row& whole, Substep&, const Impulse& impulse, A& a,
+                           B& b)
     {
+        const auto& row = in_sweep(whole);
         if constexpr (smooth) {
             push<Real>(row, impulse.normal, a, b);
         } else {
@@ -190,21 +199,24 @@ struct ContactKind {
         push_normal<Real>(row, wanted, impulse, a, b);
     }
 
-    /// After the substeps: contacts that were hit fast enough leave with e times the speed of approach.
+    /// After the substeps: contacts that were hit fast enough leave with e times the speed of the impact.
     template <class Real, class Row, class Impulse, class A, class B>
-    static void restitute(const StepConstants& step, const Row& row, Impulse& impulse, A& a, B& b)
+    static void restitute(const StepConstants& step, const Row& whole, Impulse& impulse, A& a, B& b)
     {
-        const Real wanted =
-            impulse.normal - row.normal_mass * (speed<Real>(row, a, b) + row.restitution * row.approach);
-        const auto bounces = (row.restitution > Real(0)) &
-                             (row.approach < Real(-step.restitution_threshold)) & (impulse.peak > Real(0));
+        const auto& row = in_sweep(whole);
+        const Real opening = opening_speed(step, whole.restitution, whole.approach, whole.acceleration,
+                                           row.separation, row.separation + moved<Real>(row, a, b));
+        const Real wanted = impulse.normal - row.normal_mass * (speed<Real>(row, a, b) - opening);
+        const auto bounces = (whole.restitution > Real(0)) &
+                             (whole.approach < Real(-step.restitution_threshold)) & (impulse.peak > Real(0));
         push_normal<Real>(row, select(bounces, maximum(wanted, Real(0)), impulse.normal), impulse, a, b);
     }
 
     /// A position solve: moves the bodies along J^T until `projection_rate` of the penetration is gone.
     template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants& step, const Row& row, const Substep&, A& a, B& b)
+    static void project(const StepConstants& step, const Row& whole, const Substep&, A& a, B& b)
     {
+        const auto& row = in_sweep(whole);
         const Real deep = minimum(row.separation + moved<Real>(row, a, b) + Real(step.slop), Real(0));
         const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep start must not explode
         const Real lambda = -(row.normal_mass * Real(step.projection_rate) * error);
@@ -223,12 +235,22 @@ struct ContactKind {
     {
         ContactMemory<Real> memory{impulse.normal, {Real(0), Real(0), Real(0)}};
         if constexpr (!smooth) {
-            memory.friction = to_three(total_impulse<Real>(row, impulse) - impulse.normal * row.normal);
+            const auto& swept = in_sweep(row);
+            memory.friction = to_three(total_impulse<Real>(swept, impulse) - impulse.normal * swept.normal);
         }
         return memory;
     }
 
   private:
+    template <class Row>
+    static auto& in_sweep(Row& row)
+    {
+        if constexpr (smooth) {
+            return row;
+        } else {
+            return row.in_sweep;
+        }
+    }
     // The normal's row of J: times v, times the displacement of the step, and M^-1 J^T lambda.
     template <class Real, class Row, class A, class B>
     static Real speed(const Row& row, const A& a, const B& b)

@@ -19,6 +19,7 @@
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_report.h"
 #include "motley/core/limit.h"
+#include "motley/core/restitution.h"
 #include "motley/core/wrench.h"
 
 namespace motley {
@@ -50,17 +51,21 @@ struct Manifold {
         Real torsion;              ///< N m s
         Vec2<Real> rolling;        ///< N m s about the tangents
     };
-    template <class Real, BodyKind a, BodyKind b>
-    struct Row {
+    template <class Real>
+    struct Sweep {
         Vec3<Real> normal, tangent;  ///< world; the second tangent is normal x tangent
         Vec3<Real> lever_a[most_points], lever_b[most_points];
-        Real mass[most_points], separation[most_points], approach[most_points];
+        Real mass[most_points], separation[most_points];
         Vec3<Real> arm_a, arm_b;  ///< to where the friction acts
         Sym2<Real> friction_mass, rolling_mass;
         Real torsion_mass;
-        Real friction, torsional_bound, rolling_radius,
-            restitution;           ///< torsional_bound: friction times radius
-        Vec2<Real> surface_speed;  ///< along the tangents
+        Real friction, torsional_bound, rolling_radius;  ///< torsional_bound: friction times radius
+        Vec2<Real> surface_speed;                        ///< along the tangents
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        Sweep<Real> in_sweep;
+        Real restitution, acceleration, approach[most_points];  ///< see opening_speed
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -113,10 +118,12 @@ struct Manifold {
 
     template <class Real, class A, class B>
     static auto prepare(const StepConstants& step, const Parameters<Real>& contact,
-                        const Memory<Real>& memory, const JointPose<Real, A::kind, B::kind>& pose, const A& a,
-                        const B& b, Impulse<Real, A::kind, B::kind>& impulse)
+                        const Memory<Real>& memory, const Vec3<Real>& acceleration,
+                        const JointPose<Real, A::kind, B::kind>& pose, const A& a, const B& b,
+                        Impulse<Real, A::kind, B::kind>& impulse)
     {
-        Row<Real, A::kind, B::kind> row;
+        Row<Real, A::kind, B::kind> whole;
+        Sweep<Real>& row = whole.in_sweep;
         const Vec3<Real> tangent = across(contact.normal);
         const Vec3<Real> n = row.normal = to_world(pose.orientation_a, contact.normal);
         const Vec3<Real> t = row.tangent = to_world(pose.orientation_a, tangent), t2 = cross(n, t);
@@ -124,7 +131,8 @@ struct Manifold {
         row.friction = contact.friction;
         row.torsional_bound = contact.friction * contact.torsional_radius;
         row.rolling_radius = contact.rolling_radius;
-        row.restitution = contact.restitution;
+        whole.restitution = contact.restitution;
+        whole.acceleration = dot(n, acceleration);
         row.surface_speed = {dot(tangent, u), dot(cross(contact.normal, tangent), u)};
 
         const Real warm(step.warm_start_scale);
@@ -143,7 +151,7 @@ struct Manifold {
                            dot(row.lever_b[i], over_inertia(b, row.lever_b[i]));
             const auto is_there = contact.point_count > Real(static_cast<float>(i) + 0.5F);
             row.mass[i] = select(is_there & (k > linear_floor), inverse_or_zero(k), Real(0));
-            row.approach[i] = speed_at<Real>(row, i, a, b);
+            whole.approach[i] = speed_at<Real>(row, i, a, b);
             impulse.normal[i] = select(is_there, warm * memory.normal[i], Real(0));
             impulse.peak[i] = Real(0);
             mean = mean + select(is_there, Real(1), Real(0)) * arm_b;
@@ -167,12 +175,14 @@ struct Manifold {
         impulse.friction = warm * memory.friction;
         impulse.torsion = warm * memory.torsion;
         impulse.rolling = warm * memory.rolling;
-        return row;
+        return whole;
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep&, const Impulse& impulse, A& a, B& b)
+    static void warm_start(const StepConstants&, const Row& whole, Substep&, const Impulse& impulse, A& a,
+                           B& b)
     {
+        const auto& row = whole.in_sweep;
         push_friction(row, impulse.friction, a, b);
         push_turn(row, impulse.torsion, impulse.rolling, a, b);
         for (int i = 0; i < most_points; ++i) push_point(row, i, impulse.normal[i], a, b);
@@ -184,29 +194,32 @@ struct Manifold {
         solve_friction<Real>(row, impulse, a, b);
         constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
         const Softness& soft = on_fixed ? step.static_contact : step.contact;
-        const Vec3<Real> moved = to_three(b.delta) - to_three(a.delta), turn_a = turned_by(a),
-                         turn_b = turned_by(b);
         for (int i = 0; i < most_points; ++i) {
-            const Real separation = row.separation[i] + dot(row.normal, moved) + dot(row.lever_b[i], turn_b) -
-                                    dot(row.lever_a[i], turn_a);
-            const Real wanted = contact_impulse<relax>(step, soft, separation, speed_at<Real>(row, i, a, b),
-                                                       row.mass[i], impulse.normal[i]);
+            const Real wanted =
+                contact_impulse<relax>(step, soft, separation_at<Real>(row, i, a, b),
+                                       speed_at<Real>(row, i, a, b), row.mass[i], impulse.normal[i]);
             push_point(row, i, wanted - impulse.normal[i], a, b);
             impulse.normal[i] = wanted;
             impulse.peak[i] = maximum(impulse.peak[i], wanted);
         }
     }
 
-    /// After the substeps: points that were hit fast enough leave with e times the speed of approach. A face that comes
+    /// After the substeps: points that were hit fast enough leave with e times the speed of the impact. A face that comes
     /// down flat hits with all its points at once, which takes a few rounds.
     template <class Real, class Row, class Impulse, class A, class B>
-    static void restitute(const StepConstants& step, const Row& row, Impulse& impulse, A& a, B& b)
+    static void restitute(const StepConstants& step, const Row& whole, Impulse& impulse, A& a, B& b)
     {
+        const auto& row = whole.in_sweep;
+        Real opening[most_points];
+        for (int i = 0; i < most_points; ++i) {
+            opening[i] = opening_speed(step, whole.restitution, whole.approach[i], whole.acceleration,
+                                       row.separation[i], separation_at<Real>(row, i, a, b));
+        }
         for (int i = 0; i < restitution_rounds * most_points; ++i) {
             const int point = i % most_points;
-            const Real leaving = speed_at<Real>(row, point, a, b) + row.restitution * row.approach[point];
-            const auto bounces = (row.restitution > Real(0)) &
-                                 (row.approach[point] < Real(-step.restitution_threshold)) &
+            const Real leaving = speed_at<Real>(row, point, a, b) - opening[point];
+            const auto bounces = (whole.restitution > Real(0)) &
+                                 (whole.approach[point] < Real(-step.restitution_threshold)) &
                                  (impulse.peak[point] > Real(0));
             const Real& held = impulse.normal[point];
             const Real wanted = select(bounces, maximum(held - row.mass[point] * leaving, Real(0)), held);
@@ -218,15 +231,13 @@ struct Manifold {
     /// Moves the bodies until `projection_rate` of every point's penetration is gone: the points one by one, each knowing
     /// what those before it have moved.
     template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants& step, const Row& row, const Substep&, A& a, B& b)
+    static void project(const StepConstants& step, const Row& whole, const Substep&, A& a, B& b)
     {
-        const Vec3<Real> moved = to_three(b.delta) - to_three(a.delta), turn_a = turned_by(a),
-                         turn_b = turned_by(b);
+        const auto& row = whole.in_sweep;
         const Vec3<Real> none{Real(0), Real(0), Real(0)};
         Vec3<Real> linear = none, angular_a = none, angular_b = none;
         for (int i = 0; i < most_points; ++i) {
-            const Real separation = row.separation[i] + dot(row.normal, moved) + dot(row.lever_b[i], turn_b) -
-                                    dot(row.lever_a[i], turn_a);
+            const Real separation = separation_at<Real>(row, i, a, b);
             const Real deep = maximum(minimum(separation + Real(step.slop), Real(0)), Real(-0.2F));
             const Real so_far = dot(row.normal, over_mass(a, linear) + over_mass(b, linear)) +
                                 dot(row.lever_a[i], over_inertia(a, angular_a)) +
@@ -311,6 +322,12 @@ struct Manifold {
                 select(y_moves, select(x_moves, both.yy, inverse_or_zero(yy)), zero)};
     }
 
+    template <class Real, class Row, class A, class B>
+    static Real separation_at(const Row& row, int i, const A& a, const B& b)
+    {
+        return row.separation[i] + dot(row.normal, to_three(b.delta) - to_three(a.delta)) +
+               dot(row.lever_b[i], turned_by(b)) - dot(row.lever_a[i], turned_by(a));
+    }
     template <class Real, class Row, class A, class B>
     static Real speed_at(const Row& row, int i, const A& a, const B& b)
     {

@@ -1,0 +1,138 @@
+// Colours and blocks of a scene that changes from step to step: RapidCheck says who comes, goes and touches whom. What must
+// hold of any colouring is counted over what the layout kept and what it made anew.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <set>
+
+#include "layout.h"
+
+namespace motley {
+namespace {
+
+/// Everything of a step up to the blocks, by one thread, as Solver::step does it.
+void lay_out(Layout& layout, Scene& scene, std::span<const Contact> contacts)
+{
+    layout.intake.begin(scene, contacts.size());
+    layout.intake.take(scene, contacts, 0, contacts.size());
+    RC_ASSERT(layout.intake.error(scene, contacts).empty());
+    ContactCache& cache = scene.contact_cache();
+    layout.begin(scene, contacts.size(), {});
+    layout.colour_contacts(scene.bodies(), cache.staged());
+    for (std::int64_t part = 0; part < cache.survey_parts(); ++part) cache.survey(part);
+    for (std::int64_t chunk = 0; chunk < layout.contacts.chunk_count(); ++chunk) layout.contacts.count(chunk);
+    RC_ASSERT(cache.admit());
+    layout.contacts.open(layout.kernels());
+    for (std::int64_t chunk = 0; chunk < layout.contacts.chunk_count(); ++chunk) layout.contacts.fill(chunk);
+    layout.cut(scene, contacts, false);
+    cache.accept_staged();
+}
+
+/// No two constraints of one colour share a body that can move; returns how many constraints there are.
+std::size_t check_colours(const Layout& layout)
+{
+    std::set<std::pair<int, std::uint64_t>> taken;  // colour, and kind and row of a body
+    std::set<std::pair<int, std::int32_t>> seen;    // type, and constraint
+    for (const std::span<const Placement> placements :
+         {layout.joint_placements(), layout.contact_placements()}) {
+        for (const Placement& placement : placements) {
+            if (placement.is_gap()) continue;
+            RC_ASSERT(seen.insert({placement.type, placement.constraint}).second);
+            RC_ASSERT(placement.colour <= overflow_colour);
+            if (placement.colour == overflow_colour) continue;
+            for (const BodyRow body : {placement.a, placement.b}) {
+                if (body.kind() == BodyKind::fixed) continue;
+                const auto who =
+                    static_cast<std::uint64_t>(body.kind()) << 32 | static_cast<std::uint32_t>(body.row());
+                RC_ASSERT(taken.insert({placement.colour, who}).second);
+            }
+        }
+    }
+    return seen.size();
+}
+
+/// Lanes of blocks: each constraint in one, and padding on the null rows, which nothing may write.
+std::size_t check_blocks(const Layout& layout)
+{
+    std::set<std::pair<int, std::int32_t>> seen;
+    for (const auto& chunks : layout.sweeps()) {
+        for (const SweepChunk& chunk : chunks) {
+            for (std::int32_t k = chunk.begin; k < chunk.end; ++k) {
+                for (int lane = 0; lane < chunk.streams.counts[k]; ++lane)
+                    RC_ASSERT(seen.insert({chunk.type, chunk.streams.constraints[k].lane[lane]}).second);
+                for (int lane = chunk.streams.counts[k]; lane < block_lanes; ++lane) {
+                    RC_ASSERT(chunk.streams.bodies[k].a[lane] == 0);
+                    RC_ASSERT(chunk.streams.bodies[k].b[lane] == 0);
+                }
+            }
+        }
+    }
+    return seen.size();
+}
+
+RC_GTEST_PROP(Recolouring, IsValidWhateverCameAndWentSinceTheLastStep,
+              (const std::vector<std::vector<std::uint16_t>>& steps))
+{
+    Scene scene;
+    Layout layout(kernel_table(Isa::scalar));
+    std::vector<BodyId> bodies;
+    std::vector<ConstraintId> joints;
+    const auto add_body = [&](unsigned what) {
+        BodyDefinition body;
+        body.model = static_cast<BodyModel>(what % 3);
+        if (what % 7 == 0) body.motion = BodyMotion::static_body;
+        bodies.push_back(scene.add_body(body));
+    };
+    for (unsigned i = 0; i < 12; ++i) add_body(i);
+    for (const auto& step : steps) {
+        std::vector<Contact> contacts;
+        std::set<std::uint64_t> keys;
+        for (const std::uint16_t word : step) {
+            const unsigned what = word;
+            const BodyId a = bodies[what / 8 % bodies.size()], b = bodies[what / 128 % bodies.size()];
+            const bool moves =
+                scene.motion(a) == BodyMotion::dynamic_body || scene.motion(b) == BodyMotion::dynamic_body;
+            switch (what % 8) {
+                case 0:
+                    add_body(what / 8);
+                    break;
+                case 1: {
+                    if (bodies.size() <= 4) break;
+                    scene.remove_body(a);
+                    std::erase(bodies, a);
+                    std::erase_if(joints, [&](ConstraintId joint) { return !scene.is_alive(joint); });
+                    // Nor is anybody in contact with what is gone.
+                    std::erase_if(contacts, [&](const Contact& contact) {
+                        return contact.body_a == a || contact.body_b == a;
+                    });
+                    break;
+                }
+                case 2:
+                    if (a != b && moves)
+                        joints.push_back(scene.add_joint(BallSocketDefinition{a, b, {}, {}}));
+                    break;
+                case 3:
+                    if (joints.empty()) break;
+                    scene.remove_joint(joints[what / 8 % joints.size()]);
+                    joints.erase(joints.begin() + static_cast<std::ptrdiff_t>(what / 8 % joints.size()));
+                    break;
+                default:
+                    // The key is of the pair, so that it comes again in later steps.
+                    if (a == b || !moves || !keys.insert(std::uint64_t{a.slot} << 32 | b.slot).second) break;
+                    Contact contact;
+                    contact.body_a = a;
+                    contact.body_b = b;
+                    contact.key = std::uint64_t{a.slot} << 32 | b.slot;
+                    contact.normal = {1, 0, 0};
+                    contact.friction = what % 2 == 0 ? 0.5F : 0;
+                    contacts.push_back(contact);
+            }
+        }
+        lay_out(layout, scene, contacts);
+        RC_ASSERT(check_colours(layout) == contacts.size() + scene.joint_count());
+        RC_ASSERT(check_blocks(layout) == contacts.size() + scene.joint_count());
+    }
+}
+
+}  // namespace
+}  // namespace motley
