@@ -8,10 +8,9 @@ namespace {
 constexpr double margin = 0.02;  ///< m: gaps up to this are contacts to come
 constexpr float friction = 0.6F;
 
-Vec3<double> corner_of(const RigBody& box, int corner)
+double part(const Vec3<double>& v, int axis)
 {
-    const Vec3<double> h = convert<double>(box.half_extents);
-    return {(corner & 1) != 0 ? h.x : -h.x, (corner & 2) != 0 ? h.y : -h.y, (corner & 4) != 0 ? h.z : -h.z};
+    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
 }  // namespace
@@ -47,31 +46,31 @@ void BoxContacts::add(BodyId a, BodyId b, Vec3<double> centre_a, Vec3<double> ce
 }
 
 /// Corners of `box` in the nearest face of `other`.
-void BoxContacts::corners_in_face(std::span<const RigPose> poses, int box, int other, std::uint64_t key)
+void BoxContacts::corners_in_face(int box, int other, std::uint64_t key)
 {
     const auto i = static_cast<std::size_t>(box), j = static_cast<std::size_t>(other);
+    const Placed &mine = placed_[i], &face = placed_[j];
     const Vec3<double> h = convert<double>(rig_.bodies[j].half_extents);
-    const Quat<double>& turn = poses[j].orientation;
+    const auto local = [&](const Vec3<double>& point) {
+        const Vec3<double> from = point - face.centre;
+        return Vec3<double>{dot(face.axes[0], from), dot(face.axes[1], from), dot(face.axes[2], from)};
+    };
     // The face that looks most towards the box.
-    const Vec3<double> towards = rotate(conjugate(turn), poses[i].position - poses[j].position);
+    const Vec3<double> towards = local(mine.centre);
     const Vec3<double> reach{std::abs(towards.x) / h.x, std::abs(towards.y) / h.y, std::abs(towards.z) / h.z};
     const int axis = reach.y >= reach.x && reach.y >= reach.z ? 1 : reach.x >= reach.z ? 0 : 2;
-    const auto part = [](const Vec3<double>& v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; };
     const double side = part(towards, axis) > 0 ? 1 : -1;
-    Vec3<double> face{};
-    (axis == 0 ? face.x : axis == 1 ? face.y : face.z) = side;
-    const Vec3<float> normal = convert<float>(rotate(turn, face));
+    const Vec3<double> out = side * face.axes[axis];
     for (int corner = 0; corner < 8; ++corner) {
-        const Vec3<double> world =
-            poses[i].position + rotate(poses[i].orientation, corner_of(rig_.bodies[i], corner));
-        const Vec3<double> local = rotate(conjugate(turn), world - poses[j].position);
-        const double separation = side * part(local, axis) - part(h, axis);
+        const Vec3<double>& world = mine.corners[corner];
+        const double separation = dot(out, world - face.centre) - part(h, axis);
         if (separation > margin || separation < -0.25) continue;
+        const Vec3<double> at = local(world);
         bool inside = true;
         for (int k = 0; k < 3; ++k)
-            inside = inside && (k == axis || std::abs(part(local, k)) <= part(h, k) + 1e-4);
+            inside = inside && (k == axis || std::abs(part(at, k)) <= part(h, k) + 1e-4);
         if (inside)
-            add(bodies_[j], bodies_[i], poses[j].position, poses[i].position, world, normal, separation,
+            add(bodies_[j], bodies_[i], face.centre, mine.centre, world, convert<float>(out), separation,
                 key * 8 + static_cast<std::uint64_t>(corner));
     }
 }
@@ -79,23 +78,31 @@ void BoxContacts::corners_in_face(std::span<const RigPose> poses, int box, int o
 std::span<const Contact> BoxContacts::find(std::span<const RigPose> poses, BodyId ground)
 {
     contacts_.clear();
+    placed_.resize(poses.size());
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        if (poses[i].position.y > 2) continue;
+        Placed& box = placed_[i];
+        const Vec3<double> h = convert<double>(rig_.bodies[i].half_extents);
+        box.centre = poses[i].position;
+        box.axes[0] = rotate(poses[i].orientation, Vec3<double>{1, 0, 0});
+        box.axes[1] = rotate(poses[i].orientation, Vec3<double>{0, 1, 0});
+        box.axes[2] = cross(box.axes[0], box.axes[1]);
         for (int corner = 0; corner < 8; ++corner) {
-            const Vec3<double> world =
-                poses[i].position + rotate(poses[i].orientation, corner_of(rig_.bodies[i], corner));
-            if (world.y > margin) continue;
-            add(ground, bodies_[i], {0, 0, 0}, poses[i].position, world, {0, 1, 0}, world.y,
-                i * 8 + static_cast<std::uint64_t>(corner));
+            const auto along = [&](int k) {
+                return ((corner >> k & 1) != 0 ? part(h, k) : -part(h, k)) * box.axes[k];
+            };
+            box.corners[corner] = box.centre + along(0) + along(1) + along(2);
+            if (box.corners[corner].y > margin) continue;
+            add(ground, bodies_[i], {0, 0, 0}, box.centre, box.corners[corner], {0, 1, 0},
+                box.corners[corner].y, i * 8 + static_cast<std::uint64_t>(corner));
         }
     }
     const std::uint64_t floor_keys = poses.size();
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
         // A box whose four corners lie in the face needs none of the other's.
         const std::size_t before = contacts_.size();
-        corners_in_face(poses, pairs_[p].second, pairs_[p].first, floor_keys + 2 * p);
+        corners_in_face(pairs_[p].second, pairs_[p].first, floor_keys + 2 * p);
         if (contacts_.size() - before < 4)
-            corners_in_face(poses, pairs_[p].first, pairs_[p].second, floor_keys + 2 * p + 1);
+            corners_in_face(pairs_[p].first, pairs_[p].second, floor_keys + 2 * p + 1);
     }
     return contacts_;
 }

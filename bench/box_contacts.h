@@ -19,14 +19,21 @@ class BoxContacts {
     std::span<const Contact> find(std::span<const RigPose> poses, BodyId ground);
 
   private:
+    /// A box in the world.
+    struct Placed {
+        Vec3<double> centre;
+        Vec3<double> axes[3];
+        Vec3<double> corners[8];
+    };
     const Rig& rig_;
     std::vector<BodyId> bodies_;
     std::vector<std::pair<int, int>> pairs_;
+    std::vector<Placed> placed_;
     std::vector<Contact> contacts_;
 
     void add(BodyId a, BodyId b, Vec3<double> centre_a, Vec3<double> centre_b, Vec3<double> point,
              Vec3<float> normal, double separation, std::uint64_t key);
-    void corners_in_face(std::span<const RigPose> poses, int box, int other, std::uint64_t key);
+    void corners_in_face(int box, int other, std::uint64_t key);
 };
 
 }  // namespace motley::bench

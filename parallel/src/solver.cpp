@@ -108,6 +108,7 @@ struct Solver::Impl {
     void solve_touched_trees(float rate);
     [[nodiscard]] FigureUse use_of_figures() const;
     [[nodiscard]] float exact_rate() const;
+    [[nodiscard]] bool anything_bounces(const Scene& scene) const;
     void move_bodies(Scene& scene, StepReport& report);
     void solve_substeps(Scene& scene, StepReport& report);
     void solve_directly(Scene& scene, float dt, std::span<const Contact> contacts, StepReport& report);
@@ -248,7 +249,7 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
         if (soft) report.sweeps += iterate(&ConstraintKernels::relax, settings.relaxations);
         clock.charge(Stage::relax);
     }
-    sweep(&ConstraintKernels::restitute);
+    if (anything_bounces(scene)) sweep(&ConstraintKernels::restitute);
     clock.charge(Stage::restitution);
     transfer(&ConstraintKernels::store);
     finish(scene, report);
@@ -275,6 +276,16 @@ void Solver::Impl::finish(Scene& scene, StepReport& report)
     scene.last_substep = layout.context.step.substep;
     scene.find_break_events();
     layout.report(report);
+}
+
+bool Solver::Impl::anything_bounces(const Scene& scene) const
+{
+    bool any = layout.intake.bounces();
+    scene.joints().for_each([&](const auto& store, int) {
+        using Type = typename std::remove_cvref_t<decltype(store)>::Type;
+        if constexpr (Type::has_restitution) any = any || store.size() > 0;
+    });
+    return any;
 }
 
 std::string Solver::Impl::take_in(Scene& scene, std::span<const Contact> contacts)

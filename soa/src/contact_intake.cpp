@@ -61,6 +61,7 @@ void ContactIntake::begin(Scene& scene, std::size_t count)
     }
     scene.contact_cache().begin(count);
     first_bad_.store(none, std::memory_order_relaxed);
+    bounces_.store(false, std::memory_order_relaxed);
 }
 
 void ContactIntake::mark_bad(std::size_t index)
@@ -112,6 +113,7 @@ void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::s
         missed_count = 0;
     };
     std::uint32_t cursor = static_cast<std::uint32_t>(first);
+    bool bounces = false;
     for (auto i = static_cast<std::uint32_t>(first); i < last; ++i) {
         const Contact& contact = contacts[i];
         // Contacts lie in line, their bodies anywhere.
@@ -125,6 +127,7 @@ void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::s
             mark_bad(i);
             continue;
         }
+        bounces = bounces || contact.restitution > 0;
         ContactList::Entry& entry = cache.staged().entries[i];
         entry.key = contact.key;
         entry.body_a = fingerprint(contact.body_a);
@@ -139,6 +142,7 @@ void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::s
         if (missed_count == missed.size() || i == first) look_up(cursor);
     }
     look_up(cursor);
+    if (bounces) bounces_.store(true, std::memory_order_relaxed);
 }
 
 namespace {

@@ -22,6 +22,8 @@ class ContactIntake {
     /// Empty when every contact is good; else what is wrong with the first bad one. Serial.
     [[nodiscard]] std::string error(const Scene& scene, std::span<const Contact> contacts) const;
 
+    /// Whether one of the contacts taken in gives anything back.
+    [[nodiscard]] bool bounces() const { return bounces_.load(std::memory_order_relaxed); }
     /// What is wrong when a key came twice. Serial.
     [[nodiscard]] static std::string repeated_key(std::span<const Contact> contacts);
 
@@ -32,6 +34,7 @@ class ContactIntake {
   private:
     static constexpr std::size_t none = SIZE_MAX;
     std::atomic<std::size_t> first_bad_{none};
+    std::atomic<bool> bounces_{false};
 
     void mark_bad(std::size_t index);
     static bool place(const BodyStore& bodies, const Contact& contact, Placement& placement);

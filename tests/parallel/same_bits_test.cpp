@@ -30,10 +30,10 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 16392575632900585837ULL},
-            {"baumgarte", iterative, 6675914774472871739ULL},
-            {"no drift correction", none, 12983324377581379828ULL},
-            {"projection", projection, 10848292192859563670ULL}};
+    return {{"soft_step", soft, 2218196899776445562ULL},
+            {"baumgarte", iterative, 7997178501063230347ULL},
+            {"no drift correction", none, 11728129743368175195ULL},
+            {"projection", projection, 17022005366489918825ULL}};
 }
 
 /// The state's hash after every step.
@@ -89,8 +89,8 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {3842356917013956081ULL, 1179002540891619901ULL, 4461666572413314782ULL,
-                                    10607002868402382003ULL};
+    const std::uint64_t golden[] = {5073103864582079079ULL, 2022760154458728256ULL, 13159146825016809075ULL,
+                                    12161038183569429741ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});
