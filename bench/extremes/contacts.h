@@ -1,9 +1,8 @@
-// Extremes: contacts under loads, on edges and on slopes.
+// Extremes: contacts under loads, with friction of any size, and twice over.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "trial.h"
 

@@ -1,4 +1,4 @@
-// The soak in small: a town of sixty for ten seconds, by one and by two threads.
+// The soak in small: a town of sixty for fifty seconds of its own, by one and by two threads.
 #include "soak.h"
 
 #include <gtest/gtest.h>
