@@ -69,8 +69,14 @@ class Town {
         // The town fills and empties by a fifth, so that what holds memory does so as well.
         const double tide = 0.9 + 0.1 * std::sin(static_cast<double>(counted.steps) / 2000);
         const auto wanted = static_cast<std::size_t>(tide * static_cast<double>(wanted_));
-        for (int i = 0; i < 8 && people_.agents.size() < wanted; ++i) join(somewhere());
-        while (people_.agents.size() > wanted || random_.uniform() < 0.1) leave(anybody());
+        for (int i = 0; i < 8 && people_.agents.size() < wanted; ++i) {
+            add_person(somewhere());
+            ++counted.joined;
+        }
+        while (people_.agents.size() > wanted || random_.uniform() < 0.1) {
+            remove_person(anybody());
+            ++counted.left;
+        }
         if (figures_.size() < most_figures && random_.uniform() < 0.05) fall(anybody());
         if (!figures_.empty() && random_.uniform() < 0.03) strike();
         while (!figures_.empty() && figures_.front().age >= days_down) rise();
@@ -116,19 +122,17 @@ class Town {
         return static_cast<std::size_t>(random_.uniform() * static_cast<double>(people_.agents.size()));
     }
 
-    void join(Vec2<double> at)
+    void add_person(Vec2<double> at)
     {
         Agent agent;
         agent.radius = static_cast<float>(0.20 + 0.02 * random_.symmetric());
         agent.goal = somewhere();
         people_.add(scene, agent, at);
-        ++counted.joined;
     }
-    void leave(std::size_t who)
+    void remove_person(std::size_t who)
     {
         bury(people_.agents[who].body);
         people_.remove(scene, who);
-        ++counted.left;
     }
     void bury(BodyId body)
     {
@@ -140,8 +144,7 @@ class Town {
     void fall(std::size_t who)
     {
         const BodyState from = scene.state(people_.agents[who].body);
-        bury(people_.agents[who].body);
-        people_.remove(scene, who);
+        remove_person(who);
         Figure figure;
         const auto add = [&](Vec3<double> offset, float mass, float radius) {
             BodyDefinition body;
@@ -189,8 +192,7 @@ class Town {
         const Vec3<double> at = scene.state(figure.bodies.front()).position;
         scene.remove_bodies(figure.bodies);
         for (const BodyId body : figure.bodies) bury(body);
-        join({std::clamp(at.x, 0.3, side_ - 0.3), std::clamp(at.y, 0.3, side_ - 0.3)});
-        --counted.joined;
+        add_person({std::clamp(at.x, 0.3, side_ - 0.3), std::clamp(at.y, 0.3, side_ - 0.3)});
         ++counted.risen;
     }
     void strike()
@@ -340,7 +342,7 @@ SoakResult soak(const SoakOptions& options)
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / fmt::format("motley-soak-{}.scene", getpid());
     Town one(options, 1), two(options, 2);
-    SoakResult seen;
+    SoakResult& result = one.counted;
     const Progress progress(options);
     double said = 0;
     while (progress.share(one.counted.steps) < 1) {
@@ -349,18 +351,18 @@ SoakResult soak(const SoakOptions& options)
         if (failure.empty() && one.scene.state_hash() != two.scene.state_hash())
             failure = "one and two threads differ";
         if (!failure.empty()) {
-            seen.failure = fmt::format("step {}: {}", one.counted.steps, failure);
+            result.failure = fmt::format("step {}: {}", one.counted.steps, failure);
             break;
         }
         if (one.counted.steps % save_every == 0) {
             save_scene(one.scene, file);
             two.scene = load_scene(file);
-            ++seen.restored;
+            ++result.restored;
         }
         if (one.counted.steps % 100 != 0) continue;
         const double share = progress.share(one.counted.steps), memory = memory_now();
-        if (share > 0.25 && share < 0.5) seen.memory_before = std::max(seen.memory_before, memory);
-        if (share > 0.75) seen.memory_after = std::max(seen.memory_after, memory);
+        if (share > 0.25 && share < 0.5) result.memory_before = std::max(result.memory_before, memory);
+        if (share > 0.75) result.memory_after = std::max(result.memory_after, memory);
         if (options.progress && progress.seconds() > said + 1) {
             said = progress.seconds();
             fmt::print(stderr, "\r{:3.0f} %, {} steps, {} bodies, {:.1f} MB ", 100 * share, one.counted.steps,
@@ -370,11 +372,6 @@ SoakResult soak(const SoakOptions& options)
     }
     std::filesystem::remove(file);
     if (options.progress) fmt::print(stderr, "\r{:60}\r", "");
-    SoakResult result = one.counted;
-    result.restored = seen.restored;
-    result.memory_before = seen.memory_before;
-    result.memory_after = seen.memory_after;
-    result.failure = seen.failure;
     if (result.failure.empty() && result.memory_before > 0 &&
         result.memory_after > 1.01 * result.memory_before + 2)
         result.failure =
