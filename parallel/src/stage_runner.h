@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "float_environment.h"
 #include "motley/parallel/executor.h"
 
 namespace motley {
@@ -18,17 +19,20 @@ class StageRunner {
   public:
     explicit StageRunner(Executor* executor);
 
-    /// Calls `body()` on this thread with the executor's other threads standing by for run().
+    /// Calls `body()` on this thread with the executor's other threads standing by for run(), all of them in the
+    /// floating-point environment of a step.
     template <class Body>
     void with_workers(const Body& body)
     {
         if (workers_ == 1) {
+            const StepFloats floats;
             body();
             return;
         }
         open();
         // Two words captured: small enough that std::function does not allocate.
         executor_->run(workers_, [this, &body](int worker) {
+            const StepFloats floats;
             if (worker != 0) {
                 work(worker);
                 return;

@@ -152,6 +152,63 @@ TEST(Environment, OfTheHostIsLeftAsFound)
 #endif
 }
 
+/// Sixty steps of every kind of contact and joint, the host rounding as it likes meanwhile.
+std::uint64_t hash_with_rounding(int rounding, const Way& way, const SolverOptions& options)
+{
+    MixedScene mixed;
+    Solver solver(way.settings, options);
+    for (int step = 0; step < 60; ++step) {
+        const std::vector<Contact> contacts = mixed.contacts();
+        std::fesetround(rounding);
+        solver.step(mixed.scene, dt, contacts);
+        std::fesetround(FE_TONEAREST);
+    }
+    return mixed.scene.state_hash();
+}
+
+TEST(Environment, OfAStepIsTheSameWhateverTheHosts)
+{
+    for (const Way& way : ways()) {
+        for (const int threads : {1, 2}) {
+            const SolverOptions options{.threads = threads};
+            const std::uint64_t nearest = hash_with_rounding(FE_TONEAREST, way, options);
+            EXPECT_EQ(hash_with_rounding(FE_UPWARD, way, options), nearest) << way.name;
+            EXPECT_EQ(hash_with_rounding(FE_TOWARDZERO, way, options), nearest) << way.name;
+        }
+    }
+}
+
+#if defined(__x86_64__) || defined(__aarch64__)
+TEST(Environment, OfAStepTakesDenormalsForNothing)
+{
+    constexpr float denormal = 1e-40F;
+    for (const Isa isa : available_isas()) {
+        for (const int threads : {1, 2}) {
+            Scene scene;
+            std::vector<BodyId> bodies;
+            // More than one thread's share of rows.
+            for (int i = 0; i < 10000; ++i) {
+                BodyDefinition body;
+                body.position = {2.0 * i, 0, 0};
+                body.linear_velocity = {denormal, 0, -denormal};
+                body.angular_velocity = {0, denormal, 0};
+                bodies.push_back(scene.add_body(body));
+            }
+            SolverSettings weightless;
+            weightless.gravity = {};
+            Solver solver(weightless, {.threads = threads, .isa = isa});
+            solver.step(scene, dt);
+            for (const BodyId body : bodies) {
+                const BodyState state = scene.state(body);
+                const Vec3<float> v = state.linear_velocity, w = state.angular_velocity;
+                for (const float speed : {v.x, v.y, v.z, w.x, w.y, w.z})
+                    ASSERT_EQ(speed, 0) << isa_name(isa) << ", " << threads;
+            }
+        }
+    }
+}
+#endif
+
 INSTANTIATE_TEST_SUITE_P(Isas, Trapping, ::testing::ValuesIn(available_isas()),
                          [](const auto& isa) { return std::string(isa_name(isa.param)); });
 
