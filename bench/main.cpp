@@ -297,6 +297,8 @@ int main(int count, char** arguments)
     CLI::App* compare_app =
         app.add_subcommand("compare", "the same, with every peer that is installed, in one run");
     compare_command.declare(*compare_app);
+    compare_app->add_option("--peer", compare_command.options.only_peer,
+                            "of peers only what has this text in its name and setting, as in 'Bullet'");
     ReportOptions report;
     CLI::App* report_app = app.add_subcommand(
         "report", "sweep every scene beside the peers, price every feature, and write one page with charts");

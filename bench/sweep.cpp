@@ -250,7 +250,10 @@ SweepResult sweep(const std::string& scene, const DialGrid& grid, const SweepOpt
         }
         for (const Peer& peer : others) {
             for (const PeerSetting& setting : peer.settings) {
-                std::function<Run()> run = subject.candidate(peer, setting);
+                const bool is_wanted =
+                    fmt::format("{} {}", peer.name, setting.label).find(options.only_peer) !=
+                    std::string::npos;
+                std::function<Run()> run = is_wanted ? subject.candidate(peer, setting) : nullptr;
                 if (!run) continue;
                 Candidate candidate{{}, std::move(run)};
                 candidate.point.engine = peer.name;

@@ -42,6 +42,7 @@ struct SweepOptions {
     int rounds = 3;           ///< each point is run so often, in turn with the others
     std::uint64_t seed = 12345;
     bool with_peers = false;
+    std::string only_peer{};  ///< of peers only what has this in its name and setting; empty: all
     bool progress = true;
 };
 

@@ -70,6 +70,7 @@ BatchSet::BatchSet(int first_type, int last_type)
       pools_(static_cast<std::size_t>((last_type - first_type) * body_kind_count * body_kind_count)),
       totals_(pools_.size() * colours)
 {
+    used_.reserve(pools_.size());
 }
 
 std::span<std::int32_t> BatchSet::places_of(std::int64_t chunk)
@@ -131,7 +132,10 @@ void BatchSet::open(const KernelTable& kernels)
         pool.make_room(blocks);
     }
     if (has_overflow) place_overflow();
+    used_.clear();
     for (std::size_t p = 0; p < pools_.size(); ++p) {
+        if (pools_[p].block_count() == 0) continue;
+        used_.push_back(p);
         const ConstraintKernels& own = kernels.constraints[static_cast<std::size_t>(first_class_) + p];
         const std::size_t lanes = static_cast<std::size_t>(pools_[p].block_count()) * block_lanes;
         grow(pools_[p].rows, lanes * static_cast<std::size_t>(own.row_floats));
@@ -206,9 +210,8 @@ BlockStreams BatchSet::Pool::streams(bool tells_apart)
 void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweeps, TransferList& transfers)
 {
     std::int32_t tiles = 1;
-    for (std::size_t p = 0; p < pools_.size(); ++p) {
+    for (const std::size_t p : used_) {
         Pool& pool = pools_[p];
-        if (pool.block_count() == 0) continue;
         const int constraint_class = first_class_ + static_cast<int>(p);
         const ConstraintKernels& kernels = table.constraints[constraint_class];
         if (tells_apart) {
@@ -238,10 +241,10 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
     }
     for (std::int32_t tile = 0; tile < tiles; ++tile) {
         const auto first_part = static_cast<std::int32_t>(transfers.parts.size());
-        for (std::size_t p = 0; p < pools_.size(); ++p) {
+        for (const std::size_t p : used_) {
             Pool& pool = pools_[p];
             const int constraint_class = first_class_ + static_cast<int>(p);
-            for (std::size_t colour = 0; colour < colours && pool.block_count() > 0; ++colour) {
+            for (std::size_t colour = 0; colour < colours; ++colour) {
                 const std::int32_t first = pool.first_block[colour];
                 const std::int64_t blocks = pool.first_block[colour + 1] - first;
                 if (blocks == 0) continue;
@@ -264,9 +267,8 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
 BatchSet::Count BatchSet::count(const KernelTable& table) const
 {
     Count total;
-    for (std::size_t p = 0; p < pools_.size(); ++p) {
+    for (const std::size_t p : used_) {
         const Pool& pool = pools_[p];
-        if (pool.block_count() == 0) continue;
         std::int64_t constraints = 0;
         for (std::int32_t block = 0; block < pool.block_count(); ++block)
             constraints += pool.counts[static_cast<std::size_t>(block)];

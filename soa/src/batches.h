@@ -149,6 +149,8 @@ class BatchSet {
 
     int first_class_;
     std::vector<Pool> pools_;  ///< by class, from first_class_ on
+    std::vector<std::size_t>
+        used_;  ///< those with blocks: hundreds of empty ones are not looked at each step
     std::span<const Placement> placements_;
     /// For each chunk and then each class and colour: first how many, then which place of the colour comes next.
     std::vector<std::int32_t> places_;

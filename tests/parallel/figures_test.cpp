@@ -196,6 +196,53 @@ TEST(Figures, ACopyThatTouchesBreaksOrLeavesKeepsTheBitsOfOrdinarySweeps)
     }
 }
 
+/// Gears count turns from where bodies were when the step began to where they are when it ends.
+TEST(Figures, CopiesWithGearsKeepTheBitsOfOrdinarySweeps)
+{
+    for (const SolverSettings& settings : every_way()) {
+        Scene lockstep;
+        const std::vector<BodyId> ids = add_puppets(lockstep, 16);
+        for (std::size_t copy = 0; copy < 16; ++copy) {
+            GearDefinition gear{ids[copy * puppet_bodies + 3], ids[copy * puppet_bodies + 4]};
+            gear.ratio = 0.5F;
+            lockstep.add_joint(gear);
+        }
+        Scene ordinary = lockstep;
+        Solver solver(settings), reference(swept(settings));
+        for (int step = 0; step < 120; ++step) {
+            const StepReport report = solver.step(lockstep, frame_time);
+            ASSERT_EQ(report.joints_in_lockstep, (puppet_joints + 1) * 16) << report.error;
+            reference.step(ordinary, frame_time);
+            ASSERT_EQ(lockstep.state_hash(), ordinary.state_hash()) << "step " << step;
+        }
+    }
+}
+
+TEST(Figures, ACopyThatComesToGriefIsFrozenAndTheOthersKeepTheirBits)
+{
+    for (const SolverSettings& settings : every_way()) {
+        Scene lockstep;
+        const std::vector<BodyId> ids = add_puppets(lockstep, 16);
+        Scene ordinary = lockstep;
+        Solver solver(settings), reference(swept(settings));
+        std::int64_t contained = 0;
+        for (int step = 0; step < 60; ++step) {
+            if (step == 20) {
+                const BodyId hand = ids[7 * puppet_bodies + 4];
+                for (Scene* scene : {&lockstep, &ordinary}) scene->set_force(hand, {3e38F, 3e38F, 0}, {});
+            }
+            const StepReport report = solver.step(lockstep, frame_time);
+            ASSERT_EQ(report.status, StepStatus::done) << report.error;
+            if (step == 20) EXPECT_EQ(report.joints_in_lockstep, puppet_joints * 16);
+            const StepReport expected = reference.step(ordinary, frame_time);
+            ASSERT_EQ(report.bodies_contained, expected.bodies_contained) << "step " << step;
+            ASSERT_EQ(lockstep.state_hash(), ordinary.state_hash()) << "step " << step;
+            contained += report.bodies_contained;
+        }
+        EXPECT_GT(contained, 0);
+    }
+}
+
 TEST(Figures, AnAssemblyIsAllOrNothing)
 {
     Scene scene;

@@ -33,7 +33,7 @@ std::vector<Way> ways()
     return {{"soft_step", soft, 2218196899776445562ULL},
             {"baumgarte", iterative, 7997178501063230347ULL},
             {"no drift correction", none, 11728129743368175195ULL},
-            {"projection", projection, 17022005366489918825ULL}};
+            {"projection", projection, 3697358828096961300ULL}};
 }
 
 /// The state's hash after every step.
@@ -89,8 +89,8 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {5073103864582079079ULL, 2022760154458728256ULL, 13159146825016809075ULL,
-                                    12161038183569429741ULL};
+    const std::uint64_t golden[] = {6806883733091745205ULL, 2630704882665883419ULL, 5945671955822757556ULL,
+                                    16516728064466341087ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});
