@@ -20,6 +20,8 @@ class Engine {
     virtual ~Engine() = default;
     /// Moves on by `dt` seconds. What is timed. Throws std::runtime_error when the engine gives up.
     virtual void step(float dt) = 0;
+    /// What the solver took of the last step; negative where an engine does not tell it from the rest.
+    [[nodiscard]] virtual double solver_seconds() const { return -1; }
     /// Where the bodies are, in the order of the rig.
     virtual void read(std::span<RigPose> poses) const = 0;
 };

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "anchors.h"
 #include "demo.h"
 #include "extremes.h"
 #include "page.h"
@@ -294,6 +295,13 @@ int main(int count, char** arguments)
     CLI::App* sweep_app =
         app.add_subcommand("sweep", "run a scene under a grid of dials: time a step against error");
     sweep_command.declare(*sweep_app);
+    AnchorOptions anchor_options;
+    CLI::App* anchors_app = app.add_subcommand(
+        "anchors", "the nets, chains and ragdolls that other engines were measured on, as ratios to them");
+    anchors_app->add_option("--rounds", anchor_options.rounds, "runs of each, in turn")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    anchors_app->add_flag("--quick", anchor_options.quick, "small scenes, for a look");
     CLI::App* compare_app =
         app.add_subcommand("compare", "the same, with every peer that is installed, in one run");
     compare_command.declare(*compare_app);
@@ -334,6 +342,10 @@ int main(int count, char** arguments)
         if (*record_app) return record();
         if (*replay_app) return replay_command([&] { app.parse(count, arguments); });
         if (*sweep_app) return sweep_command();
+        if (*anchors_app) {
+            fmt::print("{}", table_of(measure_anchors(anchor_options)));
+            return 0;
+        }
         if (*compare_app) return compare_command();
         if (*report_app) write_report(report);
         if (*demo_app) return run_demo(demo);

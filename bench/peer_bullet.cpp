@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 
 #include "engine.h"
@@ -22,13 +23,27 @@ btVector3 vector(const Vec3<float>& v)
     return vector(convert<double>(v));
 }
 
+/// Knows what its solver takes: the rest of a step is collision and islands.
+class TimedWorld final : public btDiscreteDynamicsWorld {
+  public:
+    using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
+    double solver_seconds = 0;
+
+  protected:
+    void solveConstraints(btContactSolverInfo& info) override
+    {
+        const auto began = std::chrono::steady_clock::now();
+        btDiscreteDynamicsWorld::solveConstraints(info);
+        solver_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    }
+};
+
 class BulletEngine final : public Engine {
   public:
     BulletEngine(const Rig& rig, const PeerSetting& setting) : substeps_(setting.substeps)
     {
         dispatcher_ = std::make_unique<btCollisionDispatcher>(&configuration_);
-        world_ = std::make_unique<btDiscreteDynamicsWorld>(dispatcher_.get(), &broadphase_, &solver_,
-                                                           &configuration_);
+        world_ = std::make_unique<TimedWorld>(dispatcher_.get(), &broadphase_, &solver_, &configuration_);
         world_->setGravity(vector(rig_gravity));
         world_->getSolverInfo().m_numIterations = setting.iterations;
         world_->getSolverInfo().m_erp = setting.erp;
@@ -62,10 +77,12 @@ class BulletEngine final : public Engine {
 
     void step(float dt) override
     {
+        world_->solver_seconds = 0;
         for (int i = 0; i < substeps_; ++i)
             world_->stepSimulation(dt / static_cast<float>(substeps_),
                                    0);  // 0: exactly one step of this length
     }
+    [[nodiscard]] double solver_seconds() const override { return world_->solver_seconds; }
     void read(std::span<RigPose> poses) const override
     {
         for (std::size_t i = 0; i < rig_bodies_.size(); ++i) {
@@ -81,7 +98,7 @@ class BulletEngine final : public Engine {
     btDbvtBroadphase broadphase_;
     btSequentialImpulseConstraintSolver solver_;
     std::unique_ptr<btCollisionDispatcher> dispatcher_;
-    std::unique_ptr<btDiscreteDynamicsWorld> world_;
+    std::unique_ptr<TimedWorld> world_;
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> joints_;

@@ -38,13 +38,15 @@ double median(std::vector<double> values)
 struct Run {
     double step_seconds = 0, error = 0, worst = 0;
     std::int64_t steps = 0;
-    std::string note;
+    std::string note{};
+    double solver_seconds = -1;
 };
 
 /// A point that is still to be measured.
 struct Candidate {
     SweepPoint point;
     std::function<Run()> run;
+    std::vector<double> solver_seconds{};  ///< of each round
 };
 
 struct RigTimes {
@@ -57,14 +59,17 @@ Run run_rig(const Rig& rig, Engine& engine, const RigTimes& times)
     const auto warm = static_cast<std::int64_t>(std::lround(times.warm_up * 60));
     const auto steps = static_cast<std::int64_t>(std::lround(times.seconds * 60));
     std::vector<RigPose> poses(rig.bodies.size());
-    std::vector<double> durations;
+    std::vector<double> durations, solver_durations;
     Run run;
     double squares = 0;
     int looks = 0;
     for (std::int64_t step = 1; step <= warm + steps; ++step) {
         const double began = now();
         engine.step(dt);
-        if (step > warm) durations.push_back(now() - began);
+        if (step > warm) {
+            durations.push_back(now() - began);
+            if (engine.solver_seconds() >= 0) solver_durations.push_back(engine.solver_seconds());
+        }
         if (step <= warm || (!rig.truth && step % steps_a_look != 0)) continue;
         engine.read(poses);
         double error = 0, worst = 0;
@@ -80,6 +85,7 @@ Run run_rig(const Rig& rig, Engine& engine, const RigTimes& times)
         ++looks;
     }
     run.step_seconds = median(durations);
+    if (!solver_durations.empty()) run.solver_seconds = median(solver_durations);
     run.steps = steps;
     run.error = std::sqrt(squares / std::max(1, looks));
     if (!std::isfinite(run.error) || run.error > 1e3) {
@@ -154,7 +160,7 @@ class CrowdSubject {
             const RunResult result = run_scene(entry_, run, quiet);
             const double error = result.error ? result.error->value : result.overlap_p99;
             const double worst = result.error ? error : result.overlap_max;
-            return Run{result.median_solver_seconds, error, worst, result.steps, {}};
+            return Run{result.median_solver_seconds, error, worst, result.steps};
         };
     }
 
@@ -189,6 +195,7 @@ void run_rounds(std::vector<Candidate>& candidates, const SweepOptions& options,
                            candidate.point.label);
             const Run run = candidate.run();
             candidate.point.step_seconds.push_back(run.step_seconds);
+            candidate.solver_seconds.push_back(run.solver_seconds);
             candidate.point.error = run.error;
             candidate.point.worst = run.worst;
             candidate.point.note = run.note;
@@ -197,6 +204,7 @@ void run_rounds(std::vector<Candidate>& candidates, const SweepOptions& options,
     }
     for (Candidate& candidate : candidates) {
         candidate.point.seconds = median(candidate.point.step_seconds);
+        candidate.point.solver_seconds = median(candidate.solver_seconds);
         result.points.push_back(std::move(candidate.point));
     }
     std::stable_sort(result.points.begin(), result.points.end(),

@@ -53,6 +53,7 @@ struct SweepPoint {
     std::optional<Dials> dials;        ///< of motley
     std::vector<double> step_seconds;  ///< median step of each round
     double seconds = 0;                ///< median of those
+    double solver_seconds = -1;        ///< of these the solver's, where a peer tells
     double error = 0;                  ///< in the scene's unit; infinite when it came apart
     double worst = 0;                  ///< the largest of what `error` is the mean of
     bool on_front = false;             ///< nobody is both faster and more exact
