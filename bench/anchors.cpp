@@ -99,7 +99,7 @@ std::string table_of(const std::vector<AnchorResult>& results)
     std::string text = fmt::format(
         "whole steps of motley beside Bullet's solver alone, run in turn, and beside what Box3D would take "
         "by its\n"
-        "ratio to Bullet; host load {:.2f}\n{:10} {:34} {:>9} {:>11} {:>9} {:>9}\n",
+        "ratio to Bullet on the net; host load {:.2f}\n{:10} {:34} {:>9} {:>11} {:>9} {:>9}\n",
         results.empty() ? 0 : results.front().host_load, "scene", "setting", "ms", "rms m", "x Bullet",
         "x Box3D");
     for (const AnchorResult& result : results) {
