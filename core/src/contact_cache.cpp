@@ -10,10 +10,9 @@ namespace motley {
 
 void KeyTable::reserve(std::size_t count)
 {
-    count = std::bit_ceil(count);
-    keys_.reserve(count);
-    free_.reserve(count);
-    const std::size_t wanted = 2 * count;
+    keys_.reserve(std::bit_ceil(count));
+    free_.reserve(std::bit_ceil(count));
+    const std::size_t wanted = std::bit_ceil(count + count / 4 + 1);
     if (buckets_.size() >= wanted) return;
     AlignedVector<std::uint64_t> wider(wanted);
     const int shift = 32 - std::countr_zero(wanted);
@@ -83,7 +82,7 @@ void ContactCache::begin(std::size_t count)
     list.count = count;
     if (list.entries.size() < count) {
         // Room to grow into, so that a crowd that keeps pressing together does not allocate at each new contact.
-        const std::size_t room = std::max<std::size_t>(64, count + count / 2);
+        const std::size_t room = std::max<std::size_t>(64, count + count / 4);
         list.entries.resize(room);
         list.tickets.resize(room);
         list.colours.resize(room);

@@ -18,7 +18,7 @@ constexpr std::size_t placements_per_chunk = 4096;
 template <class T>
 void grow(AlignedVector<T>& stream, std::size_t size)
 {
-    if (stream.size() < size) stream.resize(size + size / 2);
+    if (stream.size() < size) stream.resize(size + size / 4);
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ void BatchSet::begin(std::span<const Placement> placements)
 {
     placements_ = placements;
     const std::size_t wanted = static_cast<std::size_t>(chunk_count()) * pools_.size() * colours;
-    if (places_.size() < wanted) places_.resize(wanted + wanted / 2);
+    if (places_.size() < wanted) places_.resize(wanted + wanted / 4);
 }
 
 void BatchSet::count(std::int64_t chunk)

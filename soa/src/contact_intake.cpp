@@ -55,7 +55,7 @@ bool is_planar(BodyRow a, BodyRow b)
 void ContactIntake::begin(Scene& scene, std::size_t count)
 {
     if (placements.size() < count) {
-        const std::size_t room = count + count / 2;
+        const std::size_t room = count + count / 4;
         placements.resize(room);
         memory_index.resize(room);
     }

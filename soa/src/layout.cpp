@@ -22,7 +22,7 @@ void Layout::begin(Scene& scene, std::size_t contact_count, const FigureUse& use
         joint_version_ = scene.joints().version;
     }
     masks_.copy(joint_masks_, scene.bodies());
-    if (uncoloured_.size() < contact_count) uncoloured_.resize(contact_count + contact_count / 2);
+    if (uncoloured_.size() < contact_count) uncoloured_.resize(contact_count + contact_count / 4);
     contacts.begin({intake.placements.data(), contact_count});
 }
 

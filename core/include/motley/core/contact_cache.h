@@ -31,7 +31,7 @@ struct ContactList {
 };
 
 /// Numbers for keys: a key gets a ticket, a small number of its own, for as long as it is known. Open addressing,
-/// linear probing, at most half full.
+/// linear probing, at most four fifths full, and that only while all keys of two lists are known.
 class KeyTable {
   public:
     static constexpr std::uint32_t none = 0xFFFFFFFFU;
