@@ -3,14 +3,19 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "motley/motley.h"
+#include "random.h"
 #include "stage_runner.h"
 #include "tie_net.h"
+#include "transfer.h"
 
 namespace motley::bench {
 namespace {
@@ -76,6 +81,40 @@ void hand_over(benchmark::State& state)
     });
 }
 
+#ifdef MOTLEY_HAS_TRANSFER
+/// Velocity rows of rigid bodies into lanes, in an order without pattern, of as many bodies as stay in a second level cache.
+void transfer(benchmark::State& state, SumRows sum)
+{
+    constexpr std::int64_t rows = 16384;
+    std::vector<float> velocity(8 * rows, 1.0F);
+    std::vector<std::int32_t> index(rows);
+    std::iota(index.begin(), index.end(), 0);
+    Random random(12345);
+    for (std::size_t i = index.size() - 1; i > 0; --i)
+        std::swap(index[i],
+                  index[static_cast<std::size_t>((random.symmetric() + 1) / 2 * static_cast<double>(i))]);
+    for (auto _ : state) benchmark::DoNotOptimize(sum(velocity.data(), index.data(), rows));
+    using benchmark::Counter;
+    state.counters["s_per_constraint"] =
+        Counter(static_cast<double>(rows * state.iterations()), Counter::kIsRate | Counter::kInvert);
+}
+
+void enter_transfers()
+{
+    const auto enter = [](Isa isa, SumRows by_transpose, SumRows by_gather) {
+        const std::vector<Isa> here = available_isas();
+        if (std::find(here.begin(), here.end(), isa) == here.end()) return;
+        for (const auto& [way, sum] :
+             {std::pair{"transpose", by_transpose}, std::pair{"gather", by_gather}}) {
+            benchmark::RegisterBenchmark(fmt::format("rows_to_lanes/{}/{}", way, isa_name(isa)).c_str(),
+                                         [sum = sum](benchmark::State& s) { transfer(s, sum); });
+        }
+    };
+    enter(Isa::avx2, sum_by_transpose_avx2, sum_by_gather_avx2);
+    enter(Isa::avx512, sum_by_transpose_avx512, sum_by_gather_avx512);
+}
+#endif
+
 void enter_all()
 {
     // 4,000 constraints stay in a second level cache, 320,000 do not.
@@ -101,6 +140,9 @@ void enter_all()
         }
     }
     benchmark::RegisterBenchmark("hand_over/threads:2", hand_over);
+#ifdef MOTLEY_HAS_TRANSFER
+    enter_transfers();
+#endif
 }
 
 }  // namespace

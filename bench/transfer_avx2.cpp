@@ -1,0 +1,34 @@
+// Transpose and gather with AVX2.
+#include "kernel_prelude.h"
+#include "transfer.h"
+
+#include <xsimd/xsimd.hpp>
+
+namespace motley {
+namespace {
+
+using Arch = xsimd::avx2;
+#include "lanes.h"
+#include "quads_avx.h"
+
+/// A field of eight rows of eight floats.
+Lanes gather_field(const float* field, const std::int32_t* index)
+{
+    const __m256i rows = _mm256_slli_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(index)), 3);
+    return Lanes(_mm256_i32gather_ps(field, rows, 4));
+}
+
+#include "transfer_loop.h"
+
+}  // namespace
+
+float bench::sum_by_transpose_avx2(const float* rows, const std::int32_t* index, std::int64_t count)
+{
+    return sum_by_transpose(rows, index, count);
+}
+float bench::sum_by_gather_avx2(const float* rows, const std::int32_t* index, std::int64_t count)
+{
+    return sum_by_gather(rows, index, count);
+}
+
+}  // namespace motley

@@ -1,0 +1,34 @@
+// Transpose and gather with AVX-512.
+#include "kernel_prelude.h"
+#include "transfer.h"
+
+#include <xsimd/xsimd.hpp>
+
+namespace motley {
+namespace {
+
+using Arch = xsimd::avx512f;
+#include "lanes.h"
+#include "quads_avx512.h"
+
+/// A field of sixteen rows of eight floats.
+Lanes gather_field(const float* field, const std::int32_t* index)
+{
+    const __m512i rows = _mm512_slli_epi32(_mm512_loadu_si512(index), 3);
+    return Lanes(_mm512_i32gather_ps(rows, field, 4));
+}
+
+#include "transfer_loop.h"
+
+}  // namespace
+
+float bench::sum_by_transpose_avx512(const float* rows, const std::int32_t* index, std::int64_t count)
+{
+    return sum_by_transpose(rows, index, count);
+}
+float bench::sum_by_gather_avx512(const float* rows, const std::int32_t* index, std::int64_t count)
+{
+    return sum_by_gather(rows, index, count);
+}
+
+}  // namespace motley
