@@ -129,6 +129,10 @@ void enter_all()
                     ->Unit(benchmark::kMicrosecond);
             }
         }
+    }
+    // And a million contacts.
+    const std::pair<const char*, int> colour_sizes[] = {sizes[0], sizes[1], {"million", 708}};
+    for (const auto& [place, side] : colour_sizes) {
         for (const int threads : {1, 2}) {
             for (const bool again : {false, true}) {
                 benchmark::RegisterBenchmark(
