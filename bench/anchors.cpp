@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "rig.h"
 #include "runner.h"
 #include "sweep.h"
 
@@ -67,8 +66,6 @@ AnchorResult measure(const Anchor& anchor, const AnchorOptions& asked)
     options.with_peers = true;
     options.only_peer = bullet_setting;
     const SweepResult measured = sweep(anchor.scene, grid_of(*dials), options);
-    result.bodies = measured.bodies;
-    result.joints = measured.joints;
     for (const int threads : {1, 2}) {
         for (const SweepPoint& point : measured.points) {
             if (point.dials && point.dials->solver.threads == threads)

@@ -1,7 +1,6 @@
 // The joint scenes that other engines have been measured on, with the same numbers: how many times faster, at no more error.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,7 +15,6 @@ struct AnchorOptions {
 /// One scene: the fastest settings of motley that part no more than Box3D does, on one thread and on two.
 struct AnchorResult {
     std::string scene;
-    std::int64_t bodies = 0, joints = 0;
     double most_error = 0;  ///< of Box3D, m rms
     struct Line {
         std::string label;

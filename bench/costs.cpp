@@ -31,11 +31,8 @@ double median(std::vector<double> values)
 Sample run_net(const std::string& name, float moved_at)
 {
     constexpr int side = 100;
-    const std::vector<NamedTie> ties = every_tie();
-    const auto tie =
-        std::find_if(ties.begin(), ties.end(), [&](const NamedTie& t) { return t.name == name; });
-    if (tie == ties.end()) throw std::runtime_error(name + ": no such kernel");
-    const auto net = make_net(tie->tie, tie->model, side);
+    const NamedTie tie = tie_called(name);
+    const auto net = make_net(tie.tie, tie.model, side);
     for (std::size_t i = 0; moved_at > 0 && i < net->bodies.size(); ++i)
         net->scene.set_velocity(net->bodies[i], {i % 2 == 0 ? moved_at : -moved_at, 0, 0}, {});
     Solver solver;

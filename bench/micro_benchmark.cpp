@@ -91,8 +91,7 @@ void transfer(benchmark::State& state, SumRows sum)
     std::iota(index.begin(), index.end(), 0);
     Random random(12345);
     for (std::size_t i = index.size() - 1; i > 0; --i)
-        std::swap(index[i],
-                  index[static_cast<std::size_t>((random.symmetric() + 1) / 2 * static_cast<double>(i))]);
+        std::swap(index[i], index[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
     for (auto _ : state) benchmark::DoNotOptimize(sum(velocity.data(), index.data(), rows));
     using benchmark::Counter;
     state.counters["s_per_constraint"] =
@@ -101,17 +100,19 @@ void transfer(benchmark::State& state, SumRows sum)
 
 void enter_transfers()
 {
-    const auto enter = [](Isa isa, SumRows by_transpose, SumRows by_gather) {
+    const auto enter = [](Isa isa, Transfers (*transfers)()) {
         const std::vector<Isa> here = available_isas();
         if (std::find(here.begin(), here.end(), isa) == here.end()) return;
+        // Code of that instruction set, called only where there is one.
+        const Transfers ways = transfers();
         for (const auto& [way, sum] :
-             {std::pair{"transpose", by_transpose}, std::pair{"gather", by_gather}}) {
+             {std::pair{"transpose", ways.by_transpose}, std::pair{"gather", ways.by_gather}}) {
             benchmark::RegisterBenchmark(fmt::format("rows_to_lanes/{}/{}", way, isa_name(isa)).c_str(),
                                          [sum = sum](benchmark::State& s) { transfer(s, sum); });
         }
     };
-    enter(Isa::avx2, sum_by_transpose_avx2, sum_by_gather_avx2);
-    enter(Isa::avx512, sum_by_transpose_avx512, sum_by_gather_avx512);
+    enter(Isa::avx2, transfers_avx2);
+    enter(Isa::avx512, transfers_avx512);
 }
 #endif
 

@@ -1,11 +1,13 @@
 // One kernel and nothing else, for tools that count instructions: bench/count-instructions.
 //   motley_one_kernel                        names the kernels
 //   motley_one_kernel KERNEL ISA SWEEPS      one step of so many sweeps; prints how many constraints there are
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <string_view>
+#include <exception>
+#include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "motley/motley.h"
 #include "tie_net.h"
@@ -13,33 +15,19 @@
 namespace motley::bench {
 namespace {
 
-/// A net small enough for a simulated processor: seven colours' blocks and some padding.
+/// A net small enough for a simulated processor: some blocks of each colour, and padding.
 constexpr int side = 24;
 
-int run(std::string_view kernel, std::string_view isa_text, std::string_view sweeps_text)
+void run(const std::string& kernel, const std::string& isa, int sweeps)
 {
-    const std::vector<NamedTie> ties = every_tie();
-    const auto tie =
-        std::find_if(ties.begin(), ties.end(), [&](const NamedTie& t) { return t.name == kernel; });
-    const std::vector<Isa> isas = available_isas();
-    const auto isa = std::find_if(isas.begin(), isas.end(), [&](Isa i) { return isa_name(i) == isa_text; });
-    int sweeps = 0;
-    const auto [end, error] =
-        std::from_chars(sweeps_text.data(), sweeps_text.data() + sweeps_text.size(), sweeps);
-    const bool is_number = error == std::errc() && end == sweeps_text.data() + sweeps_text.size();
-    if (tie == ties.end() || isa == isas.end() || !is_number || sweeps < 1 || sweeps > 10000) {
-        fmt::print(stderr,
-                   "motley_one_kernel: '{}' is a kernel: {}; '{}' is an instruction set here: {}; "
-                   "'{}' is 1 to 10000 sweeps: {}\n",
-                   kernel, tie != ties.end(), isa_text, isa != isas.end(), sweeps_text,
-                   is_number && sweeps >= 1 && sweeps <= 10000);
-        return 2;
-    }
-    const auto net = make_net(tie->tie, tie->model, side);
-    Solver solver({.substeps = 1, .iterations = sweeps, .relaxations = 0}, {.isa = *isa});
+    const NamedTie tie = tie_called(kernel);
+    const std::optional<Isa> wanted = isa_from_name(isa);
+    if (!wanted) throw std::runtime_error(isa + ": no such instruction set");
+    Solver solver({.substeps = 1, .iterations = sweeps, .relaxations = 0}, {.isa = wanted});
+    const auto net = make_net(tie.tie, tie.model, side);
     const StepReport report = solver.step(net->scene, 1e-3F, net->contacts);
+    if (report.status != StepStatus::done) throw std::runtime_error(report.error);
     fmt::print("{}\n", report.contacts + report.joints);
-    return report.status == StepStatus::done ? 0 : 1;
 }
 
 }  // namespace
@@ -47,13 +35,23 @@ int run(std::string_view kernel, std::string_view isa_text, std::string_view swe
 
 int main(int argc, char** argv)
 {
-    if (argc == 1) {
-        for (const auto& tie : motley::bench::every_tie()) fmt::print("{}\n", tie.name);
-        return 0;
-    }
-    if (argc != 4) {
-        fmt::print(stderr, "usage: motley_one_kernel [KERNEL ISA SWEEPS]\n");
+    CLI::App app{
+        "one step of one kernel, for tools that count instructions; without arguments: names the kernels"};
+    std::string kernel, isa = "scalar";
+    int sweeps = 1;
+    app.add_option("kernel", kernel, "what holds the net together, as in hinge/rigid");
+    app.add_option("isa", isa, "scalar, sse2, avx2, avx512 or neon")->capture_default_str();
+    app.add_option("sweeps", sweeps, "of solve")->check(CLI::Range(1, 10000))->capture_default_str();
+    CLI11_PARSE(app, argc, argv);
+    try {
+        if (kernel.empty()) {
+            for (const auto& tie : motley::bench::every_tie()) fmt::print("{}\n", tie.name);
+        } else {
+            motley::bench::run(kernel, isa, sweeps);
+        }
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "motley_one_kernel: {}\n", error.what());
         return 2;
     }
-    return motley::bench::run(argv[1], argv[2], argv[3]);
+    return 0;
 }

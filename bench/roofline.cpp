@@ -180,11 +180,8 @@ MachineLimits measure_machine(Isa isa)
 
 KernelFigure measure_kernel(const std::string& name, Isa isa, bool in_cache)
 {
-    const std::vector<NamedTie> ties = every_tie();
-    const auto tie =
-        std::find_if(ties.begin(), ties.end(), [&](const NamedTie& t) { return t.name == name; });
-    if (tie == ties.end()) throw std::runtime_error(name + ": no such kernel");
-    const auto net = make_net(tie->tie, tie->model, in_cache ? side_in_cache : side_streaming);
+    const NamedTie tie = tie_called(name);
+    const auto net = make_net(tie.tie, tie.model, in_cache ? side_in_cache : side_streaming);
     constexpr int iterations = 32;
     Solver solver({.substeps = 1, .iterations = iterations, .relaxations = 0}, {.isa = isa});
     std::vector<double> seconds;

@@ -1,6 +1,10 @@
 // Nets of one kind of constraint, every kind in turn.
 #include "tie_net.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 namespace motley::bench {
 
 TieNet::TieNet(int side, BodyModel model)
@@ -158,6 +162,14 @@ std::vector<NamedTie> every_tie()
                  m.torsional_radius = 0.1F;
                  m.rolling_radius = 0.01F;
              })}};
+}
+
+NamedTie tie_called(std::string_view name)
+{
+    for (NamedTie& tie : every_tie()) {
+        if (tie.name == name) return tie;
+    }
+    throw std::runtime_error(fmt::format("{}: no such kernel", name));
 }
 
 }  // namespace motley::bench

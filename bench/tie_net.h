@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "motley/motley.h"
@@ -33,6 +34,8 @@ struct NamedTie {
 };
 /// Every constraint, some between several models of bodies.
 std::vector<NamedTie> every_tie();
+/// The one of this name. Throws std::runtime_error where there is none.
+NamedTie tie_called(std::string_view name);
 
 /// A side whose net stays in a second level cache, and one whose does not.
 inline constexpr int side_in_cache = 45, side_streaming = 400;

@@ -9,9 +9,11 @@ namespace motley::bench {
 /// Sums all fields of rows of eight floats (a rigid body's velocity) in the order of an index; `count` a multiple of 16.
 using SumRows = float (*)(const float* rows, const std::int32_t* index, std::int64_t count);
 
-float sum_by_transpose_avx2(const float* rows, const std::int32_t* index, std::int64_t count);
-float sum_by_gather_avx2(const float* rows, const std::int32_t* index, std::int64_t count);
-float sum_by_transpose_avx512(const float* rows, const std::int32_t* index, std::int64_t count);
-float sum_by_gather_avx512(const float* rows, const std::int32_t* index, std::int64_t count);
+/// The two ways of an instruction set.
+struct Transfers {
+    SumRows by_transpose, by_gather;
+};
+Transfers transfers_avx2();
+Transfers transfers_avx512();
 
 }  // namespace motley::bench

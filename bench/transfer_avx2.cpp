@@ -22,13 +22,9 @@ Lanes gather_field(const float* field, const std::int32_t* index)
 
 }  // namespace
 
-float bench::sum_by_transpose_avx2(const float* rows, const std::int32_t* index, std::int64_t count)
+bench::Transfers bench::transfers_avx2()
 {
-    return sum_by_transpose(rows, index, count);
-}
-float bench::sum_by_gather_avx2(const float* rows, const std::int32_t* index, std::int64_t count)
-{
-    return sum_by_gather(rows, index, count);
+    return {sum_by_transpose, sum_by_gather};
 }
 
 }  // namespace motley

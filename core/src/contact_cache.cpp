@@ -6,12 +6,15 @@
 #include <atomic>
 #include <bit>
 
+#include "motley/core/growth.h"
+
 namespace motley {
 
 void KeyTable::reserve(std::size_t count)
 {
-    keys_.reserve(std::bit_ceil(count));
-    free_.reserve(std::bit_ceil(count));
+    const std::size_t tickets = std::bit_ceil(count);
+    keys_.reserve(tickets);
+    free_.reserve(tickets);
     const std::size_t wanted = std::bit_ceil(count + count / 4 + 1);
     if (buckets_.size() >= wanted) return;
     AlignedVector<std::uint64_t> wider(wanted);
@@ -82,7 +85,7 @@ void ContactCache::begin(std::size_t count)
     list.count = count;
     if (list.entries.size() < count) {
         // Room to grow into, so that a crowd that keeps pressing together does not allocate at each new contact.
-        const std::size_t room = std::max<std::size_t>(64, count + count / 4);
+        const std::size_t room = std::max<std::size_t>(64, with_room_to_grow(count));
         list.entries.resize(room);
         list.tickets.resize(room);
         list.colours.resize(room);

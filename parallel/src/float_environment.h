@@ -12,7 +12,7 @@ namespace motley {
 class StepFloats {
   public:
     StepFloats() : host_(control()) { set_control((host_ & ~rounding) | flushes_denormals); }
-    ~StepFloats() { set_control(merged(host_, control())); }
+    ~StepFloats() { set_control(host_ | (control() & raised)); }
     StepFloats(const StepFloats&) = delete;
     StepFloats& operator=(const StepFloats&) = delete;
 
@@ -54,11 +54,6 @@ class StepFloats {
     }
     static void set_control(Word) {}
 #endif
-    static Word merged(Word host, Word now)
-    {
-        return host | (now & raised);
-    }
-
     Word host_;
 };
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "motley/core/growth.h"
+
 namespace motley {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr std::size_t placements_per_chunk = 4096;
 template <class T>
 void grow(AlignedVector<T>& stream, std::size_t size)
 {
-    if (stream.size() < size) stream.resize(size + size / 4);
+    if (stream.size() < size) stream.resize(with_room_to_grow(size));
 }
 
 }  // namespace
@@ -94,7 +96,7 @@ void BatchSet::begin(std::span<const Placement> placements)
 {
     placements_ = placements;
     const std::size_t wanted = static_cast<std::size_t>(chunk_count()) * pools_.size() * colours;
-    if (places_.size() < wanted) places_.resize(wanted + wanted / 4);
+    if (places_.size() < wanted) places_.resize(with_room_to_grow(wanted));
 }
 
 void BatchSet::count(std::int64_t chunk)

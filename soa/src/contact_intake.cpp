@@ -6,6 +6,7 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "motley/core/growth.h"
 #include "motley/core/invalid_input.h"
 
 namespace motley {
@@ -55,7 +56,7 @@ bool is_planar(BodyRow a, BodyRow b)
 void ContactIntake::begin(Scene& scene, std::size_t count)
 {
     if (placements.size() < count) {
-        const std::size_t room = count + count / 4;
+        const std::size_t room = with_room_to_grow(count);
         placements.resize(room);
         memory_index.resize(room);
     }

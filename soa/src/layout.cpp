@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "motley/core/growth.h"
+
 namespace motley {
 namespace {
 
@@ -22,7 +24,7 @@ void Layout::begin(Scene& scene, std::size_t contact_count, const FigureUse& use
         joint_version_ = scene.joints().version;
     }
     masks_.copy(joint_masks_, scene.bodies());
-    if (uncoloured_.size() < contact_count) uncoloured_.resize(contact_count + contact_count / 4);
+    if (uncoloured_.size() < contact_count) uncoloured_.resize(with_room_to_grow(contact_count));
     contacts.begin({intake.placements.data(), contact_count});
 }
 
