@@ -9,6 +9,7 @@
 #include "budget.h"
 #include "convergence.h"
 #include "figure_step.h"
+#include "figure_workspace.h"
 #include "layout.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/step_constants.h"
@@ -79,6 +80,7 @@ struct Solver::Impl {
     std::unique_ptr<Executor> own_executor;
     StageRunner runner;
     Layout layout;
+    std::vector<FigureWorkspace> workspaces;  ///< one a worker
     Convergence convergence;
 
     Impl(const SolverSettings& s, Isa i, Executor* host, int threads)
@@ -87,7 +89,8 @@ struct Solver::Impl {
           isa(i),
           own_executor(host ? nullptr : make_executor(threads)),
           runner(host ? host : own_executor.get()),
-          layout(kernel_table(i))
+          layout(kernel_table(i)),
+          workspaces(static_cast<std::size_t>(runner.executor()->concurrency()))
     {
     }
 
@@ -325,6 +328,7 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
     layout.contacts.open(layout.kernels());
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
     layout.cut(scene, contacts, tells_blocks_apart);
+    for (FigureWorkspace& workspace : workspaces) workspace.make_room(layout.figures.blocks());
     return {};
 }
 
@@ -445,9 +449,12 @@ void Solver::Impl::step_figures()
 {
     const FigureSteps steps{settings.substeps, settings.iterations,
                             settings.method == Method::soft_step ? settings.relaxations : 0, exact_rate()};
-    for_each_figure(layout.figures.lone(), [&](const KernelContext& context, const FigureKernels& kernels,
-                                               const FigureBlock& block) {
-        step_figure(context, kernels, block, layout.data(), steps);
+    const std::span<const std::int32_t> lone = layout.figures.lone();
+    runner.run(static_cast<std::int64_t>(lone.size()), [&](std::int64_t i, int worker) {
+        const auto block = static_cast<std::size_t>(lone[static_cast<std::size_t>(i)]);
+        step_figure(layout.context, layout.kernels().figures,
+                    workspaces[static_cast<std::size_t>(worker)].take_in(layout.figures.blocks()[block]),
+                    layout.data(), steps);
     });
 }
 

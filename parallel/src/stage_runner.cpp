@@ -59,12 +59,12 @@ bool StageRunner::claim_and_run(int worker)
 {
     for (int i = 0; i < workers_; ++i) {
         const int whose = worker + i < workers_ ? worker + i : worker + i - workers_;
-        if (claim_and_run(shares_[static_cast<std::size_t>(whose)])) return true;
+        if (claim_and_run(shares_[static_cast<std::size_t>(whose)], worker)) return true;
     }
     return false;
 }
 
-bool StageRunner::claim_and_run(Share& share)
+bool StageRunner::claim_and_run(Share& share, int worker)
 {
     std::uint64_t word = share.word.load(std::memory_order_acquire);
     for (;;) {
@@ -72,7 +72,7 @@ bool StageRunner::claim_and_run(Share& share)
         if (next >= static_cast<std::uint32_t>(word >> 32)) return false;
         if (share.word.compare_exchange_weak(word, word + 1, std::memory_order_acq_rel,
                                              std::memory_order_acquire)) {
-            job_.call(job_.self, next);
+            job_.call(job_.self, next, worker);
             done_.fetch_add(1, std::memory_order_release);
             return true;
         }

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <type_traits>
 
 #include "float_environment.h"
 #include "motley/parallel/executor.h"
@@ -43,16 +44,17 @@ class StageRunner {
         open_ = false;
     }
 
-    /// Calls chunk(i) for each i in [0, count), on whichever thread; returns when all are done. A single
-    /// chunk, or no other thread, runs in line.
+    /// Calls chunk(i), or chunk(i, worker), for each i in [0, count), on whichever thread; returns when all are done. A
+    /// single chunk, or no other thread, runs in line.
     template <class Chunk>
     void run(std::int64_t count, const Chunk& chunk)
     {
         if (count <= 1 || !open_) {
-            for (std::int64_t i = 0; i < count; ++i) chunk(i);
+            for (std::int64_t i = 0; i < count; ++i) call(chunk, i, 0);
             return;
         }
-        publish({&chunk, [](const void* self, std::int64_t i) { (*static_cast<const Chunk*>(self))(i); }},
+        publish({&chunk, [](const void* self, std::int64_t i,
+                            int worker) { call(*static_cast<const Chunk*>(self), i, worker); }},
                 static_cast<std::uint32_t>(count));
     }
 
@@ -61,8 +63,17 @@ class StageRunner {
   private:
     struct Job {
         const void* self = nullptr;
-        void (*call)(const void* self, std::int64_t index) = nullptr;
+        void (*call)(const void* self, std::int64_t index, int worker) = nullptr;
     };
+    template <class Chunk>
+    static void call(const Chunk& chunk, std::int64_t index, int worker)
+    {
+        if constexpr (std::is_invocable_v<const Chunk&, std::int64_t, int>) {
+            chunk(index, worker);
+        } else {
+            chunk(index);
+        }
+    }
     /// Chunks in the high half (one past the last), the next to claim in the low half. A claim that succeeds is
     /// always one of the present stage: the caller does not move on before every claimed chunk is done.
     struct alignas(64) Share {
@@ -71,7 +82,7 @@ class StageRunner {
     void open();
     void publish(Job job, std::uint32_t count);
     bool claim_and_run(int worker);
-    bool claim_and_run(Share& share);
+    bool claim_and_run(Share& share, int worker);
     void work(int worker);
 
     Executor* executor_;

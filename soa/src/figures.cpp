@@ -151,8 +151,9 @@ void Figures::find(std::span<const Candidate> joints, std::size_t rigid_rows, co
             const auto block = static_cast<std::int32_t>(blocks_.size());
             blocks_.push_back({.shape = shape.get(), .count = static_cast<int>(count)});
             first_float.push_back(memory);
-            memory +=
-                static_cast<std::int64_t>(shape->bodies.size()) * CopyBody::floats + shape->system_floats;
+            if (has_tree)
+                memory +=
+                    static_cast<std::int64_t>(shape->bodies.size()) * CopyBody::floats + shape->system_floats;
             for (std::size_t body = 0; body < shape->bodies.size(); ++body) {
                 for (std::size_t lane = 0; lane < block_lanes; ++lane) {
                     const bool pads = lane >= count;
@@ -178,8 +179,10 @@ void Figures::find(std::span<const Candidate> joints, std::size_t rigid_rows, co
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
         FigureBlock& block = blocks_[i];
         block.rows = rows_.data() + first_row;
-        block.bodies = memory_.data() + first_float[i];
-        block.system = block.body(static_cast<int>(block.shape->bodies.size()));
+        if (block.shape->has_tree()) {
+            block.bodies = memory_.data() + first_float[i];
+            block.system = block.body(static_cast<int>(block.shape->bodies.size()));
+        }
         first_row += block.shape->bodies.size() * block_lanes;
     }
     for (const Candidate& joint : joints) {
