@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "runner.h"
+#include "host.h"
 #include "sweep.h"
 
 namespace motley::bench {

@@ -73,7 +73,11 @@ void Crowd::steer(Scene& scene, Executor& executor)
 std::span<const Contact> Crowd::find_contacts(const Scene& scene, Executor& executor)
 {
     radii_.resize(agents.size());
-    for (std::size_t i = 0; i < agents.size(); ++i) radii_[i] = agents[i].radius;
+    parallel_for(executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk,
+                 [&](std::int64_t begin, std::int64_t end) {
+                     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+                         radii_[i] = agents[i].radius;
+                 });
     grid_.sort(positions, radii_, contact_margin, executor);
 
     // Pairs first, a list a chunk; then every chunk knows where its contacts go and writes them there.

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "host.h"
 #include "runner.h"
 
 namespace motley::bench {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "host.h"
 #include "motley/motley.h"
 #include "random.h"
 #include "stage_runner.h"
@@ -43,8 +44,8 @@ void sweep(benchmark::State& state, const NamedTie& kind, Isa isa, int threads, 
         Counter(constraints * sweeps * report.bytes_per_constraint, Counter::kIsRate);
 }
 
-/// The colour stage, intake included: of a scene never seen, or of the same contacts again.
-void colour(benchmark::State& state, bool again, int threads, int side)
+/// Intake or colour: of a scene never seen, or of the same contacts again.
+void lay_out(benchmark::State& state, Stage stage, bool again, int threads, int side)
 {
     auto net = make_net(contact_tie(0), BodyModel::planar, side);
     Solver solver({}, {.threads = threads});
@@ -56,12 +57,50 @@ void colour(benchmark::State& state, bool again, int threads, int side)
             state.ResumeTiming();
         }
         const StepReport report = solver.step(net->scene, 1e-3F, net->contacts);
-        state.SetIterationTime(report.seconds[static_cast<std::size_t>(Stage::colour)]);
+        state.SetIterationTime(report.seconds[static_cast<std::size_t>(stage)]);
     }
     using benchmark::Counter;
     const auto constraints = static_cast<double>(net->contacts.size());
     state.counters["s_per_constraint"] =
         Counter(constraints * static_cast<double>(state.iterations()), Counter::kIsRate | Counter::kInvert);
+}
+
+/// A step of smooth contacts that streams, with the bodies in memory as they lie in the net, anyhow, and renumbered.
+void memory_order(benchmark::State& state, BodyOrder order, bool renumbered)
+{
+    const auto net = make_net(contact_tie(0), BodyModel::planar, side_streaming, order);
+    if (renumbered) net->scene.renumber_bodies();
+    Solver solver;
+    solver.step(net->scene, 1e-3F, net->contacts);
+    for (auto _ : state) solver.step(net->scene, 1e-3F, net->contacts);
+    using benchmark::Counter;
+    state.counters["s_per_constraint"] =
+        Counter(static_cast<double>(net->contacts.size()) * static_cast<double>(state.iterations()),
+                Counter::kIsRate | Counter::kInvert);
+}
+
+/// What a crowd of a million planar people at 1.12 contacts each takes in memory: bodies, and what steps keep of contacts. By
+/// itself (--benchmark_filter=memory/), or it finds room that others left behind.
+void memory(benchmark::State& state)
+{
+    constexpr int side = 1000;
+    constexpr double people = double{side} * side;
+    TieNet net;
+    const double at_first = resident_bytes();
+    net.add_bodies(side, BodyModel::planar);
+    const double with_bodies = resident_bytes();
+    const Tie touch = contact_tie(0);
+    for (std::size_t i = 0; i < net.bodies.size(); ++i) {
+        if (i % side + 1 < side) touch(net, net.bodies[i], net.bodies[i + 1], {0.2F, 0, 0});
+        if (i + side < net.bodies.size() && i % 8 == 0)
+            touch(net, net.bodies[i], net.bodies[i + side], {0, 0.2F, 0});
+    }
+    const double with_list = resident_bytes();
+    Solver solver;
+    for (auto _ : state) solver.step(net.scene, 1e-3F, net.contacts);
+    state.counters["body_bytes"] = (with_bodies - at_first) / people - sizeof(BodyId);
+    state.counters["contact_bytes"] = (resident_bytes() - with_list) / people;
+    state.counters["contacts"] = static_cast<double>(net.contacts.size()) / people;
 }
 
 /// A stage whose chunks do nothing: what a colour costs beyond its constraints.
@@ -76,7 +115,7 @@ void hand_over(benchmark::State& state)
         }
     } lender;
     StageRunner runner(&lender);
-    runner.with_workers([&] {
+    runner.with_workers(false, [&] {
         for (auto _ : state) runner.run(2, [](std::int64_t i) { benchmark::DoNotOptimize(i); });
     });
 }
@@ -89,9 +128,7 @@ void transfer(benchmark::State& state, SumRows sum)
     std::vector<float> velocity(8 * rows, 1.0F);
     std::vector<std::int32_t> index(rows);
     std::iota(index.begin(), index.end(), 0);
-    Random random(12345);
-    for (std::size_t i = index.size() - 1; i > 0; --i)
-        std::swap(index[i], index[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
+    shuffle(index);
     for (auto _ : state) benchmark::DoNotOptimize(sum(velocity.data(), index.data(), rows));
     using benchmark::Counter;
     state.counters["s_per_constraint"] =
@@ -133,17 +170,31 @@ void enter_all()
     }
     // And a million contacts.
     const std::pair<const char*, int> colour_sizes[] = {sizes[0], sizes[1], {"million", 708}};
-    for (const auto& [place, side] : colour_sizes) {
-        for (const int threads : {1, 2}) {
-            for (const bool again : {false, true}) {
-                benchmark::RegisterBenchmark(
-                    fmt::format("colour/{}/{}/threads:{}", again ? "again" : "full", place, threads).c_str(),
-                    [again, threads, size = side](benchmark::State& s) { colour(s, again, threads, size); })
-                    ->UseManualTime()
-                    ->Unit(benchmark::kMicrosecond);
+    for (const Stage stage : {Stage::intake, Stage::colour}) {
+        for (const auto& [place, side] : colour_sizes) {
+            for (const int threads : {1, 2}) {
+                for (const bool again : {false, true}) {
+                    benchmark::RegisterBenchmark(fmt::format("{}/{}/{}/threads:{}", stage_name(stage),
+                                                             again ? "again" : "full", place, threads)
+                                                     .c_str(),
+                                                 [stage, again, threads, size = side](benchmark::State& s) {
+                                                     lay_out(s, stage, again, threads, size);
+                                                 })
+                        ->UseManualTime()
+                        ->Unit(benchmark::kMicrosecond);
+                }
             }
         }
     }
+    const auto enter_order = [](const char* name, BodyOrder order, bool renumbered) {
+        benchmark::RegisterBenchmark(name, [order, renumbered](benchmark::State& s) {
+            memory_order(s, order, renumbered);
+        })->Unit(benchmark::kMicrosecond);
+    };
+    enter_order("memory_order/in_line", BodyOrder::in_line, false);
+    enter_order("memory_order/shuffled", BodyOrder::shuffled, false);
+    enter_order("memory_order/shuffled_and_renumbered", BodyOrder::shuffled, true);
+    benchmark::RegisterBenchmark("memory/planar_crowd", memory)->Iterations(3)->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("hand_over/threads:2", hand_over);
 #ifdef MOTLEY_HAS_TRANSFER
     enter_transfers();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace motley::bench {
 namespace {
@@ -10,6 +11,8 @@ namespace {
 /// A grid never has more cells than this: a lone walker far away must not cost memory, only some tests.
 constexpr double most_cells = 1 << 24;
 constexpr std::int64_t discs_per_chunk = 8192;
+/// Bands of rows that discs are sorted into first: few enough to write to all at once.
+constexpr std::int32_t most_bands = 128;
 
 }  // namespace
 
@@ -52,30 +55,78 @@ void NeighbourGrid::sort(std::span<const Vec3<double>> positions, std::span<cons
     width_ = static_cast<std::int32_t>((all.max_x - all.min_x) / cell) + 1;
     height_ = static_cast<std::int32_t>((all.max_y - all.min_y) / cell) + 1;
 
+    sort_into_bands(positions, radii, margin, executor);
+    starts_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) + 1);
+    parallel_for(executor, band_count_, 1, [&](std::int64_t band, std::int64_t) { sort_band(band); });
+    starts_.back() = static_cast<std::int32_t>(count);
+}
+
+/// Stable, so that the order does not depend on who does it: how many of each band a chunk has, then where its own begin.
+void NeighbourGrid::sort_into_bands(std::span<const Vec3<double>> positions, std::span<const float> radii,
+                                    float margin, Executor& executor)
+{
+    const std::size_t count = positions.size(), chunks = count / discs_per_chunk + 1;
+    rows_per_band_ = height_ / most_bands + 1;
+    band_count_ = (height_ + rows_per_band_ - 1) / rows_per_band_;
+    const auto bands = static_cast<std::size_t>(band_count_);
     cells_.resize(count);
+    placed_.resize(count);
     sorted_.resize(count);
-    for_discs([&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            cells_[i] =
-                static_cast<std::int32_t>(index_of(column_of(positions[i].x), row_of(positions[i].y)));
-        }
+    places_.assign(chunks * bands, 0);
+    const auto for_discs = [&](const auto& work) {
+        parallel_for(executor, static_cast<std::int64_t>(count), discs_per_chunk,
+                     [&](std::int64_t begin, std::int64_t end) {
+                         std::int32_t* places =
+                             places_.data() + static_cast<std::size_t>(begin / discs_per_chunk) * bands;
+                         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end);
+                              ++i)
+                             work(i, places);
+                     });
+    };
+    const auto band_of = [&](std::int32_t cell) {
+        return static_cast<std::size_t>(cell / width_ / rows_per_band_);
+    };
+    for_discs([&](std::size_t i, std::int32_t* places) {
+        cells_[i] = static_cast<std::int32_t>(index_of(column_of(positions[i].x), row_of(positions[i].y)));
+        ++places[band_of(cells_[i])];
     });
-    // Counts two ahead, so that after the sums starts_[c + 1] is where cell c begins, and handing out places moves it
-    // on to where cell c ends, that is to where cell c + 1 begins.
-    starts_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) + 2, 0);
-    for (const std::int32_t c : cells_) ++starts_[static_cast<std::size_t>(c) + 2];
-    for (std::size_t c = 2; c < starts_.size(); ++c) starts_[c] += starts_[c - 1];
-    for (std::int32_t& cell_or_place : cells_)
-        cell_or_place = starts_[static_cast<std::size_t>(cell_or_place) + 1]++;
-    for_discs([&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            Sorted& place = sorted_[static_cast<std::size_t>(cells_[i])];
-            place.x = static_cast<float>(positions[i].x - low_.x);
-            place.y = static_cast<float>(positions[i].y - low_.y);
-            place.reach = radii[i] + margin / 2;
-            place.disc = static_cast<std::int32_t>(i);
-        }
+    std::int32_t next = 0;
+    first_in_band_.resize(bands + 1);
+    for (std::size_t band = 0; band < bands; ++band) {
+        first_in_band_[band] = next;
+        for (std::size_t chunk = 0; chunk < chunks; ++chunk)
+            next += std::exchange(places_[chunk * bands + band], next);
+    }
+    first_in_band_[bands] = next;
+    for_discs([&](std::size_t i, std::int32_t* places) {
+        const auto place = static_cast<std::size_t>(places[band_of(cells_[i])]++);
+        placed_[place] = {
+            {static_cast<float>(positions[i].x - low_.x), static_cast<float>(positions[i].y - low_.y),
+             radii[i] + margin / 2, static_cast<std::int32_t>(i)},
+            cells_[i]};
     });
+}
+
+void NeighbourGrid::sort_band(std::int64_t band)
+{
+    const auto first_row = static_cast<std::int32_t>(band) * rows_per_band_;
+    const std::size_t first_cell = index_of(0, first_row);
+    const std::size_t last_cell = index_of(0, std::min(first_row + rows_per_band_, height_));
+    const std::span<std::int32_t> starts(starts_.data() + first_cell, last_cell - first_cell);
+    const auto begin = static_cast<std::size_t>(first_in_band_[static_cast<std::size_t>(band)]);
+    const auto end = static_cast<std::size_t>(first_in_band_[static_cast<std::size_t>(band) + 1]);
+    const std::span<const Placed> discs(placed_.data() + begin, end - begin);
+    std::fill(starts.begin(), starts.end(), 0);
+    for (const Placed& disc : discs) ++starts[static_cast<std::size_t>(disc.cell) - first_cell];
+    auto next = static_cast<std::int32_t>(end);
+    for (std::size_t c = starts.size(); c-- > 0;) starts[c] = next -= starts[c];
+    // Handing out places moves a cell's start on to its end...
+    for (const Placed& disc : discs)
+        sorted_[static_cast<std::size_t>(starts[static_cast<std::size_t>(disc.cell) - first_cell]++)] =
+            disc.disc;
+    // ...which is where the next cell starts.
+    for (std::size_t c = starts.size(); c-- > 1;) starts[c] = starts[c - 1];
+    if (!starts.empty()) starts[0] = static_cast<std::int32_t>(begin);
 }
 
 std::size_t NeighbourGrid::find_pairs(std::int64_t chunk, std::vector<Pair>& pairs) const

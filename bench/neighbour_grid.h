@@ -1,4 +1,4 @@
-// A uniform grid: discs are counted into cells and sorted by them every step, then each looks at the half of its
+// A uniform grid: discs are sorted into bands of rows and then into cells every step, then each looks at the half of its
 // neighbourhood that lies after it. The order of pairs depends on positions alone, never on threads.
 #pragma once
 
@@ -49,7 +49,15 @@ class NeighbourGrid {
         float reach;  ///< m
         std::int32_t disc;
     };
-    AlignedVector<std::int32_t> cells_;   ///< of each disc, and then its place in sorted_
+    struct Placed {
+        Sorted disc;
+        std::int32_t cell;
+    };
+    AlignedVector<std::int32_t> cells_;   ///< of each disc
+    AlignedVector<Placed> placed_;        ///< by bands of rows, each band's discs as they came
+    AlignedVector<std::int32_t> places_;  ///< of each chunk of discs in each band: the next place in placed_
+    std::vector<std::int32_t> first_in_band_;
+    std::int32_t rows_per_band_ = 1, band_count_ = 0;
     AlignedVector<std::int32_t> starts_;  ///< of each cell in sorted_, and one past the last
     AlignedVector<Sorted> sorted_;
     std::int32_t width_ = 1, height_ = 1;
@@ -61,6 +69,9 @@ class NeighbourGrid {
     };
     std::vector<Bounds> bounds_;  ///< of each chunk of discs
 
+    void sort_into_bands(std::span<const Vec3<double>> positions, std::span<const float> radii, float margin,
+                         Executor& executor);
+    void sort_band(std::int64_t band);
     [[nodiscard]] std::int32_t column_of(double x) const { return cell_along(x - low_.x, width_); }
     [[nodiscard]] std::int32_t row_of(double y) const { return cell_along(y - low_.y, height_); }
     [[nodiscard]] std::int32_t cell_along(double offset, std::int32_t cells) const

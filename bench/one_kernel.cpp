@@ -1,8 +1,8 @@
 // One kernel and nothing else, for tools that count instructions: bench/count-instructions.
 //   motley_one_kernel                        names the kernels
 //   motley_one_kernel KERNEL ISA SWEEPS      one step of so many sweeps; prints how many constraints there are
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <exception>
 #include <optional>

@@ -2,7 +2,10 @@
 // which the top 24 bits are used.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace motley::bench {
 
@@ -21,5 +24,14 @@ class Random {
   private:
     std::uint64_t state_;
 };
+
+/// Puts values into an order of no meaning, always the same.
+template <class T>
+void shuffle(std::vector<T>& values)
+{
+    Random random(12345);
+    for (std::size_t i = values.size(); i-- > 1;)
+        std::swap(values[i], values[static_cast<std::size_t>(random.uniform() * static_cast<double>(i + 1))]);
+}
 
 }  // namespace motley::bench

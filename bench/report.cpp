@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "host.h"
 #include "runner.h"
 
 namespace motley::bench {
@@ -12,7 +12,7 @@ namespace {
 
 double agent_steps(const RunResult& r)
 {
-    return r.bodies * static_cast<double>(r.steps);
+    return r.bodies * static_cast<double>(r.times.steps);
 }
 double per(double amount, double seconds)
 {
@@ -22,21 +22,13 @@ double per(double amount, double seconds)
 /// Sweeping time only: what one visit of one constraint costs.
 double nanoseconds_per_visit(const RunResult& r)
 {
-    const double sweeps = r.stages[static_cast<std::size_t>(Stage::warm_start)] +
-                          r.stages[static_cast<std::size_t>(Stage::solve)] +
-                          r.stages[static_cast<std::size_t>(Stage::relax)];
-    return per(sweeps * 1e9, r.constraint_sweeps);
+    double sweeps = 0;
+    for (const Stage stage : {Stage::warm_start, Stage::solve, Stage::relax})
+        sweeps += r.times.stages[static_cast<std::size_t>(stage)];
+    return per(sweeps * 1e9, r.times.constraint_sweeps);
 }
 
 }  // namespace
-
-double host_load()
-{
-    std::ifstream file("/proc/loadavg");
-    double load = -1;
-    file >> load;
-    return load;
-}
 
 std::string table_of(const RunResult& r)
 {
@@ -47,22 +39,21 @@ std::string table_of(const RunResult& r)
     text += fmt::format("{}: {}, {}, {} thread{}, {} steps\n", r.scene, r.method, r.isa, r.threads,
                         r.threads == 1 ? "" : "s", r.steps);
     line("bodies (mean)", fmt::format("{:.0f}", r.bodies));
-    line("agent-steps/s, whole step", fmt::format("{:.3f} M", per(agent_steps(r), r.whole_seconds()) * 1e-6));
-    line("agent-steps/s, solver alone",
-         fmt::format("{:.3f} M", per(agent_steps(r), r.solver_seconds) * 1e-6));
+    line("agent-steps/s, whole step", fmt::format("{:.3f} M", per(agent_steps(r), r.times.whole()) * 1e-6));
+    line("agent-steps/s, solver alone", fmt::format("{:.3f} M", per(agent_steps(r), r.times.solver) * 1e-6));
     line("whole step, median", fmt::format("{:.3f} ms", r.median_step_seconds * 1e3));
     line("constraints (mean)", fmt::format("{:.0f}", r.constraints));
     line("ns per constraint and sweep", fmt::format("{:.2f}", nanoseconds_per_visit(r)));
     line("colours / overflow", fmt::format("{} / {}", r.last.colours, r.last.overflow));
     line("lane occupancy", fmt::format("{:.1f} %", 100 * r.last.lane_occupancy));
     line("bytes per constraint and sweep", fmt::format("{:.1f}", r.last.bytes_per_constraint));
-    const double steps = static_cast<double>(std::max<std::int64_t>(1, r.steps));
+    const double steps = static_cast<double>(std::max<std::int64_t>(1, r.times.steps));
     text += "  ms per step\n";
-    line("  steering (host)", fmt::format("{:9.4f}", r.steering_seconds / steps * 1e3));
-    line("  neighbour search (host)", fmt::format("{:9.4f}", r.search_seconds / steps * 1e3));
+    line("  steering (host)", fmt::format("{:9.4f}", r.times.steering / steps * 1e3));
+    line("  neighbour search (host)", fmt::format("{:9.4f}", r.times.search / steps * 1e3));
     for (int s = 0; s < stage_count; ++s) {
         line(fmt::format("  {}", stage_name(static_cast<Stage>(s))),
-             fmt::format("{:9.4f}", r.stages[static_cast<std::size_t>(s)] / steps * 1e3));
+             fmt::format("{:9.4f}", r.times.stages[static_cast<std::size_t>(s)] / steps * 1e3));
     }
     line("overlap p50 / p99 / max", fmt::format("{:.3f} / {:.3f} / {:.3f} % of radius", 100 * r.overlap_p50,
                                                 100 * r.overlap_p99, 100 * r.overlap_max));
@@ -95,8 +86,8 @@ std::string json_of(const RunResult& r)
     json["threads"] = r.threads;
     json["steps"] = r.steps;
     json["bodies"] = r.bodies;
-    json["agent_steps_per_second"] = per(agent_steps(r), r.whole_seconds());
-    json["agent_steps_per_second_solver"] = per(agent_steps(r), r.solver_seconds);
+    json["agent_steps_per_second"] = per(agent_steps(r), r.times.whole());
+    json["agent_steps_per_second_solver"] = per(agent_steps(r), r.times.solver);
     json["median_step_ms"] = r.median_step_seconds * 1e3;
     json["constraints"] = r.constraints;
     json["ns_per_constraint_and_sweep"] = nanoseconds_per_visit(r);
@@ -104,10 +95,10 @@ std::string json_of(const RunResult& r)
     json["overflow"] = r.last.overflow;
     json["lane_occupancy"] = r.last.lane_occupancy;
     json["bytes_per_constraint"] = r.last.bytes_per_constraint;
-    json["seconds"]["steering"] = r.steering_seconds;
-    json["seconds"]["neighbour search"] = r.search_seconds;
+    json["seconds"]["steering"] = r.times.steering;
+    json["seconds"]["neighbour search"] = r.times.search;
     for (int s = 0; s < stage_count; ++s)
-        json["seconds"][stage_name(static_cast<Stage>(s))] = r.stages[static_cast<std::size_t>(s)];
+        json["seconds"][stage_name(static_cast<Stage>(s))] = r.times.stages[static_cast<std::size_t>(s)];
     json["overlap_share_of_radius"] = {
         {"p50", r.overlap_p50}, {"p99", r.overlap_p99}, {"max", r.overlap_max}};
     json["joint_separation_m"] = {{"rms", r.errors.joint_separation_rms},

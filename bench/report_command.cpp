@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "host.h"
 #include "page.h"
 #include "plot.h"
 #include "runner.h"

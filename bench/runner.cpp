@@ -189,15 +189,18 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
             throw std::runtime_error(fmt::format("step {} refused: {}", step, result.last.error));
 
         if (compares) direct.compare(scene->scene);
-        result.steering_seconds += steered - began;
-        result.search_seconds += searched;
-        result.solver_seconds += solved - found;
+        RunTimes& times = result.times;
+        if (step == 1) times = {};
+        ++times.steps;
+        times.steering += steered - began;
+        times.search += searched;
+        times.solver += solved - found;
         step_seconds.push_back((solved - found) + searched + (steered - began));
         solver_seconds.push_back(solved - found);
-        for (std::size_t s = 0; s < stage_count; ++s) result.stages[s] += result.last.seconds[s];
+        for (std::size_t s = 0; s < stage_count; ++s) times.stages[s] += result.last.seconds[s];
         const auto constraints = static_cast<double>(result.last.contacts + result.last.joints);
         result.constraints += constraints;
-        result.constraint_sweeps += constraints * static_cast<double>(result.last.sweeps);
+        times.constraint_sweeps += constraints * static_cast<double>(result.last.sweeps);
         result.bodies += static_cast<double>(scene->scene.body_count());
         result.contained += result.last.bodies_contained;
         ++result.steps;

@@ -11,18 +11,25 @@
 
 namespace motley::bench {
 
-/// What a run was and what it cost. Times are sums over all steps, in seconds.
+/// What was done in some steps, and how long it took, s.
+struct RunTimes {
+    std::int64_t steps = 0;
+    std::array<double, stage_count> stages{};
+    double solver = 0, steering = 0, search = 0;
+    double constraint_sweeps = 0;  ///< constraints x sweeps
+    [[nodiscard]] double whole() const { return solver + steering + search; }
+};
+
+/// What a run was and what it cost.
 struct RunResult {
     std::string scene, isa, method;
     int threads = 1;
     std::int64_t steps = 0;
-    double bodies = 0;  ///< mean over the steps
-    std::array<double, stage_count> stages{};
-    double solver_seconds = 0, steering_seconds = 0, search_seconds = 0;
+    double bodies = 0;                 ///< mean over the steps
+    RunTimes times;                    ///< of all steps but the first, which makes room for the others
     double median_step_seconds = 0;    ///< of a whole step: solver, steering and search
     double median_solver_seconds = 0;  ///< of the solver's part
     double constraints = 0;            ///< mean
-    double constraint_sweeps = 0;      ///< constraints x sweeps, summed
     StepReport last;
     double overlap_p50 = 0, overlap_p99 = 0,
            overlap_max = 0;  ///< deepest overlap of each person, share of radius
@@ -33,7 +40,6 @@ struct RunResult {
     double direct_rms = -1, direct_max = -1;  ///< m/s, off the simultaneous solution; negative: not compared
     std::optional<SceneError> error;
     std::vector<Figure> figures;
-    [[nodiscard]] double whole_seconds() const { return solver_seconds + steering_seconds + search_seconds; }
 };
 
 /// What to write besides the table.
@@ -53,7 +59,5 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
 std::string table_of(const RunResult& result);
 /// The same for programs.
 std::string json_of(const RunResult& result);
-/// The load of the machine over the last minute, as the system tells it; negative if it does not.
-double host_load();
 
 }  // namespace motley::bench

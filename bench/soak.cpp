@@ -2,7 +2,6 @@
 #include "soak.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -10,12 +9,12 @@
 #include <cstdio>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "crowd.h"
+#include "host.h"
 #include "motley/core/snapshot.h"
 #include "random.h"
 
@@ -47,7 +46,7 @@ float radius_of(std::size_t part)
 class Town {
   public:
     Town(const SoakOptions& options, int threads)
-        : solver({.gravity = {0, 0, -9.81F}}, {.threads = threads}),
+        : solver({.gravity = {0, 0, -9.81F}}, {.threads = threads, .alone_below = 0}),
           random_(options.seed),
           wanted_(static_cast<std::size_t>(options.people)),
           side_(std::sqrt(static_cast<double>(options.people) / people_a_square_metre))
@@ -305,15 +304,6 @@ class Town {
     }
 };
 
-/// MB of this process in memory.
-double memory_now()
-{
-    std::ifstream file("/proc/self/statm");
-    double all = 0, resident = 0;
-    file >> all >> resident;
-    return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
-}
-
 /// What of the soak is over: by steps if they are given, else by the clock.
 class Progress {
   public:
@@ -360,7 +350,7 @@ SoakResult soak(const SoakOptions& options)
             ++result.restored;
         }
         if (one.counted.steps % 100 != 0) continue;
-        const double share = progress.share(one.counted.steps), memory = memory_now();
+        const double share = progress.share(one.counted.steps), memory = resident_bytes() * 1e-6;
         if (share > 0.25 && share < 0.5) result.memory_before = std::max(result.memory_before, memory);
         if (share > 0.75) result.memory_after = std::max(result.memory_after, memory);
         if (options.progress && progress.seconds() > said + 1) {

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "engine.h"
+#include "host.h"
 #include "rig.h"
 #include "runner.h"
 

@@ -3,23 +3,31 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
 #include <stdexcept>
+
+#include "random.h"
 
 namespace motley::bench {
 
-TieNet::TieNet(int side, BodyModel model)
+void TieNet::add_bodies(int side, BodyModel model, BodyOrder order)
 {
-    for (int i = 0; i < side * side; ++i) {
+    std::vector<int> places(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+    std::iota(places.begin(), places.end(), 0);
+    if (order == BodyOrder::shuffled) shuffle(places);
+    bodies.resize(places.size());
+    for (const int i : places) {
         BodyDefinition body{.model = model, .mass = 1};
         body.position = {0.4 * (i % side), 0.4 * (i / side), 0};
         body.inertia = {0.02F, 0, 0, 0.02F, 0, 0.02F};
-        bodies.push_back(scene.add_body(body));
+        bodies[static_cast<std::size_t>(i)] = scene.add_body(body);
     }
 }
 
-std::unique_ptr<TieNet> make_net(const Tie& tie, BodyModel model, int side)
+std::unique_ptr<TieNet> make_net(const Tie& tie, BodyModel model, int side, BodyOrder order)
 {
-    auto net = std::make_unique<TieNet>(side, model);
+    auto net = std::make_unique<TieNet>();
+    net->add_bodies(side, model, order);
     for (int i = 0; i < side * side; ++i) {
         const auto a = static_cast<std::size_t>(i);
         if (i % side + 1 < side) tie(*net, net->bodies[a], net->bodies[a + 1], {0.2F, 0, 0});

@@ -11,19 +11,24 @@
 
 namespace motley::bench {
 
+/// Where the bodies of a net are in memory.
+enum class BodyOrder { in_line, shuffled };
+
 /// A square net of bodies, each tied to the one on its right and the one above.
 struct TieNet {
     Scene scene;
-    std::vector<BodyId> bodies;
+    std::vector<BodyId> bodies;  ///< row by row of the net
     std::vector<Contact> contacts;
 
-    TieNet(int side, BodyModel model);
+    /// A square of bodies 0.4 m apart.
+    void add_bodies(int side, BodyModel model, BodyOrder order = BodyOrder::in_line);
 };
 
 /// What ties two bodies; the arm leads from the centre of a to the point between them.
 using Tie = std::function<void(TieNet&, BodyId a, BodyId b, Vec3<float> arm)>;
 
-std::unique_ptr<TieNet> make_net(const Tie& tie, BodyModel model, int side);
+std::unique_ptr<TieNet> make_net(const Tie& tie, BodyModel model, int side,
+                                 BodyOrder order = BodyOrder::in_line);
 /// Contacts that overlap by a millimetre.
 Tie contact_tie(float friction);
 

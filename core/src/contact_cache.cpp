@@ -1,83 +1,18 @@
-// Contacts found again from step to step. The table of keys changes only by the keys that come and go, which are
-// few: most of a crowd touches the neighbours that it touched before.
+// Contacts found again from step to step: most of a crowd touches the neighbours that it touched before.
 #include "motley/core/contact_cache.h"
 
 #include <algorithm>
-#include <atomic>
-#include <bit>
 
 #include "motley/core/growth.h"
 
 namespace motley {
+namespace {
 
-void KeyTable::reserve(std::size_t count)
-{
-    const std::size_t tickets = std::bit_ceil(count);
-    keys_.reserve(tickets);
-    free_.reserve(tickets);
-    const std::size_t wanted = std::bit_ceil(count + count / 4 + 1);
-    if (buckets_.size() >= wanted) return;
-    AlignedVector<std::uint64_t> wider(wanted);
-    const int shift = 32 - std::countr_zero(wanted);
-    for (const std::uint64_t held : buckets_) {
-        if (held == 0) continue;
-        std::size_t i = (held >> 32) >> shift;
-        while (wider[i] != 0) i = (i + 1) & (wanted - 1);
-        wider[i] = held;
-    }
-    buckets_ = std::move(wider);
-    shift_ = shift;
-}
+constexpr std::size_t contacts_per_part = 4096;
+/// How far a walk that has lost its way looks to either side, contacts.
+constexpr std::uint32_t sight = 1024;
 
-/// The bucket that holds a key, or the empty one where it would go.
-std::size_t KeyTable::bucket_of(std::uint64_t key) const
-{
-    const std::uint64_t hash = hash_of(key);
-    for (std::size_t i = place_of(hash);; i = (i + 1) & (buckets_.size() - 1)) {
-        const std::uint64_t held = buckets_[i];
-        if (held == 0) return i;
-        if (held >> 32 == hash && keys_[static_cast<std::uint32_t>(held) - 1] == key) return i;
-    }
-}
-
-std::uint32_t KeyTable::find(std::uint64_t key) const
-{
-    return static_cast<std::uint32_t>(buckets_[bucket_of(key)]) - 1;  // an empty bucket's 0 becomes none
-}
-
-std::uint32_t KeyTable::insert(std::uint64_t key)
-{
-    reserve(size() + 1);
-    const std::size_t bucket = bucket_of(key);
-    if (buckets_[bucket] != 0) return none;
-    std::uint32_t ticket;
-    if (free_.empty()) {
-        ticket = static_cast<std::uint32_t>(keys_.size());
-        keys_.push_back(key);
-    } else {
-        ticket = free_.back();
-        free_.pop_back();
-        keys_[ticket] = key;
-    }
-    buckets_[bucket] = hash_of(key) << 32 | (ticket + 1);
-    return ticket;
-}
-
-void KeyTable::remove(std::uint64_t key)
-{
-    std::size_t hole = bucket_of(key);
-    if (buckets_[hole] == 0) return;
-    free_.push_back(static_cast<std::uint32_t>(buckets_[hole]) - 1);
-    // Knuth, The Art of Computer Programming 3, algorithm 6.4R: whoever probed across the hole moves into it.
-    const std::size_t mask = buckets_.size() - 1;
-    for (std::size_t i = (hole + 1) & mask; buckets_[i] != 0; i = (i + 1) & mask) {
-        const std::size_t home = place_of(buckets_[i] >> 32);
-        if (((i - home) & mask) < ((i - hole) & mask)) continue;
-        buckets_[hole] = buckets_[i];
-        hole = i;
-    }
-    buckets_[hole] = 0;
-}
+}  // namespace
 
 void ContactCache::begin(std::size_t count)
 {
@@ -87,72 +22,120 @@ void ContactCache::begin(std::size_t count)
         // Room to grow into, so that a crowd that keeps pressing together does not allocate at each new contact.
         const std::size_t room = std::max<std::size_t>(64, with_room_to_grow(count));
         list.entries.resize(room);
-        list.tickets.resize(room);
         list.colours.resize(room);
         list.impulses.resize(room + 1);
-        newcomers_.resize(std::max(room, newcomers_.size()));
-        leavers_.resize(std::max(room, leavers_.size()));
-        // All gone and as many come, at most.
-        const std::size_t tickets = lists_[0].entries.size() + lists_[1].entries.size();
-        keys_.reserve(tickets);
-        for (ContactList& either : lists_) either.positions.resize(tickets, none);
+        const std::size_t most = std::max(lists_[0].entries.size(), lists_[1].entries.size());
+        parts_.reserve(most / contacts_per_part + 1);
+        claimed_.resize(most);
+        missed_.resize(most);
+        lost_.resize(most);
     }
-    std::fill_n(list.positions.begin(), keys_.ticket_limit(), none);
-    constexpr std::size_t contacts_per_part = 4096;
-    surveys_.resize(std::max(count, current().count) / contacts_per_part + 1);
+    parts_.resize(std::max(count, current().count) / contacts_per_part + 1);
+    std::fill_n(claimed_.begin(), current().count, std::uint8_t{0});
+    looks_up_ = repeated_ = false;
 }
 
-void ContactCache::survey(std::int64_t part)
+ContactCache::Walk::Walk(ContactCache& cache, std::int64_t part)
+    : cache_(cache), list_(cache.current()), part_(part), index_(cache.part(part).begin), missed_(index_)
+{
+    // The part before knows best, be it in this step or, if it is not there yet, in the last.
+    std::int32_t shift = 0;
+    if (part > 0)
+        shift = std::atomic_ref(cache.parts_[static_cast<std::size_t>(part - 1)].shift)
+                    .load(std::memory_order_relaxed);
+    cursor_ = static_cast<std::uint32_t>(
+        std::clamp(std::int64_t{index_} + shift, std::int64_t{0}, static_cast<std::int64_t>(list_.count)));
+}
+
+ContactCache::Walk::~Walk()
+{
+    Part& part = cache_.parts_[static_cast<std::size_t>(part_)];
+    part.missed = {cache_.part(part_).begin, missed_};
+    part.claims = claims_;
+    std::atomic_ref(part.shift)
+        .store(static_cast<std::int32_t>(cursor_) - static_cast<std::int32_t>(index_),
+               std::memory_order_relaxed);
+}
+
+std::uint32_t ContactCache::Walk::look_around(std::uint64_t key) const
+{
+    const auto end = std::min(static_cast<std::uint32_t>(list_.count), cursor_ + sight);
+    for (std::uint32_t i = cursor_ - std::min(cursor_, sight); i < end; ++i) {
+        if (list_.entries[i].key == key) return i;
+    }
+    return none;
+}
+
+void ContactCache::find_lost(std::int64_t part)
+{
+    const Range range = share(current().count, part);
+    std::uint32_t end = range.begin;
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        // Written always and counted when lost: no predictor guesses who has gone.
+        lost_[end] = i;
+        end += claimed_[i] == 0 ? 1 : 0;
+    }
+    parts_[static_cast<std::size_t>(part)].lost = {range.begin, end};
+}
+
+void ContactCache::open_table()
+{
+    std::size_t claims = 0, missed = 0, lost = 0;
+    for (const Part& part : parts_) {
+        claims += part.claims;
+        missed += part.missed.end - part.missed.begin;
+        lost += part.lost.end - part.lost.begin;
+    }
+    repeated_ = claims != current().count - lost;
+    looks_up_ = missed > 0;
+    if (looks_up_) table_.clear(lost + missed, missed);
+}
+
+void ContactCache::enter_lost(std::int64_t part)
+{
+    if (!looks_up_) return;
+    const Range lost = parts_[static_cast<std::size_t>(part)].lost;
+    for (std::uint32_t k = lost.begin; k < lost.end; ++k) {
+        table_.enter(current().entries[lost_[k]].key, KeyTable::List::lost, lost_[k],
+                     [&](KeyTable::List, std::uint32_t i) { return current().entries[i].key; });
+    }
+}
+
+std::uint32_t ContactCache::trace(std::int64_t part, std::uint32_t index)
 {
     const ContactList& list = staged();
-    const auto share = [&](std::size_t count, std::int64_t p) {
-        return static_cast<std::uint32_t>(static_cast<std::int64_t>(count) * p / survey_parts());
+    const auto key_of = [&](KeyTable::List which, std::uint32_t i) {
+        return (which == KeyTable::List::lost ? current() : list).entries[i].key;
     };
-    Survey& found = surveys_[static_cast<std::size_t>(part)];
-    found.has_repeated_key = false;
-    found.first_newcomer = found.last_newcomer = share(list.count, part);
-    for (std::uint32_t i = found.first_newcomer; i < share(list.count, part + 1); ++i) {
-        const std::uint32_t ticket = list.tickets[i];
-        if (ticket == none) {
-            newcomers_[found.last_newcomer++] = i;
-        } else {
-            found.has_repeated_key = found.has_repeated_key || list.positions[ticket] != i;
-        }
-    }
-    found.first_leaver = found.last_leaver = share(current().count, part);
-    for (std::uint32_t i = found.first_leaver; i < share(current().count, part + 1); ++i) {
-        if (list.positions[current().tickets[i]] == none) leavers_[found.last_leaver++] = i;
-    }
+    const auto [which, found] = table_.enter(list.entries[index].key, KeyTable::List::fresh, index, key_of);
+    if (found == KeyTable::Found::none) return none;
+    if (which == KeyTable::List::fresh ||
+        std::atomic_ref(claimed_[found]).exchange(1, std::memory_order_relaxed) != 0)
+        mark_repeated();
+    std::atomic_ref(parts_[static_cast<std::size_t>(part)].shift)
+        .store(static_cast<std::int32_t>(found) - static_cast<std::int32_t>(index),
+               std::memory_order_relaxed);
+    return which == KeyTable::List::lost ? found : none;
 }
 
-bool ContactCache::admit()
+/// What is left to ask: whether one that is new has the key of one that a walk found.
+void ContactCache::verify(std::int64_t part)
 {
-    // Keys come and go in numbers that make a table's cache misses count; asked for this far ahead, they overlap.
-    constexpr std::size_t ahead = 12;
-    ContactList& list = staged();
-    std::size_t new_count = 0, gone_count = 0;
-    for (const Survey& survey : surveys_) {
-        if (survey.has_repeated_key) return false;
-        for (std::uint32_t k = survey.first_newcomer; k < survey.last_newcomer; ++k)
-            newcomers_[new_count++] = newcomers_[k];
-        for (std::uint32_t k = survey.first_leaver; k < survey.last_leaver; ++k)
-            leavers_[gone_count++] = leavers_[k];
-    }
-    for (std::size_t k = 0; k < new_count; ++k) {
-        if (k + ahead < new_count) keys_.prefetch(list.entries[newcomers_[k + ahead]].key);
-        const std::uint32_t ticket = keys_.insert(list.entries[newcomers_[k]].key);
-        if (ticket == none) {
-            while (k-- > 0) keys_.remove(list.entries[newcomers_[k]].key);
-            return false;
+    if (!looks_up_) return;
+    const ContactList& list = staged();
+    const auto key_of = [&](KeyTable::List which, std::uint32_t i) {
+        return (which == KeyTable::List::lost ? current() : list).entries[i].key;
+    };
+    const std::span<const std::uint32_t> others = missed(part);
+    auto next = others.begin();
+    const Range range = this->part(part);
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+        if (next != others.end() && *next == i) {
+            ++next;
+        } else if (table_.may_be_fresh(list.entries[i].key) && table_.is_fresh(list.entries[i].key, key_of)) {
+            mark_repeated();
         }
-        list.tickets[newcomers_[k]] = ticket;
-        list.positions[ticket] = newcomers_[k];
     }
-    for (std::size_t k = 0; k < gone_count; ++k) {
-        if (k + ahead < gone_count) keys_.prefetch(current().entries[leavers_[k + ahead]].key);
-        keys_.remove(current().entries[leavers_[k]].key);
-    }
-    return true;
 }
 
 bool ContactCache::restore(std::span<const ContactList::Entry> entries, std::span<const std::uint8_t> colours,
@@ -163,9 +146,16 @@ bool ContactCache::restore(std::span<const ContactList::Entry> entries, std::spa
     std::copy(entries.begin(), entries.end(), list.entries.begin());
     std::copy(colours.begin(), colours.end(), list.colours.begin());
     std::copy(impulses.begin(), impulses.end(), list.impulses.begin() + 1);
-    for (std::uint32_t i = 0; i < entries.size(); ++i) claim(i, none);
-    for (std::int64_t part = 0; part < survey_parts(); ++part) survey(part);
-    if (!admit()) return false;
+    for (std::int64_t p = 0; p < part_count(); ++p) {
+        Walk walk(*this, p);
+        for (std::uint32_t i = part(p).begin; i < part(p).end; ++i) walk.find(i, list.entries[i].key);
+    }
+    for (std::int64_t p = 0; p < part_count(); ++p) find_lost(p);
+    open_table();
+    for (std::int64_t p = 0; p < part_count(); ++p) {
+        for (const std::uint32_t i : missed(p)) trace(p, i);
+    }
+    if (has_repeated_key()) return false;
     accept_staged();
     return true;
 }

@@ -57,6 +57,12 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
     body_count_ -= bodies.size();
 }
 
+void Scene::renumber_bodies()
+{
+    bodies_.renumber();
+    joints_.version.reset();  // blocks name rows
+}
+
 bool Scene::is_alive(BodyId body) const
 {
     return bodies_.is_alive(body);

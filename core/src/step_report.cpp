@@ -5,7 +5,8 @@ namespace motley {
 
 const char* stage_name(Stage stage)
 {
-    static constexpr const char* names[stage_count] = {"colour",
+    static constexpr const char* names[stage_count] = {"intake",
+                                                       "colour",
                                                        "prepare",
                                                        "figures",
                                                        "integrate velocities",

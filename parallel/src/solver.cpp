@@ -20,9 +20,14 @@
 namespace motley {
 namespace {
 
-/// Bodies and contacts a chunk: a few microseconds of streaming.
+/// Bodies a chunk: a few microseconds of streaming.
 constexpr std::int64_t rows_per_chunk = 1024;
-constexpr std::int64_t contacts_per_chunk = 1024;
+
+/// What there is to do, in contacts: see SolverOptions::alone_below.
+std::size_t size_of(const Scene& scene, std::span<const Contact> contacts)
+{
+    return contacts.size() + 4 * scene.joint_count() + scene.body_count() / 2;
+}
 
 std::int64_t chunks_of(std::int64_t count, std::int64_t grain)
 {
@@ -77,18 +82,20 @@ struct Solver::Impl {
     SolverSettings settings;  ///< of this step
     Budget budget;
     Isa isa;
+    std::size_t alone_below;
     std::unique_ptr<Executor> own_executor;
     StageRunner runner;
     Layout layout;
     std::vector<FigureWorkspace> workspaces;  ///< one a worker
     Convergence convergence;
 
-    Impl(const SolverSettings& s, Isa i, Executor* host, int threads)
+    Impl(const SolverSettings& s, Isa i, const SolverOptions& options)
         : asked(s),
           settings(s),
           isa(i),
-          own_executor(host ? nullptr : make_executor(threads)),
-          runner(host ? host : own_executor.get()),
+          alone_below(options.alone_below),
+          own_executor(options.executor ? nullptr : make_executor(options.threads)),
+          runner(options.executor ? options.executor : own_executor.get()),
           layout(kernel_table(i)),
           workspaces(static_cast<std::size_t>(runner.executor()->concurrency()))
     {
@@ -128,7 +135,7 @@ Solver::Solver(const SolverSettings& settings, const SolverOptions& options)
     settings.validate();
     if (options.threads < 1 || options.threads > 1024)
         refuse("SolverOptions.threads", options.threads, "1 to 1024");
-    impl_ = std::make_unique<Impl>(settings, checked_isa(options.isa), options.executor, options.threads);
+    impl_ = std::make_unique<Impl>(settings, checked_isa(options.isa), options);
 }
 
 Solver::~Solver() = default;
@@ -165,9 +172,10 @@ StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contact
         if (contacts.size() > INT32_MAX)
             refuse("step.contacts.size()", static_cast<double>(contacts.size()), "at most 2^31 - 1");
         impl_->pick_settings();
-        impl_->runner.with_workers([&] {
+        impl_->runner.with_workers(size_of(scene, contacts) < impl_->alone_below, [&] {
             StageClock clock(report);
             report.error = impl_->take_in(scene, contacts);
+            clock.charge(Stage::intake);
             if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);
             if (dt == 0 || !report.error.empty()) return;
             report.error = impl_->lay_out(scene, contacts);
@@ -233,20 +241,25 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     clock.charge(Stage::prepare);
     step_figures();
     clock.charge(Stage::figures);
+    const bool can_replay = layout.has_constant_responses();
+    layout.context.replay = can_replay ? Replay::next_time : Replay::nothing;
+    // Where nothing comes between, positions and the next velocities are one pass over the bodies.
+    const bool runs_on = !projects && !(soft && settings.relaxations > 0);
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        const bool replays = substep > 0 && layout.has_constant_responses();
-        integrate(replays ? &BodyKernels::integrate_and_replay : &BodyKernels::integrate_velocities);
+        const bool is_last = substep + 1 == settings.substeps;
+        if (substep == 0 || !runs_on) integrate(&BodyKernels::integrate_velocities);
         clock.charge(Stage::integrate_velocities);
         for_each_figure(layout.figures.touched_trees(), prepare_tree);
-        if (!replays) sweep(&ConstraintKernels::warm_start);
+        if (substep == 0 || !can_replay) sweep(&ConstraintKernels::warm_start);
+        if (can_replay) layout.context.replay = Replay::last_substep;
         solve_touched_trees(exact_rate());
         clock.charge(Stage::warm_start);
         const int iterations = iterate(&ConstraintKernels::solve, settings.iterations);
         report.iterations = std::max(report.iterations, iterations);
         report.sweeps += iterations;
-        if (substep + 1 == settings.substeps) measure_residual(report);
+        if (is_last) measure_residual(report);
         clock.charge(Stage::solve);
-        integrate(&BodyKernels::integrate_positions);
+        integrate(runs_on && !is_last ? &BodyKernels::integrate_on : &BodyKernels::integrate_positions);
         for (int i = 0; projects && i < settings.projections; ++i) sweep(&ConstraintKernels::project);
         clock.charge(Stage::integrate_positions);
         if (soft) report.sweeps += iterate(&ConstraintKernels::relax, settings.relaxations);
@@ -293,14 +306,8 @@ bool Solver::Impl::anything_bounces(const Scene& scene) const
 
 std::string Solver::Impl::take_in(Scene& scene, std::span<const Contact> contacts)
 {
-    layout.intake.begin(scene, contacts.size());
-    const auto count = static_cast<std::int64_t>(contacts.size());
-    runner.run(chunks_of(count, contacts_per_chunk), [&](std::int64_t chunk) {
-        const std::int64_t first = chunk * contacts_per_chunk;
-        layout.intake.take(scene, contacts, static_cast<std::size_t>(first),
-                           static_cast<std::size_t>(std::min(first + contacts_per_chunk, count)));
-    });
-    return layout.intake.error(scene, contacts);
+    return layout.intake.take_in(scene, contacts,
+                                 [&](std::int64_t count, const auto& chunk) { runner.run(count, chunk); });
 }
 
 std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contacts)
@@ -309,22 +316,15 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
     ContactCache& cache = scene.contact_cache();
     layout.begin(scene, contacts.size(), use_of_figures());
     // What only one thread can do is one chunk among those of whatever else is ready.
-    runner.run(1 + cache.survey_parts(), [&](std::int64_t chunk) {
+    runner.run(1 + cache.part_count(), [&](std::int64_t chunk) {
         if (chunk == 0) {
             layout.colour_contacts(scene.bodies(), cache.staged());
         } else {
-            cache.survey(chunk - 1);
+            cache.verify(chunk - 1);
         }
     });
-    bool admitted = false;
-    runner.run(1 + layout.contacts.chunk_count(), [&](std::int64_t chunk) {
-        if (chunk == 0) {
-            admitted = cache.admit();
-        } else {
-            layout.contacts.count(chunk - 1);
-        }
-    });
-    if (!admitted) return ContactIntake::repeated_key(contacts);
+    if (cache.has_repeated_key()) return ContactIntake::repeated_key(contacts);
+    runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.count(chunk); });
     layout.contacts.open(layout.kernels());
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
     layout.cut(scene, contacts, tells_blocks_apart);

@@ -20,12 +20,12 @@ class StageRunner {
   public:
     explicit StageRunner(Executor* executor);
 
-    /// Calls `body()` on this thread with the executor's other threads standing by for run(), all of them in the
-    /// floating-point environment of a step.
+    /// Calls `body()` on this thread with the executor's other threads standing by for run() unless `alone`, all of them in
+    /// the floating-point environment of a step.
     template <class Body>
-    void with_workers(const Body& body)
+    void with_workers(bool alone, const Body& body)
     {
-        if (workers_ == 1) {
+        if (workers_ == 1 || alone) {
             const StepFloats floats;
             body();
             return;

@@ -73,9 +73,18 @@ enum class Measure {
     without_solving,  ///< what a sweep would do to the bodies as they are: changes nothing
 };
 
+/// Replays what the constraints of the last substep did to each body as the next one begins: a warm start without a
+/// sweep, exact where M^-1 J^T is constant through the step (contacts of particles and planar bodies).
+enum class Replay {
+    nothing,
+    next_time,     ///< only notes what velocities were before any constraint pushed
+    last_substep,  ///< and notes it again
+};
+
 struct KernelContext {
     StepConstants step;
     Measure measure = Measure::nothing;
+    Replay replay = Replay::nothing;
     BodyArrays bodies[body_kind_count];
 };
 
@@ -112,11 +121,10 @@ struct ConstraintKernels {
 /// The kernels of one kind of body, over rows begin ... end - 1.
 struct BodyKernels {
     using Move = void (*)(const KernelContext&, std::int32_t begin, std::int32_t end);
-    Move integrate_velocities = nullptr;
-    /// The same, and replays what the constraints of the last substep did to each body: a warm start without a
-    /// sweep, exact where M^-1 J^T is constant through the step (contacts of particles and planar bodies).
-    Move integrate_and_replay = nullptr;
+    Move integrate_velocities = nullptr;  ///< null for fixed bodies
     Move integrate_positions = nullptr;
+    Move integrate_on =
+        nullptr;  ///< positions, and then the velocities of the next substep: one pass for two
     /// BodyStore::commit of sixteen rows from `first` on; false, and nothing done, unless each of them is a body that
     /// can move and is finite. Null for fixed bodies.
     bool (*commit)(const BodyArrays&, std::int32_t first) = nullptr;

@@ -7,6 +7,8 @@ inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float
 
 #include "kernel_bodies.h"
 
+#include "kernel_integration.h"
+
 #include "kernel_commit.h"
 
 #include "kernel_copies.h"
@@ -19,11 +21,11 @@ template <BodyKind kind>
 void enter_body(BodyKernels& kernels)
 {
     if constexpr (kind != BodyKind::fixed) {
-        kernels.integrate_velocities = integrate_velocities<kind, false>;
-        kernels.integrate_and_replay = integrate_velocities<kind, true>;
+        kernels.integrate_velocities = integrate_velocities<kind>;
         kernels.commit = commit<kind>;
     }
-    kernels.integrate_positions = integrate_positions<kind>;
+    kernels.integrate_positions = integrate_positions<kind, false>;
+    kernels.integrate_on = integrate_positions<kind, true>;
 }
 
 inline void enter_body_kernels(KernelTable& table)

@@ -2,8 +2,8 @@
 // that fails it is looked at again, to say which field, which value and what was expected.
 #include "contact_intake.h"
 
-#include <array>
 #include <cmath>
+#include <cstddef>
 #include <unordered_set>
 
 #include "motley/core/growth.h"
@@ -25,18 +25,22 @@ bool is_unit(const Vec3<float>& n)
     return within(dot(n, n), 0.998F, 1.002F);
 }
 
-/// One expression without branches: contacts are nearly always good.
+/// Without branches, and the same for every number, so that it is done in lanes: contacts are nearly always good.
 bool numbers_are_good(const Contact& c)
 {
-    const auto fits = [](float value) { return std::abs(value) <= largest_arm; };
-    const float length2 = dot(c.normal, c.normal);
-    return static_cast<int>(length2 >= 0.998F) & static_cast<int>(length2 <= 1.002F) &
-           static_cast<int>(fits(c.separation)) & static_cast<int>(fits(c.arm_a.x)) &
-           static_cast<int>(fits(c.arm_a.y)) & static_cast<int>(fits(c.arm_a.z)) &
-           static_cast<int>(fits(c.arm_b.x)) & static_cast<int>(fits(c.arm_b.y)) &
-           static_cast<int>(fits(c.arm_b.z)) & static_cast<int>(c.friction >= 0) &
-           static_cast<int>(c.friction <= largest_friction) & static_cast<int>(c.restitution >= 0) &
-           static_cast<int>(c.restitution <= 1);
+    constexpr int count = 12;
+    static_assert(offsetof(Contact, restitution) - offsetof(Contact, normal) == (count - 1) * sizeof(float),
+                  "the numbers of a contact lie in line");
+    constexpr float n = 1.001F, far = largest_arm;
+    static constexpr float lowest[count] = {-n, -n, -n, -far, -far, -far, -far, 0, -far, -far, -far, 0};
+    static constexpr float highest[count] = {n, n, n, far, far, far, far, largest_friction, far, far, far, 1};
+    const float* numbers = &c.normal.x;
+    std::uint32_t bad = 0;
+    for (int i = 0; i < count; ++i) {
+        bad |= static_cast<std::uint32_t>(!(numbers[i] >= lowest[i])) |
+               static_cast<std::uint32_t>(!(numbers[i] <= highest[i]));
+    }
+    return bad == 0 && is_unit(c.normal);
 }
 
 /// Tells a body from a later one in the same slot.
@@ -90,7 +94,6 @@ bool ContactIntake::place(const BodyStore& bodies, const Contact& contact, Place
 /// Tells contact i what it was in the last step: contact `before`, or none.
 void ContactIntake::remember(ContactCache& cache, std::uint32_t i, std::uint32_t before)
 {
-    cache.claim(i, before);
     const ContactList& past = cache.current();
     const ContactList::Entry& entry = cache.staged().entries[i];
     const bool same_bodies = before != ContactCache::none && past.entries[before].body_a == entry.body_a &&
@@ -99,27 +102,18 @@ void ContactIntake::remember(ContactCache& cache, std::uint32_t i, std::uint32_t
     memory_index[i] = same_bodies ? static_cast<std::int32_t>(before) + 1 : 0;
 }
 
-void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::size_t first, std::size_t last)
+/// Checks a part of the list, and finds again what lies about where it lay.
+void ContactIntake::walk(Scene& scene, std::span<const Contact> contacts, std::int64_t part)
 {
     ContactCache& cache = scene.contact_cache();
-    // Those that are not where they were expected: looked up together, so that the table's cache misses overlap.
-    std::array<std::uint32_t, 32> missed;
-    std::size_t missed_count = 0;
-    const auto look_up = [&](std::uint32_t& cursor) {
-        for (std::size_t k = 0; k < missed_count; ++k) {
-            const std::uint32_t before = cache.find(contacts[missed[k]].key);
-            if (before != ContactCache::none) cursor = before + 1;
-            remember(cache, missed[k], before);
-        }
-        missed_count = 0;
-    };
-    std::uint32_t cursor = static_cast<std::uint32_t>(first);
+    ContactCache::Walk walk(cache, part);
+    const auto [begin, end] = cache.part(part);
     bool bounces = false;
-    for (auto i = static_cast<std::uint32_t>(first); i < last; ++i) {
+    for (std::uint32_t i = begin; i < end; ++i) {
         const Contact& contact = contacts[i];
         // Contacts lie in line, their bodies anywhere.
-        constexpr std::size_t ahead = 8;
-        if (i + ahead < last) {
+        constexpr std::uint32_t ahead = 8;
+        if (i + ahead < end) {
             scene.bodies().prefetch(contacts[i + ahead].body_a);
             scene.bodies().prefetch(contacts[i + ahead].body_b);
         }
@@ -133,17 +127,21 @@ void ContactIntake::take(Scene& scene, std::span<const Contact> contacts, std::s
         entry.key = contact.key;
         entry.body_a = fingerprint(contact.body_a);
         entry.body_b = fingerprint(contact.body_b);
-        const std::uint32_t before = cache.find_near(contact.key, cursor);
-        if (before != ContactCache::none) {
-            remember(cache, i, before);
-            continue;
-        }
-        cache.prefetch(contact.key);
-        missed[missed_count++] = i;
-        if (missed_count == missed.size() || i == first) look_up(cursor);
+        const std::uint32_t before = walk.find(i, contact.key);
+        if (before != ContactCache::none) remember(cache, i, before);
     }
-    look_up(cursor);
     if (bounces) bounces_.store(true, std::memory_order_relaxed);
+}
+
+/// Looks up what the walk missed, with the table's cache misses overlapping.
+void ContactIntake::trace(ContactCache& cache, std::int64_t part)
+{
+    constexpr std::size_t ahead = 12;
+    const std::span<const std::uint32_t> missed = cache.missed(part);
+    for (std::size_t k = 0; k < missed.size(); ++k) {
+        if (k + ahead < missed.size()) cache.prefetch(missed[k + ahead]);
+        remember(cache, missed[k], cache.trace(part, missed[k]));
+    }
 }
 
 namespace {
@@ -179,7 +177,6 @@ void check_arm(std::size_t index, const std::string& field, const Vec3<float>& a
 std::string ContactIntake::error(const Scene& scene, std::span<const Contact> contacts) const
 {
     const std::size_t bad = first_bad_.load(std::memory_order_relaxed);
-    if (bad == none) return {};
     const Contact& c = contacts[bad];
     try {
         check_body(scene, bad, "body_a", c.body_a);

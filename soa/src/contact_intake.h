@@ -15,12 +15,23 @@ namespace motley {
 /// What the layout needs of each contact, in list order.
 class ContactIntake {
   public:
-    /// Makes room for a list and clears the scene's staged list.
-    void begin(Scene& scene, std::size_t count);
-    /// Checks contacts [first, last) and looks their keys up in the last step's. Ranges may run on different threads.
-    void take(Scene& scene, std::span<const Contact> contacts, std::size_t first, std::size_t last);
-    /// Empty when every contact is good; else what is wrong with the first bad one. Serial.
-    [[nodiscard]] std::string error(const Scene& scene, std::span<const Contact> contacts) const;
+    /// Checks a list and finds its contacts again among those of the last step. `run(count, chunk)` calls chunk(i) for each
+    /// i in [0, count), on whichever threads. Empty when every contact is good, but for keys that come twice, which
+    /// ContactCache::verify() finds; else what is wrong with the first bad one.
+    template <class Run>
+    [[nodiscard]] std::string take_in(Scene& scene, std::span<const Contact> contacts, const Run& run)
+    {
+        ContactCache& cache = scene.contact_cache();
+        begin(scene, contacts.size());
+        const std::int64_t parts = cache.part_count();
+        run(parts, [&](std::int64_t part) { walk(scene, contacts, part); });
+        if (has_bad_contact()) return error(scene, contacts);
+        run(parts, [&](std::int64_t part) { cache.find_lost(part); });
+        cache.open_table();
+        run(parts, [&](std::int64_t part) { cache.enter_lost(part); });
+        run(parts, [&](std::int64_t part) { trace(cache, part); });
+        return {};
+    }
 
     /// Whether one of the contacts taken in gives anything back.
     [[nodiscard]] bool bounces() const { return bounces_.load(std::memory_order_relaxed); }
@@ -36,7 +47,12 @@ class ContactIntake {
     std::atomic<std::size_t> first_bad_{none};
     std::atomic<bool> bounces_{false};
 
+    void begin(Scene& scene, std::size_t count);
+    void walk(Scene& scene, std::span<const Contact> contacts, std::int64_t part);
+    void trace(ContactCache& cache, std::int64_t part);
     void mark_bad(std::size_t index);
+    [[nodiscard]] bool has_bad_contact() const { return first_bad_.load(std::memory_order_relaxed) != none; }
+    [[nodiscard]] std::string error(const Scene& scene, std::span<const Contact> contacts) const;
     static bool place(const BodyStore& bodies, const Contact& contact, Placement& placement);
     void remember(ContactCache& cache, std::uint32_t i, std::uint32_t before);
 };

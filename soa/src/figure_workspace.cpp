@@ -25,7 +25,8 @@ void FigureWorkspace::make_room(std::span<const FigureBlock> blocks)
             floats += std::int64_t{kernels.row_floats + kernels.substep_floats + kernels.impulse_floats} *
                       block_lanes;
         }
-        if (floats_.size() < static_cast<std::size_t>(floats)) floats_.resize(static_cast<std::size_t>(floats));
+        if (floats_.size() < static_cast<std::size_t>(floats))
+            floats_.resize(static_cast<std::size_t>(floats));
         if (joints_.size() < joints) joints_.resize(joints);
     }
 }

@@ -306,6 +306,8 @@ struct Kernels {
                 B b = bundle.load_b();
                 Type::template project<Lanes>(context.step, load_row<Row>(bundle.row),
                                               load_row<Substep>(bundle.substep), a, b);
+                turn_inertia(bundle.arrays_a, bundle.rows_a, a);
+                turn_inertia(bundle.arrays_b, bundle.rows_b, b);
                 store_delta(bundle.arrays_a, bundle.rows_a, a, bundle.count);
                 store_delta(bundle.arrays_b, bundle.rows_b, b, bundle.count);
             });

@@ -57,7 +57,7 @@ long allocations_of_warm_steps(int threads, float tolerance = 0)
     settings.gravity = {0, -9.81F, 0};
     settings.tolerance = tolerance;
     settings.measures = tolerance > 0;
-    Solver solver(settings, {.threads = threads});
+    Solver solver(settings, {.threads = threads, .alone_below = 0});
     for (int step = 0; step < 200; ++step) solver.step(mixed.scene, 1.0F / 60, mixed.contacts());
     const std::vector<Contact> contacts = mixed.contacts();
     solver.step(mixed.scene, 1.0F / 60, contacts);
@@ -86,7 +86,7 @@ long allocations_of_figures(bool exact, int threads)
     SolverSettings settings;
     settings.gravity = {0, -9.81F, 1};
     settings.exact_joints = exact;
-    Solver solver(settings, {.threads = threads});
+    Solver solver(settings, {.threads = threads, .alone_below = 0});
     Contact contact;
     contact.body_a = scene.ground();
     contact.body_b = links[7];

@@ -47,7 +47,7 @@ TEST(Executor, AHostsOwnThreadsGiveTheSameBits)
     const std::uint64_t alone = hash_after_steps({.threads = 1});
     for (const int concurrency : {2, 3, 7}) {
         ThreadExecutor host(concurrency, concurrency);
-        EXPECT_EQ(hash_after_steps({.executor = &host}), alone) << concurrency;
+        EXPECT_EQ(hash_after_steps({.alone_below = 0, .executor = &host}), alone) << concurrency;
         EXPECT_EQ(host.runs, 60);
     }
 }
@@ -57,7 +57,7 @@ TEST(Executor, AStepFinishesWithFewerThreadsThanWerePromisedEvenNone)
     const std::uint64_t alone = hash_after_steps({.threads = 1});
     for (const int lent : {0, 1, 3}) {
         ThreadExecutor host(5, lent);
-        EXPECT_EQ(hash_after_steps({.executor = &host}), alone) << lent;
+        EXPECT_EQ(hash_after_steps({.alone_below = 0, .executor = &host}), alone) << lent;
     }
 }
 

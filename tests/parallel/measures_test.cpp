@@ -213,7 +213,7 @@ TEST(Measures, AreTheSameForAnyThreadsAndInstructionSet)
     const auto scalar = figures({.isa = Isa::scalar});
     for (const Isa isa : available_isas()) {
         EXPECT_EQ(figures({.isa = isa}), scalar) << isa_name(isa);
-        EXPECT_EQ(figures({.threads = 3, .isa = isa}), scalar) << isa_name(isa);
+        EXPECT_EQ(figures({.threads = 3, .alone_below = 0, .isa = isa}), scalar) << isa_name(isa);
     }
 }
 
@@ -227,7 +227,7 @@ TEST(Tolerance, KeepsTheBitsOfEveryInstructionSetAndThreadCount)
     const auto scalar = run(settings, {.isa = Isa::scalar});
     for (const Isa isa : available_isas()) {
         EXPECT_EQ(run(settings, {.isa = isa}), scalar) << isa_name(isa);
-        EXPECT_EQ(run(settings, {.threads = 3, .isa = isa}), scalar) << isa_name(isa);
+        EXPECT_EQ(run(settings, {.threads = 3, .alone_below = 0, .isa = isa}), scalar) << isa_name(isa);
     }
 }
 

@@ -73,7 +73,7 @@ TEST(Snapshot, GoesOnWithTheSameBitsByEveryMethod)
         back.scene = load_scene(file.path());
         EXPECT_EQ(back.scene.state_hash(), mixed.scene.state_hash());
         EXPECT_EQ(back.scene.body_count(), mixed.scene.body_count());
-        Solver other(settings_of(method), {.threads = 2});
+        Solver other(settings_of(method), {.threads = 2, .alone_below = 0});
         for (int step = 0; step < 60; ++step) {
             if (step == 5) {  // new rows and handles are the same ones
                 for (MixedScene* scene : {&mixed, &back}) {
@@ -140,7 +140,7 @@ TEST(Snapshot, OfAStepIsSolvedAgainTheSame)
     for (const Isa isa : available_isas()) {
         for (const int threads : {1, 2}) {
             StepProblem back = load_problem(file.path());
-            Solver other(back.settings, {.threads = threads, .isa = isa});
+            Solver other(back.settings, {.threads = threads, .alone_below = 0, .isa = isa});
             ASSERT_EQ(other.step(back.scene, back.dt, back.contacts).status, StepStatus::done);
             EXPECT_EQ(back.scene.state_hash(), mixed.scene.state_hash()) << isa_name(isa);
         }

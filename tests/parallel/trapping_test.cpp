@@ -130,7 +130,7 @@ TEST(Environment, OfTheHostIsLeftAsFound)
         for (const Way& way : ways()) {
             for (const Isa isa : available_isas()) {
                 MixedScene mixed;
-                Solver solver(way.settings, {.threads = 2, .isa = isa});
+                Solver solver(way.settings, {.threads = 2, .alone_below = 0, .isa = isa});
                 const int rounding = std::fegetround();
                 const unsigned before = control();
                 for (int step = 0; step < 3; ++step) solver.step(mixed.scene, dt, mixed.contacts());
@@ -170,7 +170,7 @@ TEST(Environment, OfAStepIsTheSameWhateverTheHosts)
 {
     for (const Way& way : ways()) {
         for (const int threads : {1, 2}) {
-            const SolverOptions options{.threads = threads};
+            const SolverOptions options{.threads = threads, .alone_below = 0};
             const std::uint64_t nearest = hash_with_rounding(FE_TONEAREST, way, options);
             EXPECT_EQ(hash_with_rounding(FE_UPWARD, way, options), nearest) << way.name;
             EXPECT_EQ(hash_with_rounding(FE_TOWARDZERO, way, options), nearest) << way.name;
@@ -196,7 +196,7 @@ TEST(Environment, OfAStepTakesDenormalsForNothing)
             }
             SolverSettings weightless;
             weightless.gravity = {};
-            Solver solver(weightless, {.threads = threads, .isa = isa});
+            Solver solver(weightless, {.threads = threads, .alone_below = 0, .isa = isa});
             solver.step(scene, dt);
             for (const BodyId body : bodies) {
                 const BodyState state = scene.state(body);

@@ -4,101 +4,158 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <numeric>
+#include <optional>
+#include <random>
 #include <set>
+
+#include "motley/parallel/parallel_for.h"
+#include "motley/parallel/solver.h"
 
 namespace motley {
 namespace {
 
-/// What an intake does with a list of keys; false when refused.
-bool take(ContactCache& cache, const std::vector<std::uint64_t>& keys)
+using Keys = std::vector<std::uint64_t>;
+
+/// What an intake does with a list of keys: which of the last list each one was, or nothing when they are refused.
+std::optional<std::vector<std::uint32_t>> take(ContactCache& cache, const Keys& keys, Executor& executor)
 {
+    std::vector<std::uint32_t> before(keys.size());
     cache.begin(keys.size());
-    std::uint32_t cursor = 0;
-    for (std::uint32_t i = 0; i < keys.size(); ++i) {
-        cache.staged().entries[i].key = keys[i];
-        std::uint32_t before = cache.find_near(keys[i], cursor);
-        if (before == ContactCache::none) before = cache.find(keys[i]);
-        cache.claim(i, before);
-    }
-    for (std::int64_t part = 0; part < cache.survey_parts(); ++part) cache.survey(part);
-    if (!cache.admit()) return false;
+    const auto for_parts = [&](const auto& work) {
+        parallel_for(executor, cache.part_count(), 1, [&](std::int64_t part, std::int64_t) { work(part); });
+    };
+    for_parts([&](std::int64_t part) {
+        ContactCache::Walk walk(cache, part);
+        for (std::uint32_t i = cache.part(part).begin; i < cache.part(part).end; ++i) {
+            cache.staged().entries[i].key = keys[i];
+            before[i] = walk.find(i, keys[i]);
+        }
+    });
+    for_parts([&](std::int64_t part) { cache.find_lost(part); });
+    cache.open_table();
+    for_parts([&](std::int64_t part) { cache.enter_lost(part); });
+    for_parts([&](std::int64_t part) {
+        for (const std::uint32_t i : cache.missed(part)) before[i] = cache.trace(part, i);
+    });
+    for_parts([&](std::int64_t part) { cache.verify(part); });
+    if (cache.has_repeated_key()) return {};
     cache.accept_staged();
-    return true;
+    return before;
 }
+
+/// Takes a list in, and sees to it that every contact found its past and no other.
+struct Checked {
+    ContactCache cache;
+    std::map<std::uint64_t, std::uint32_t> last;
+    Solver threads{{}, {.threads = 2}};
+
+    /// False where something is wrong.
+    bool take_in(const Keys& keys)
+    {
+        const bool unique = std::set<std::uint64_t>(keys.begin(), keys.end()).size() == keys.size();
+        const auto before = take(cache, keys, threads.executor());
+        if (before.has_value() != unique) return false;
+        if (!before) return true;
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            const auto known = last.find(keys[i]);
+            if ((*before)[i] != (known == last.end() ? ContactCache::none : known->second)) return false;
+        }
+        last.clear();
+        for (std::uint32_t i = 0; i < keys.size(); ++i) last[keys[i]] = i;
+        return true;
+    }
+};
 
 RC_GTEST_PROP(ContactCache, FindsWhatTheLastAcceptedListHad,
               (const std::vector<std::vector<std::uint8_t>>& lists))
 {
-    ContactCache cache;
-    std::map<std::uint64_t, std::uint32_t> truth;
+    Checked checked;
     for (const auto& list : lists) {
-        std::vector<std::uint64_t> keys;
+        Keys keys;
         // Few different keys, so that they come back, and some that share the low half.
         for (const std::uint8_t key : list) keys.push_back(key % 64 + (std::uint64_t{key} >> 6 << 33));
-        const bool unique = std::set<std::uint64_t>(keys.begin(), keys.end()).size() == keys.size();
-        RC_ASSERT(take(cache, keys) == unique);
-        if (unique) {
-            truth.clear();
-            for (std::uint32_t i = 0; i < keys.size(); ++i) truth[keys[i]] = i;
-        }
-        for (std::uint64_t key = 0; key < 256; ++key) {
-            const std::uint64_t asked = key % 64 + (key >> 6 << 33);
-            const auto known = truth.find(asked);
-            RC_ASSERT(cache.find(asked) == (known == truth.end() ? ContactCache::none : known->second));
-        }
+        RC_ASSERT(checked.take_in(keys));
     }
 }
 
 TEST(ContactCache, ListsMayShrinkAndGrowByAnyAmount)
 {
-    ContactCache cache;
+    Checked checked;
     std::uint64_t next = 0;
     for (const std::size_t count : {10'000, 3, 0, 7'000, 20'000, 1, 19'999, 40'000, 12}) {
-        std::vector<std::uint64_t> keys(count);
-        for (std::size_t i = 0; i < count; ++i) keys[i] = next + i;
-        ASSERT_TRUE(take(cache, keys));
-        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(cache.find(keys[i]), i);
+        Keys keys(count);
+        std::iota(keys.begin(), keys.end(), next);
+        ASSERT_TRUE(checked.take_in(keys));
         next += count / 2;  // half of them come back
     }
 }
 
-RC_GTEST_PROP(KeyTable, IsAMapFromKeysToTicketsOfTheirOwn,
-              (const std::vector<std::pair<bool, std::uint8_t>>& changes))
+/// Lists of several parts, each of which is the last one after something that a host may do to it.
+TEST(ContactCache, OrderIsAHintOnly)
 {
-    KeyTable table;
-    std::map<std::uint64_t, std::uint32_t> truth;
-    for (const auto& [insert, low] : changes) {
-        // Multiples of 2^58 crowd into few buckets.
-        const std::uint64_t key = std::uint64_t{low} << 58 | low;
-        if (insert) {
-            const std::uint32_t ticket = table.insert(key);
-            RC_ASSERT((ticket == KeyTable::none) == truth.contains(key));
-            if (ticket == KeyTable::none) continue;
-            for (const auto& other : truth) RC_ASSERT(other.second != ticket);
-            truth[key] = ticket;
-        } else {
-            table.remove(key);
-            truth.erase(key);
+    Checked checked;
+    std::mt19937 random(12345);
+    Keys keys(30'000);
+    std::iota(keys.begin(), keys.end(), 0);
+    ASSERT_TRUE(checked.take_in(keys));
+    const auto with = [&](const auto& change) {
+        change();
+        return checked.take_in(keys);
+    };
+    std::uint64_t fresh = 1'000'000;
+    const auto come_and_go = [&] {
+        Keys changed;
+        for (const std::uint64_t key : keys) {
+            if (random() % 10 != 0) changed.push_back(key);
+            if (random() % 9 == 0) changed.push_back(fresh++);
         }
-        RC_ASSERT(table.size() == truth.size());
-        for (const auto& [known, ticket] : truth) RC_ASSERT(table.find(known) == ticket);
-    }
+        keys = changed;
+    };
+    for (int step = 0; step < 5; ++step) EXPECT_TRUE(with(come_and_go));
+    EXPECT_TRUE(with([&] { std::shuffle(keys.begin(), keys.end(), random); }));
+    EXPECT_TRUE(with([&] { std::reverse(keys.begin(), keys.end()); }));
+    EXPECT_TRUE(with([&] { std::rotate(keys.begin(), keys.begin() + 11'000, keys.end()); }));
+    EXPECT_TRUE(with([&] { keys.erase(keys.begin() + 100, keys.begin() + 9'000); }));
+    EXPECT_TRUE(with([&] {
+        Keys crowd(9'000);
+        std::iota(crowd.begin(), crowd.end(), fresh);
+        fresh += crowd.size();
+        keys.insert(keys.begin() + 200, crowd.begin(), crowd.end());
+    }));
+    EXPECT_TRUE(with(come_and_go));
+    EXPECT_TRUE(with([] {}));
 }
 
-TEST(KeyTable, SurvivesAThousandGenerationsWithoutGrowing)
+/// A key that comes twice, wherever: both where the last list had it, one of them, new both, in one part or in two.
+TEST(ContactCache, AKeyThatComesTwiceIsFoundOut)
 {
-    KeyTable table;
-    for (std::uint64_t i = 0; i < 1000; ++i) table.insert(i);
-    const std::size_t limit = table.ticket_limit();
-    for (std::uint64_t i = 0; i < 1'000'000; ++i) {
-        table.remove(i);
-        ASSERT_NE(table.insert(i + 1000), KeyTable::none);
+    std::mt19937 random(12345);
+    for (int round = 0; round < 300; ++round) {
+        Checked checked;
+        Keys keys(9'000);
+        std::iota(keys.begin(), keys.end(), 0);
+        ASSERT_TRUE(checked.take_in(keys));
+        for (std::uint64_t& key : keys) {
+            if (random() % 20 == 0) key += 1'000'000;
+        }
+        const auto any = [&] { return static_cast<std::ptrdiff_t>(random() % keys.size()); };
+        const std::uint64_t twice = keys[static_cast<std::size_t>(any())];
+        switch (round % 3) {
+            case 0:
+                keys[static_cast<std::size_t>(any())] = twice;
+                break;
+            case 1:
+                keys.insert(keys.begin() + any(), twice);
+                break;
+            default:
+                keys.insert(std::find(keys.begin(), keys.end(), twice), twice);
+                break;
+        }
+        EXPECT_TRUE(checked.take_in(keys)) << round;
     }
-    EXPECT_EQ(table.ticket_limit(), limit);
-    EXPECT_EQ(table.size(), 1000U);
-    for (std::uint64_t i = 0; i < 1000; ++i) EXPECT_NE(table.find(1'000'000 + i), KeyTable::none);
-    EXPECT_EQ(table.find(999'999), KeyTable::none);
 }
 
 }  // namespace

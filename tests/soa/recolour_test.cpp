@@ -13,15 +13,16 @@ namespace {
 /// Everything of a step up to the blocks, by one thread, as Solver::step does it.
 void lay_out(Layout& layout, Scene& scene, std::span<const Contact> contacts)
 {
-    layout.intake.begin(scene, contacts.size());
-    layout.intake.take(scene, contacts, 0, contacts.size());
-    RC_ASSERT(layout.intake.error(scene, contacts).empty());
+    const auto run = [](std::int64_t count, const auto& chunk) {
+        for (std::int64_t i = 0; i < count; ++i) chunk(i);
+    };
+    RC_ASSERT(layout.intake.take_in(scene, contacts, run).empty());
     ContactCache& cache = scene.contact_cache();
     layout.begin(scene, contacts.size(), {});
     layout.colour_contacts(scene.bodies(), cache.staged());
-    for (std::int64_t part = 0; part < cache.survey_parts(); ++part) cache.survey(part);
+    run(cache.part_count(), [&](std::int64_t part) { cache.verify(part); });
+    RC_ASSERT(!cache.has_repeated_key());
     for (std::int64_t chunk = 0; chunk < layout.contacts.chunk_count(); ++chunk) layout.contacts.count(chunk);
-    RC_ASSERT(cache.admit());
     layout.contacts.open(layout.kernels());
     for (std::int64_t chunk = 0; chunk < layout.contacts.chunk_count(); ++chunk) layout.contacts.fill(chunk);
     layout.cut(scene, contacts, false);

@@ -78,6 +78,8 @@ class BodyStore {
     BodyId add(const BodyDefinition& definition);
     /// Frees the slot and row of a live body.
     void remove(BodyId body);
+    /// Gives every body a new row, in the order of a curve that fills space, and closes the gaps of free ones.
+    void renumber();
     [[nodiscard]] bool is_alive(BodyId body) const
     {
         // A removal moves the generation on, so a handle that matches is alive; the null slot's is never handed out.

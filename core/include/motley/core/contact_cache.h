@@ -9,6 +9,7 @@
 
 #include "motley/core/aligned_vector.h"
 #include "motley/core/constraints/contact_definition.h"
+#include "motley/core/key_table.h"
 
 namespace motley {
 
@@ -22,80 +23,74 @@ struct ContactList {
         std::uint32_t body_a = 0, body_b = 0;  ///< fingerprints of the handles
     };
     std::size_t count = 0;
-    AlignedVector<Entry> entries;          ///< `count` of them are in use
-    AlignedVector<std::uint32_t> tickets;  ///< of the keys in the cache's table
+    AlignedVector<Entry> entries;  ///< `count` of them are in use
     AlignedVector<std::uint8_t> colours;
     /// Of contact i at i + 1; the first stays zero, where a contact without a past looks for it.
     AlignedVector<ContactImpulse> impulses = AlignedVector<ContactImpulse>(1);
-    AlignedVector<std::uint32_t> positions;  ///< by ticket: the index of its contact, or KeyTable::none
-};
-
-/// Numbers for keys: a key gets a ticket, a small number of its own, for as long as it is known. Open addressing,
-/// linear probing, at most four fifths full, and that only while all keys of two lists are known.
-class KeyTable {
-  public:
-    static constexpr std::uint32_t none = 0xFFFFFFFFU;
-
-    /// Room for `count` keys: until then insert() allocates nothing.
-    void reserve(std::size_t count);
-    /// The ticket of a key, or none.
-    [[nodiscard]] std::uint32_t find(std::uint64_t key) const;
-    /// A new ticket, or none when the key has one already.
-    std::uint32_t insert(std::uint64_t key);
-    /// Takes a known key's ticket back.
-    void remove(std::uint64_t key);
-    /// Asks for the cache line that any of the three will look at first.
-    void prefetch(std::uint64_t key) const { __builtin_prefetch(&buckets_[place_of(hash_of(key))]); }
-    [[nodiscard]] std::size_t size() const { return keys_.size() - free_.size(); }
-    /// Tickets are below this.
-    [[nodiscard]] std::size_t ticket_limit() const { return keys_.size(); }
-
-  private:
-    // A bucket holds 32 bits of the key's hash above ticket + 1: zero is empty, and a probe that passes strangers
-    // seldom has to fetch their keys. Its place follows from those bits alone, so that moving fetches none.
-    static std::uint64_t hash_of(std::uint64_t key)
-    {
-        return (key ^ key >> 32) * 0x9E3779B97F4A7C15ULL >> 32;
-    }
-    [[nodiscard]] std::size_t place_of(std::uint64_t hash) const { return hash >> shift_; }
-    [[nodiscard]] std::size_t bucket_of(std::uint64_t key) const;
-
-    AlignedVector<std::uint64_t> buckets_ = AlignedVector<std::uint64_t>(64);
-    int shift_ = 32 - 6;
-    AlignedVector<std::uint64_t> keys_;  ///< by ticket
-    std::vector<std::uint32_t> free_;    ///< tickets, last taken back first
 };
 
 /// The list of the last step and the one in the making.
+///
+/// Hosts list contacts in about the order of the step before, less those that are gone. So the new list is walked along
+/// the last one, and only what is missed on the way is looked up, in a table of what no walk came by. Lists are cut into
+/// parts; the calls for all parts of one stage may run on different threads, and come after those of the stage before:
+///   1. a Walk a part, which is told of every contact
+///   2. find_lost(part), then open_table()
+///   3. enter_lost(part)
+///   4. trace(part, i) for each of missed(part)
+///   5. verify(part), then has_repeated_key()
 class ContactCache {
   public:
-    static constexpr std::uint32_t none = KeyTable::none;
+    static constexpr std::uint32_t none = 0xFFFFFFFFU;
+    struct Range {
+        std::uint32_t begin, end;
+    };
 
     /// Makes room for a list of `count`. Allocates only when the list outgrows every earlier one.
     void begin(std::size_t count);
     [[nodiscard]] const ContactList& current() const { return lists_[current_]; }
     [[nodiscard]] ContactList& staged() { return lists_[1 - current_]; }
 
-    /// Where the last step's list has a key, or none.
-    [[nodiscard]] std::uint32_t find(std::uint64_t key) const
+    [[nodiscard]] std::int64_t part_count() const { return static_cast<std::int64_t>(parts_.size()); }
+    /// The contacts of the new list in a part.
+    [[nodiscard]] Range part(std::int64_t part) const { return share(lists_[1 - current_].count, part); }
+
+    /// Goes along the last list while a part of the new one is taken in.
+    class Walk {
+      public:
+        Walk(ContactCache& cache, std::int64_t part);
+        ~Walk();
+        Walk(const Walk&) = delete;
+        Walk& operator=(const Walk&) = delete;
+        /// The contact of the last list with the key of new contact `index`, which is then claimed; or none, and it is
+        /// missed.
+        std::uint32_t find(std::uint32_t index, std::uint64_t key);
+
+      private:
+        [[nodiscard]] std::uint32_t look_around(std::uint64_t key) const;
+        ContactCache& cache_;
+        const ContactList& list_;
+        std::int64_t part_;
+        std::uint32_t cursor_;  ///< where the next one is expected
+        std::uint32_t index_;   ///< of the new contact that was found last, and one
+        std::uint32_t claims_ = 0, missed_;
+        int misses_ = 0, patience_ = 1;  ///< misses in line, and how many until it looks around
+    };
+    void find_lost(std::int64_t part);
+    void open_table();
+    void enter_lost(std::int64_t part);
+    /// New contacts that no walk found.
+    [[nodiscard]] std::span<const std::uint32_t> missed(std::int64_t part) const
     {
-        const std::uint32_t ticket = keys_.find(key);
-        return ticket == none ? none : current().positions[ticket];
+        const Part& own = parts_[static_cast<std::size_t>(part)];
+        return {missed_.data() + own.missed.begin, own.missed.end - own.missed.begin};
     }
-    /// Likewise, but looks only at `cursor` and the few entries behind it, and moves it behind the one found: lists
-    /// mostly come in the order of the step before, with a few contacts gone.
-    [[nodiscard]] std::uint32_t find_near(std::uint64_t key, std::uint32_t& cursor) const;
-    void prefetch(std::uint64_t key) const { keys_.prefetch(key); }
-    /// Says that staged contact `index` has the key of contact `before` of the last step, or of none. Safe from
-    /// several threads.
-    void claim(std::uint32_t index, std::uint32_t before);
-    /// Once every contact is staged and has claimed its past: finds the keys that come and go, in parts that may run
-    /// on different threads...
-    [[nodiscard]] std::int64_t survey_parts() const { return static_cast<std::int64_t>(surveys_.size()); }
-    void survey(std::int64_t part);
-    /// ...then gives new keys their tickets and forgets those that are gone. False, and nothing changed, when a key
-    /// came twice.
-    bool admit();
+    void prefetch(std::uint32_t index) const { table_.prefetch(lists_[1 - current_].entries[index].key); }
+    /// The lost contact that new contact `index` was, or none: then it is new.
+    std::uint32_t trace(std::int64_t part, std::uint32_t index);
+    void verify(std::int64_t part);
+    [[nodiscard]] bool has_repeated_key() const { return repeated_; }
+
     /// Of an empty cache: these are the contacts of the last step. False, with the cache no longer of use, when a key
     /// comes twice.
     bool restore(std::span<const ContactList::Entry> entries, std::span<const std::uint8_t> colours,
@@ -110,37 +105,53 @@ class ContactCache {
   private:
     ContactList lists_[2];
     int current_ = 0;
-    KeyTable keys_;
-    AlignedVector<std::uint32_t>
-        newcomers_;  ///< staged contacts without a past, each part's where the part begins
-    AlignedVector<std::uint32_t> leavers_;  ///< current contacts without a future, likewise
-    struct Survey {
-        std::uint32_t first_newcomer = 0, last_newcomer = 0, first_leaver = 0, last_leaver = 0;
-        bool has_repeated_key = false;
+    struct Part {
+        Range missed{}, lost{};  ///< in the lists of all parts
+        std::uint32_t claims = 0;
+        std::int32_t shift = 0;  ///< how much further on the last list is at the end of this part
     };
-    std::vector<Survey> surveys_;
+    std::vector<Part> parts_;
+    AlignedVector<std::uint8_t> claimed_;  ///< of the last list
+    AlignedVector<std::uint32_t> missed_;  ///< of the new list, each part's where the part begins
+    AlignedVector<std::uint32_t> lost_;    ///< of the last list, likewise
+    KeyTable table_;                       ///< of what is lost, and of what is new
+    bool looks_up_ = false;                ///< whether anything was missed
+    bool repeated_ = false;                ///< a key came twice
+
+    [[nodiscard]] Range share(std::size_t count, std::int64_t part) const
+    {
+        const auto at = [&](std::int64_t p) {
+            return static_cast<std::uint32_t>(static_cast<std::int64_t>(count) * p / part_count());
+        };
+        return {at(part), at(part + 1)};
+    }
+    void mark_repeated() { std::atomic_ref(repeated_).store(true, std::memory_order_relaxed); }
 };
 
-inline std::uint32_t ContactCache::find_near(std::uint64_t key, std::uint32_t& cursor) const
+inline std::uint32_t ContactCache::Walk::find(std::uint32_t index, std::uint64_t key)
 {
-    constexpr std::size_t ahead = 6;
-    const ContactList& list = current();
-    const auto end = static_cast<std::uint32_t>(std::min(list.count, cursor + ahead));
-    for (std::uint32_t i = cursor; i < end; ++i) {
-        if (list.entries[i].key != key) continue;
-        cursor = i + 1;
-        return i;
+    constexpr std::uint32_t ahead = 6;
+    std::uint32_t found = none;
+    const auto end = std::min(static_cast<std::uint32_t>(list_.count), cursor_ + ahead);
+    for (std::uint32_t i = cursor_; i < end && found == none; ++i) {
+        if (list_.entries[i].key == key) found = i;
     }
-    return none;
-}
-
-inline void ContactCache::claim(std::uint32_t index, std::uint32_t before)
-{
-    ContactList& list = staged();
-    const std::uint32_t ticket = before == none ? none : current().tickets[before];
-    list.tickets[index] = ticket;
-    // Of two that claim one ticket only one is found here by admit(): no need to see the other in time.
-    if (ticket != none) std::atomic_ref(list.positions[ticket]).store(index, std::memory_order_relaxed);
+    if (found == none && ++misses_ >= patience_) {
+        found = look_around(key);
+        misses_ = 0;
+        patience_ = found == none ? 2 * patience_ : 4;
+    }
+    if (found == none) {
+        cache_.missed_[missed_++] = index;
+        return none;
+    }
+    misses_ = 0;
+    cursor_ = found + 1;
+    index_ = index + 1;
+    ++claims_;
+    // Two that claim the same one are found out by their number: find_lost() counts who was claimed.
+    std::atomic_ref(cache_.claimed_[found]).store(1, std::memory_order_relaxed);
+    return found;
 }
 
 }  // namespace motley

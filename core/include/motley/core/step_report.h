@@ -11,7 +11,8 @@ namespace motley {
 
 /// The stages of a step, in their order, for the time table.
 enum class Stage {
-    colour,
+    intake,  ///< contacts checked, and found again from the last step
+    colour,  ///< colours, and constraints sorted into blocks by them
     prepare,
     figures,
     integrate_velocities,
@@ -22,8 +23,8 @@ enum class Stage {
     restitution,
     store
 };
-inline constexpr int stage_count = 10;
-/// "colour", "prepare", ...
+inline constexpr int stage_count = 11;
+/// "intake", "colour", ...
 const char* stage_name(Stage stage);
 
 /// How a step ended.

@@ -1,0 +1,87 @@
+// A set of keys that threads fill together: of contacts that are looked for, and of contacts that are new.
+#pragma once
+
+#include <atomic>
+#include <bit>
+#include <cstdint>
+
+#include "motley/core/aligned_vector.h"
+
+namespace motley {
+
+/// Open addressing, linear probing, at most three quarters full. A key's list and index, below 2^31, stand for it; the
+/// lists are the caller's.
+class KeyTable {
+  public:
+    /// Which list an index is of.
+    enum class List : std::uint8_t { lost, fresh };
+    struct Found {
+        List list;
+        std::uint32_t index;  ///< or none
+        static constexpr std::uint32_t none = 0xFFFFFFFFU;
+    };
+
+    /// Empties it, with room for `count` keys, of which `fresh` of the second list. Allocates only beyond every earlier count.
+    void clear(std::size_t count, std::size_t fresh);
+    /// Asks for the cache line that enter() will look at first.
+    void prefetch(std::uint64_t key) const { __builtin_prefetch(&buckets_[place_of(hash_of(key))]); }
+
+    /// Enters index `index` of `list` unless there is its key already; then that one. `key_of(list, index)` is a key.
+    template <class KeyOf>
+    Found enter(std::uint64_t key, List list, std::uint32_t index, const KeyOf& key_of)
+    {
+        const std::uint64_t hash = hash_of(key);
+        const std::uint64_t own = hash << 32 | std::uint64_t{index} << 1 | static_cast<std::uint64_t>(list);
+        for (std::size_t i = place_of(hash);; i = (i + 1) & mask_) {
+            std::uint64_t held = 0;
+            if (std::atomic_ref(buckets_[i]).compare_exchange_strong(held, own, std::memory_order_relaxed))
+                break;
+            const Found found = unpack(held);
+            if (held >> 32 == hash && key_of(found.list, found.index) == key) return found;
+        }
+        if (list == List::fresh) {
+            const std::uint64_t bit = hash >> filter_shift_;
+            std::atomic_ref(filter_[bit / 64]).fetch_or(1ULL << bit % 64, std::memory_order_relaxed);
+        }
+        return {list, Found::none};
+    }
+    /// Whether a key of the second list may be this one; when it is, always. Only when nobody enters any more.
+    [[nodiscard]] bool may_be_fresh(std::uint64_t key) const
+    {
+        const std::uint64_t bit = hash_of(key) >> filter_shift_;
+        return (filter_[bit / 64] >> bit % 64 & 1) != 0;
+    }
+    /// Whether a key of the second list is this one. Likewise.
+    template <class KeyOf>
+    [[nodiscard]] bool is_fresh(std::uint64_t key, const KeyOf& key_of) const
+    {
+        const std::uint64_t hash = hash_of(key);
+        for (std::size_t i = place_of(hash); buckets_[i] != 0; i = (i + 1) & mask_) {
+            const Found found = unpack(buckets_[i]);
+            if (buckets_[i] >> 32 == hash && found.list == List::fresh &&
+                key_of(found.list, found.index) == key)
+                return true;
+        }
+        return false;
+    }
+
+  private:
+    // A bucket holds 32 bits of the key's hash, never all zero, above the index and its list: zero is empty, and a
+    // probe that passes strangers seldom has to fetch their keys.
+    static std::uint64_t hash_of(std::uint64_t key)
+    {
+        return (key ^ key >> 32) * 0x9E3779B97F4A7C15ULL >> 32 | 1;
+    }
+    static Found unpack(std::uint64_t bucket)
+    {
+        return {static_cast<List>(bucket & 1), static_cast<std::uint32_t>(bucket) >> 1};
+    }
+    [[nodiscard]] std::size_t place_of(std::uint64_t hash) const { return hash >> shift_; }
+
+    AlignedVector<std::uint64_t> buckets_;  ///< the first mask_ + 1 are in use
+    AlignedVector<std::uint64_t> filter_;   ///< a bit for the leading bits of each key of the second list
+    std::size_t mask_ = 0;
+    int shift_ = 32, filter_shift_ = 32;
+};
+
+}  // namespace motley

@@ -1,0 +1,24 @@
+// Room for keys.
+#include "motley/core/key_table.h"
+
+#include <algorithm>
+
+namespace motley {
+
+void KeyTable::clear(std::size_t count, std::size_t fresh)
+{
+    const auto empty = [](AlignedVector<std::uint64_t>& words, std::size_t wanted) {
+        if (words.size() < wanted) words.resize(wanted);
+        std::fill_n(words.begin(), wanted, 0);
+    };
+    // Sixteen bits a key: one in sixteen strangers has a bit that is set.
+    const std::size_t buckets = std::bit_ceil(count + count / 3 + 2);
+    const std::size_t bits = std::bit_ceil(16 * fresh + 64);
+    empty(buckets_, buckets);
+    empty(filter_, bits / 64);
+    mask_ = buckets - 1;
+    shift_ = 32 - std::countr_zero(buckets);
+    filter_shift_ = 32 - std::countr_zero(bits);
+}
+
+}  // namespace motley

@@ -1,0 +1,163 @@
+// The motion of bodies, a row of theirs a lane. Included inside an anonymous namespace, after kernel_bodies.h.
+
+// ---- v += h a
+// -----------------------------------------------------------------------------------------------
+
+/// Solves I (w' - w) + h w' x (I w') = 0 by one Newton step from w: implicit, so it cannot pump energy into a
+/// tumbling body as the explicit gyroscopic term does. (E. Catto, Numerical Methods, GDC 2015)
+inline Vec3<Lanes> gyrate(const Sym3<Lanes>& inertia, const Vec3<Lanes>& w, const Lanes& h)
+{
+    const Vec3<Lanes> l = inertia * w;
+    const Vec3<Lanes> f = h * cross(w, l);
+    // Columns of I + h ([w]x I - [I w]x).
+    const Vec3<Lanes> ix{inertia.xx, inertia.xy, inertia.xz}, iy{inertia.xy, inertia.yy, inertia.yz};
+    const Vec3<Lanes> iz{inertia.xz, inertia.yz, inertia.zz};
+    const Lanes zero(0);
+    const Vec3<Lanes> cx = ix + h * (cross(w, ix) - Vec3<Lanes>{zero, l.z, -l.y});
+    const Vec3<Lanes> cy = iy + h * (cross(w, iy) - Vec3<Lanes>{-l.z, zero, l.x});
+    const Vec3<Lanes> cz = iz + h * (cross(w, iz) - Vec3<Lanes>{l.y, -l.x, zero});
+    // Cramer's rule on columns scaled by the inertia's size, so that small bodies do not underflow.
+    const Lanes scale = inverse_or_zero(inertia.xx + inertia.yy + inertia.zz);
+    const Vec3<Lanes> x = scale * cx, y = scale * cy, z = scale * cz, r = scale * f;
+    const Vec3<Lanes> yz = cross(y, z);
+    const Lanes d = inverse_or_zero(dot(x, yz));
+    return w - Vec3<Lanes>{d * dot(r, yz), d * dot(x, cross(r, z)), d * dot(x, cross(y, r))};
+}
+
+inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* rows,
+                       Body<BodyKind::particle>& body)
+{
+    Lanes a[4];
+    load_quads(arrays.acceleration, 4, rows, a);
+    const Lanes h(context.step.substep);
+    const Vec3<float>& g = context.step.gravity;
+    body.linear = body.linear + h * Vec3<Lanes>{a[0] + Lanes(g.x), a[1] + Lanes(g.y), a[2] + Lanes(g.z)};
+}
+inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* rows,
+                       Body<BodyKind::planar>& body)
+{
+    Lanes a[4];
+    load_quads(arrays.acceleration, 4, rows, a);
+    const Lanes h(context.step.substep);
+    body.linear = body.linear +
+                  h * Vec2<Lanes>{a[0] + Lanes(context.step.gravity.x), a[1] + Lanes(context.step.gravity.y)};
+    body.yaw_rate = body.yaw_rate + h * a[2];
+}
+/// `a` and `t`: acceleration and torque, three and a spare each.
+inline void accelerate(const StepConstants& step, const Lanes (&a)[4], const Lanes (&t)[4],
+                       Body<BodyKind::rigid>& body)
+{
+    const Lanes h(step.substep);
+    const Vec3<float>& g = step.gravity;
+    body.linear = body.linear + h * Vec3<Lanes>{a[0] + Lanes(g.x), a[1] + Lanes(g.y), a[2] + Lanes(g.z)};
+    const Vec3<Lanes> turned = gyrate(inverse(body.inverse_inertia), body.angular, h);
+    body.angular = turned + h * (body.inverse_inertia * Vec3<Lanes>{t[0], t[1], t[2]});
+}
+inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* rows,
+                       Body<BodyKind::rigid>& body)
+{
+    Lanes a[4], t[4];
+    load_quads(arrays.acceleration, 8, rows, a);
+    load_quads(arrays.acceleration + 4, 8, rows, t);
+    accelerate(context.step, a, t, body);
+}
+
+/// The consecutive rows first ... first + width - 1 as an index; past `end`, the null row.
+struct RowIndex {
+    std::int32_t rows[Lanes_width];
+    int count;
+    RowIndex(std::int32_t first, std::int32_t end)
+    {
+        count = end - first < Lanes_width ? end - first : Lanes_width;
+        for (int lane = 0; lane < Lanes_width; ++lane) rows[lane] = lane < count ? first + lane : 0;
+    }
+};
+
+/// Calls change(component, of `from`) for each component of velocity.
+template <class Body, class Change>
+void for_each_component(Body& body, const Body& other, const Change& change)
+{
+    change(body.linear.x, other.linear.x);
+    change(body.linear.y, other.linear.y);
+    if constexpr (Body::kind != BodyKind::planar) change(body.linear.z, other.linear.z);
+    if constexpr (Body::kind == BodyKind::planar) change(body.yaw_rate, other.yaw_rate);
+    if constexpr (Body::kind == BodyKind::rigid) {
+        change(body.angular.x, other.angular.x);
+        change(body.angular.y, other.angular.y);
+        change(body.angular.z, other.angular.z);
+    }
+}
+
+/// By forces and gravity, and by what constraints did in the last substep where that is replayed.
+template <BodyKind kind>
+void change_velocity(const KernelContext& context, const BodyArrays& arrays, const RowIndex& index,
+                     Body<kind>& body)
+{
+    const Body<kind> before = body;
+    accelerate(context, arrays, index.rows, body);
+    // A body without inverse mass is a null, free or contained row: it must not even fall.
+    const auto moves = body.inverse_mass > Lanes(0);
+    for_each_component(body, before, [&](Lanes& now, const Lanes& then) { now = select(moves, now, then); });
+    if (context.replay == Replay::nothing) return;
+    const Body<kind> unpushed = body;
+    BodyArrays arrays_unpushed = arrays;
+    arrays_unpushed.velocity = arrays.unpushed;
+    if (context.replay == Replay::last_substep) {
+        Body<kind> change = before;
+        for_each_component(change, load_body(arrays_unpushed, index.rows, static_cast<Body<kind>*>(nullptr)),
+                           [](Lanes& now, const Lanes& then) { now = now - then; });
+        for_each_component(body, change, [](Lanes& now, const Lanes& pushed) { now = now + pushed; });
+    }
+    store_velocity(arrays_unpushed, index.rows, unpushed, index.count);
+}
+
+template <BodyKind kind>
+void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
+{
+    const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
+    for (std::int32_t first = begin; first < end; first += Lanes_width) {
+        const RowIndex index(first, end);
+        Body<kind> body = load_body(arrays, index.rows, static_cast<Body<kind>*>(nullptr));
+        change_velocity(context, arrays, index, body);
+        store_velocity(arrays, index.rows, body, index.count);
+    }
+}
+
+// ---- x += h v
+// -----------------------------------------------------------------------------------------------
+
+template <BodyKind kind>
+void advance(Body<kind>& body, const Lanes& h)
+{
+    body.delta = body.delta + h * body.linear;
+    if constexpr (kind == BodyKind::planar) body.delta_yaw = body.delta_yaw + h * body.yaw_rate;
+    if constexpr (kind == BodyKind::rigid || kind == BodyKind::fixed) {
+        body.delta_rotation = normalised(rotation_by(h * body.angular) * body.delta_rotation);
+    }
+}
+
+/// `runs_on`: and the velocities of the next substep.
+template <BodyKind kind, bool runs_on>
+void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
+{
+    const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
+    const Lanes h(context.step.substep);
+    for (std::int32_t first = begin; first < end; first += Lanes_width) {
+        const RowIndex index(first, end);
+        Body<kind> body = load_body(arrays, index.rows, static_cast<Body<kind>*>(nullptr));
+        advance(body, h);
+        turn_inertia(arrays, index.rows, body);
+        if constexpr (kind == BodyKind::fixed) {
+            const Quat<Lanes>& q = body.delta_rotation;
+            store_quads(arrays.delta, 8, index.rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)},
+                        index.count);
+            store_quads(arrays.delta + 4, 8, index.rows, {q.x, q.y, q.z, q.w}, index.count);
+        } else {
+            store_delta(arrays, index.rows, body, index.count);
+            if constexpr (runs_on) {
+                change_velocity(context, arrays, index, body);
+                store_velocity(arrays, index.rows, body, index.count);
+            }
+        }
+    }
+}
