@@ -29,6 +29,7 @@ void ContactCache::begin(std::size_t count)
         claimed_.resize(most);
         missed_.resize(most);
         lost_.resize(most);
+        table_.reserve(2 * most, most);  // all gone and as many come
     }
     parts_.resize(std::max(count, current().count) / contacts_per_part + 1);
     std::fill_n(claimed_.begin(), current().count, std::uint8_t{0});

@@ -4,6 +4,26 @@
 #include <algorithm>
 
 namespace motley {
+namespace {
+
+std::size_t buckets_for(std::size_t count)
+{
+    return std::bit_ceil(count + count / 3 + 2);
+}
+
+/// Sixteen bits a key: one in sixteen strangers has a bit that is set.
+std::size_t bits_for(std::size_t fresh)
+{
+    return std::bit_ceil(16 * fresh + 64);
+}
+
+}  // namespace
+
+void KeyTable::reserve(std::size_t count, std::size_t fresh)
+{
+    buckets_.reserve(buckets_for(count));
+    filter_.reserve(bits_for(fresh) / 64);
+}
 
 void KeyTable::clear(std::size_t count, std::size_t fresh)
 {
@@ -11,9 +31,7 @@ void KeyTable::clear(std::size_t count, std::size_t fresh)
         if (words.size() < wanted) words.resize(wanted);
         std::fill_n(words.begin(), wanted, 0);
     };
-    // Sixteen bits a key: one in sixteen strangers has a bit that is set.
-    const std::size_t buckets = std::bit_ceil(count + count / 3 + 2);
-    const std::size_t bits = std::bit_ceil(16 * fresh + 64);
+    const std::size_t buckets = buckets_for(count), bits = bits_for(fresh);
     empty(buckets_, buckets);
     empty(filter_, bits / 64);
     mask_ = buckets - 1;

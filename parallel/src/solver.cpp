@@ -2,36 +2,26 @@
 #include "motley/parallel/solver.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 
 #include "budget.h"
 #include "convergence.h"
-#include "figure_step.h"
-#include "figure_workspace.h"
 #include "layout.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/step_constants.h"
 #include "motley/reference/scene_step.h"
 #include "stage_runner.h"
+#include "sweeper.h"
 #include "tbb_executor.h"
 
 namespace motley {
 namespace {
 
-/// Bodies a chunk: a few microseconds of streaming.
-constexpr std::int64_t rows_per_chunk = 1024;
-
 /// What there is to do, in contacts: see SolverOptions::alone_below.
 std::size_t size_of(const Scene& scene, std::span<const Contact> contacts)
 {
     return contacts.size() + 4 * scene.joint_count() + scene.body_count() / 2;
-}
-
-std::int64_t chunks_of(std::int64_t count, std::int64_t grain)
-{
-    return (count + grain - 1) / grain;
 }
 
 Isa checked_isa(const std::optional<Isa>& wanted)
@@ -86,7 +76,7 @@ struct Solver::Impl {
     std::unique_ptr<Executor> own_executor;
     StageRunner runner;
     Layout layout;
-    std::vector<FigureWorkspace> workspaces;  ///< one a worker
+    Sweeper sweeper;
     Convergence convergence;
 
     Impl(const SolverSettings& s, Isa i, const SolverOptions& options)
@@ -97,25 +87,15 @@ struct Solver::Impl {
           own_executor(options.executor ? nullptr : make_executor(options.threads)),
           runner(options.executor ? options.executor : own_executor.get()),
           layout(kernel_table(i)),
-          workspaces(static_cast<std::size_t>(runner.executor()->concurrency()))
+          sweeper(runner, layout)
     {
     }
 
-    // The stages. Each runs over chunks that do not depend on the number of threads.
     std::string take_in(Scene& scene, std::span<const Contact> contacts);
     std::string lay_out(Scene& scene, std::span<const Contact> contacts);
-    void transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel);
-    void integrate(BodyKernels::Move BodyKernels::*kernel);
-    static constexpr int every_block = -1;
-    void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least = every_block);
     int iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations);
     void measure_residual(StepReport& report);
-    /// All substeps of the figures that nothing else touches.
-    void step_figures();
-    template <class Work>
-    void for_each_figure(std::span<const std::int32_t> which, const Work& work);
-    /// What is left to do for those that something touches: their trees, where they have any.
-    void solve_touched_trees(float rate);
+    [[nodiscard]] FigureSteps figure_steps() const;
     [[nodiscard]] FigureUse use_of_figures() const;
     [[nodiscard]] float exact_rate() const;
     [[nodiscard]] bool anything_bounces(const Scene& scene) const;
@@ -237,9 +217,9 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
                                  layout.sweeps());
         convergence.take_wishes(scene, layout.sweeps());
     }
-    transfer(&ConstraintKernels::prepare);
+    sweeper.transfer(&ConstraintKernels::prepare);
     clock.charge(Stage::prepare);
-    step_figures();
+    sweeper.step_lone_figures(figure_steps());
     clock.charge(Stage::figures);
     const bool can_replay = layout.has_constant_responses();
     layout.context.replay = can_replay ? Replay::next_time : Replay::nothing;
@@ -247,27 +227,28 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     const bool runs_on = !projects && !(soft && settings.relaxations > 0);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool is_last = substep + 1 == settings.substeps;
-        if (substep == 0 || !runs_on) integrate(&BodyKernels::integrate_velocities);
+        if (substep == 0 || !runs_on) sweeper.integrate(&BodyKernels::integrate_velocities);
         clock.charge(Stage::integrate_velocities);
-        for_each_figure(layout.figures.touched_trees(), prepare_tree);
-        if (substep == 0 || !can_replay) sweep(&ConstraintKernels::warm_start);
+        sweeper.prepare_touched_trees();
+        if (substep == 0 || !can_replay) sweeper.sweep(&ConstraintKernels::warm_start);
         if (can_replay) layout.context.replay = Replay::last_substep;
-        solve_touched_trees(exact_rate());
+        sweeper.solve_touched_trees(exact_rate());
         clock.charge(Stage::warm_start);
         const int iterations = iterate(&ConstraintKernels::solve, settings.iterations);
         report.iterations = std::max(report.iterations, iterations);
         report.sweeps += iterations;
         if (is_last) measure_residual(report);
         clock.charge(Stage::solve);
-        integrate(runs_on && !is_last ? &BodyKernels::integrate_on : &BodyKernels::integrate_positions);
-        for (int i = 0; projects && i < settings.projections; ++i) sweep(&ConstraintKernels::project);
+        sweeper.integrate(runs_on && !is_last ? &BodyKernels::integrate_on
+                                              : &BodyKernels::integrate_positions);
+        for (int i = 0; projects && i < settings.projections; ++i) sweeper.sweep(&ConstraintKernels::project);
         clock.charge(Stage::integrate_positions);
         if (soft) report.sweeps += iterate(&ConstraintKernels::relax, settings.relaxations);
         clock.charge(Stage::relax);
     }
-    if (anything_bounces(scene)) sweep(&ConstraintKernels::restitute);
+    if (anything_bounces(scene)) sweeper.sweep(&ConstraintKernels::restitute);
     clock.charge(Stage::restitution);
-    transfer(&ConstraintKernels::store);
+    sweeper.transfer(&ConstraintKernels::store);
     finish(scene, report);
     report.substeps = settings.substeps;
     report.sweeps += settings.substeps * (1 + (projects ? settings.projections : 0));
@@ -328,47 +309,8 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
     layout.contacts.open(layout.kernels());
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
     layout.cut(scene, contacts, tells_blocks_apart);
-    for (FigureWorkspace& workspace : workspaces) workspace.make_room(layout.figures.blocks());
+    sweeper.make_room();
     return {};
-}
-
-void Solver::Impl::transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel)
-{
-    const TransferList& transfers = layout.transfers();
-    runner.run(static_cast<std::int64_t>(transfers.tiles.size()), [&](std::int64_t i) {
-        const TransferTile& tile = transfers.tiles[static_cast<std::size_t>(i)];
-        for (std::int32_t p = tile.first_part; p < tile.last_part; ++p) {
-            const TransferTile::Part& part = transfers.parts[static_cast<std::size_t>(p)];
-            (part.kernels->*kernel)(layout.context, part.streams, layout.data(part.type), part.begin,
-                                    part.end);
-        }
-    });
-}
-
-/// Runs a kernel over the blocks that are not finished, and of those over the ones that want at least so many sweeps.
-void Solver::Impl::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
-{
-    const auto run_chunk = [&](const SweepChunk& chunk) {
-        const ConstraintKernels::Sweep run = chunk.kernels->*kernel;
-        if (run == nullptr) return;
-        if (at_least == every_block) {
-            run(layout.context, chunk.streams, chunk.begin, chunk.end);
-            return;
-        }
-        const auto runs = [&](std::int32_t block) {
-            return chunk.finished[block] == 0 && (at_least == 0 || chunk.wanted[block] >= at_least);
-        };
-        for_each_run(chunk.begin, chunk.end, runs, [&](std::int32_t begin, std::int32_t end) {
-            run(layout.context, chunk.streams, begin, end);
-        });
-    };
-    // The overflow first and in order, so that the colours have the last word.
-    for (const SweepChunk& chunk : layout.sweeps(overflow_colour)) run_chunk(chunk);
-    for (int colour = 0; colour < parallel_colours; ++colour) {
-        const auto& chunks = layout.sweeps(colour);
-        runner.run(static_cast<std::int64_t>(chunks.size()),
-                   [&](std::int64_t i) { run_chunk(chunks[static_cast<std::size_t>(i)]); });
-    }
 }
 
 /// Sweeps `iterations` times, or until every island is within the tolerance; longer where more was asked for. Returns how
@@ -378,8 +320,8 @@ int Solver::Impl::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, i
     const float rate = kernel == &ConstraintKernels::solve ? exact_rate() : 0;
     if (!picks_blocks) {
         for (int i = 0; i < iterations; ++i) {
-            sweep(kernel);
-            solve_touched_trees(rate);
+            sweeper.sweep(kernel);
+            sweeper.solve_touched_trees(rate);
         }
         return iterations;
     }
@@ -393,8 +335,8 @@ int Solver::Impl::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, i
         // Measuring costs about a sweep: early for what is nearly solved, then only now and then.
         const bool measured = settings.tolerance > 0 && (done == 2 || done % 4 == 0 || done == most);
         layout.context.measure = measured ? Measure::while_solving : Measure::nothing;
-        sweep(kernel, done <= iterations ? 0 : done);
-        solve_touched_trees(rate);
+        sweeper.sweep(kernel, done <= iterations ? 0 : done);
+        sweeper.solve_touched_trees(rate);
         if (measured) convergence.judge(layout.sweeps(), settings.tolerance);
     }
     layout.context.measure = Measure::nothing;
@@ -411,7 +353,7 @@ void Solver::Impl::measure_residual(StepReport& report)
     if (!settings.measures && settings.budget_ms == 0) return;
     convergence.start_over(layout.sweeps());
     layout.context.measure = Measure::without_solving;
-    sweep(&ConstraintKernels::solve);
+    sweeper.sweep(&ConstraintKernels::solve);
     layout.context.measure = Measure::nothing;
     const ResidualSum sum = sum_residuals(layout.sweeps());
     const auto constraints = static_cast<double>(std::max<std::int64_t>(1, sum.constraints));
@@ -436,80 +378,19 @@ float Solver::Impl::exact_rate() const
     return settings.method == Method::soft_step ? step.inverse_substep : step.joint.rate;
 }
 
-template <class Work>
-void Solver::Impl::for_each_figure(std::span<const std::int32_t> which, const Work& work)
+FigureSteps Solver::Impl::figure_steps() const
 {
-    runner.run(static_cast<std::int64_t>(which.size()), [&](std::int64_t i) {
-        work(layout.context, layout.kernels().figures,
-             layout.figures.blocks()[static_cast<std::size_t>(which[static_cast<std::size_t>(i)])]);
-    });
-}
-
-void Solver::Impl::step_figures()
-{
-    const FigureSteps steps{settings.substeps, settings.iterations,
-                            settings.method == Method::soft_step ? settings.relaxations : 0, exact_rate()};
-    const std::span<const std::int32_t> lone = layout.figures.lone();
-    runner.run(static_cast<std::int64_t>(lone.size()), [&](std::int64_t i, int worker) {
-        const auto block = static_cast<std::size_t>(lone[static_cast<std::size_t>(i)]);
-        step_figure(layout.context, layout.kernels().figures,
-                    workspaces[static_cast<std::size_t>(worker)].take_in(layout.figures.blocks()[block]),
-                    layout.data(), steps);
-    });
-}
-
-void Solver::Impl::solve_touched_trees(float rate)
-{
-    for_each_figure(layout.figures.touched_trees(),
-                    [&](const KernelContext& context, const FigureKernels& kernels,
-                        const FigureBlock& block) { solve_tree(context, kernels, block, rate); });
-}
-
-/// v += h a or x += h v, by the kernel of each kind that has it.
-void Solver::Impl::integrate(BodyKernels::Move BodyKernels::*kernel)
-{
-    for (int kind = 0; kind < body_kind_count; ++kind) {
-        const BodyKernels::Move move = layout.kernels().bodies[kind].*kernel;
-        if (move == nullptr) continue;
-        const auto& ranges = layout.rows(kind);
-        runner.run(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
-            const RowRange& range = ranges[static_cast<std::size_t>(i)];
-            move(layout.context, range.begin, range.end);
-        });
-    }
+    return {settings.substeps, settings.iterations,
+            settings.method == Method::soft_step ? settings.relaxations : 0, exact_rate()};
 }
 
 void Solver::Impl::move_bodies(Scene& scene, StepReport& report)
 {
-    std::atomic<std::int64_t> contained{0};
-    std::atomic<std::uint32_t> lowest_slot{UINT32_MAX};
-    for (int kind = 0; kind < body_kind_count; ++kind) {
-        const std::int64_t rows = layout.context.bodies[kind].size;
-        const auto commit = layout.kernels().bodies[kind].commit;
-        runner.run(chunks_of(rows, rows_per_chunk), [&](std::int64_t chunk) {
-            std::uint32_t slot = UINT32_MAX;
-            int count = 0;
-            const auto begin = static_cast<std::int32_t>(chunk * rows_per_chunk);
-            const auto end = static_cast<std::int32_t>(std::min((chunk + 1) * rows_per_chunk, rows));
-            for_each_piece(begin, end, block_lanes, [&](std::int32_t first, std::int32_t last) {
-                // In lanes, or one by one where a row is free, the last, or has come to grief.
-                if (commit != nullptr && last - first == block_lanes &&
-                    commit(layout.context.bodies[kind], first))
-                    return;
-                count += scene.bodies().commit(static_cast<BodyKind>(kind), static_cast<std::uint32_t>(first),
-                                               static_cast<std::uint32_t>(last), slot);
-            });
-            if (count == 0) return;
-            contained += count;
-            std::uint32_t lowest = lowest_slot.load();
-            while (slot < lowest && !lowest_slot.compare_exchange_weak(lowest, slot)) {
-            }
-        });
-    }
-    report.bodies_contained = contained;
-    if (contained == 0) return;
-    report.first_contained = scene.bodies().id_of_slot(lowest_slot);
-    scene.bodies().contained_count += static_cast<std::size_t>(contained);
+    std::uint32_t first_slot = 0;
+    report.bodies_contained = sweeper.commit(scene.bodies(), first_slot);
+    if (report.bodies_contained == 0) return;
+    report.first_contained = scene.bodies().id_of_slot(first_slot);
+    scene.bodies().contained_count += static_cast<std::size_t>(report.bodies_contained);
     scene.joints().version.reset();  // theirs are left out from now on
 }
 

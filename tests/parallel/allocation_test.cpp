@@ -66,6 +66,22 @@ long allocations_of_warm_steps(int threads, float tolerance = 0)
     return allocations - before;
 }
 
+/// The same of steps whose contacts all have new keys: as many come as go.
+long allocations_of_new_contacts()
+{
+    testing::MixedScene mixed;
+    Solver solver({.gravity = {0, -9.81F, 0}});
+    for (int step = 0; step < 200; ++step) solver.step(mixed.scene, 1.0F / 60, mixed.contacts());
+    std::vector<Contact> contacts = mixed.contacts();
+    solver.step(mixed.scene, 1.0F / 60, contacts);
+    const long before = allocations;
+    for (int step = 0; step < 20; ++step) {
+        for (Contact& contact : contacts) contact.key += std::uint64_t{1} << 48;
+        solver.step(mixed.scene, 1.0F / 60, contacts);
+    }
+    return allocations - before;
+}
+
 /// The same of forty chains of three, in lockstep, one of which something touches now and then.
 long allocations_of_figures(bool exact, int threads)
 {
@@ -114,6 +130,10 @@ TEST(Allocation, AWarmStepOnOneThreadAllocatesNothing)
 TEST(Allocation, AWarmStepOnTwoThreadsAllocatesNothing)
 {
     EXPECT_EQ(allocations_of_warm_steps(2), 0);
+}
+TEST(Allocation, ContactsThatComeAndGoAllocateNothing)
+{
+    EXPECT_EQ(allocations_of_new_contacts(), 0);
 }
 TEST(Allocation, WarmFiguresAllocateNothing)
 {

@@ -6,8 +6,10 @@
 
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "batches.h"
+#include "block_walk.h"
 
 namespace motley {
 namespace {
@@ -103,27 +105,16 @@ RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice,
     TransferList transfers;
     set.cut(kernels, false, sweeps, transfers);
     std::set<std::int32_t> seen;
-    for (const auto& chunks : sweeps) {
-        for (const SweepChunk& chunk : chunks) {
-            for (std::int32_t k = chunk.begin; k < chunk.end; ++k) {
-                const BlockBodies& block = chunk.streams.bodies[k];
-                const int count = chunk.streams.counts[k];
-                const std::int32_t* constraint = chunk.streams.constraints[k].lane;
-                std::set<int> movers;
-                for (int lane = 0; lane < count; ++lane) {
-                    RC_ASSERT(seen.insert(constraint[lane]).second);
-                    for (const int body : {edges[static_cast<std::size_t>(constraint[lane])].first,
-                                           edges[static_cast<std::size_t>(constraint[lane])].second}) {
-                        if (body < 120) RC_ASSERT(movers.insert(body).second);
-                    }
-                }
-                for (int lane = count; lane < block_lanes; ++lane) {
-                    RC_ASSERT(block.a[lane] == 0);
-                    RC_ASSERT(block.b[lane] == 0);
-                }
-            }
+    std::set<std::tuple<int, std::int32_t, int>> movers;  // class, block, body
+    testing::for_each_lane(sweeps, [&](const SweepChunk& chunk, std::int32_t block, int lane) {
+        const std::int32_t constraint = chunk.streams.constraints[block].lane[lane];
+        RC_ASSERT(seen.insert(constraint).second);
+        const auto [a, b] = edges[static_cast<std::size_t>(constraint)];
+        for (const int body : {a, b}) {
+            const int of_class = class_of(chunk.type, chunk.kind_a, chunk.kind_b);
+            if (body < 120) RC_ASSERT(movers.insert({of_class, block, body}).second);
         }
-    }
+    });
     RC_ASSERT(seen.size() == edges.size());
 }
 

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "block_walk.h"
 #include "layout.h"
 
 namespace motley {
@@ -52,22 +53,13 @@ std::size_t check_colours(const Layout& layout)
     return seen.size();
 }
 
-/// Lanes of blocks: each constraint in one, and padding on the null rows, which nothing may write.
+/// Lanes of blocks: each constraint in one.
 std::size_t check_blocks(const Layout& layout)
 {
     std::set<std::pair<int, std::int32_t>> seen;
-    for (const auto& chunks : layout.sweeps()) {
-        for (const SweepChunk& chunk : chunks) {
-            for (std::int32_t k = chunk.begin; k < chunk.end; ++k) {
-                for (int lane = 0; lane < chunk.streams.counts[k]; ++lane)
-                    RC_ASSERT(seen.insert({chunk.type, chunk.streams.constraints[k].lane[lane]}).second);
-                for (int lane = chunk.streams.counts[k]; lane < block_lanes; ++lane) {
-                    RC_ASSERT(chunk.streams.bodies[k].a[lane] == 0);
-                    RC_ASSERT(chunk.streams.bodies[k].b[lane] == 0);
-                }
-            }
-        }
-    }
+    testing::for_each_lane(layout.sweeps(), [&](const SweepChunk& chunk, std::int32_t block, int lane) {
+        RC_ASSERT(seen.insert({chunk.type, chunk.streams.constraints[block].lane[lane]}).second);
+    });
     return seen.size();
 }
 

@@ -21,7 +21,10 @@ class KeyTable {
         static constexpr std::uint32_t none = 0xFFFFFFFFU;
     };
 
-    /// Empties it, with room for `count` keys, of which `fresh` of the second list. Allocates only beyond every earlier count.
+    /// Until there are more than `count` keys, of which `fresh` of the second list, clear() allocates nothing. Memory that is
+    /// not used yet is not touched.
+    void reserve(std::size_t count, std::size_t fresh);
+    /// Empties it, with room for so many.
     void clear(std::size_t count, std::size_t fresh);
     /// Asks for the cache line that enter() will look at first.
     void prefetch(std::uint64_t key) const { __builtin_prefetch(&buckets_[place_of(hash_of(key))]); }

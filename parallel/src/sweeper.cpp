@@ -1,0 +1,143 @@
+// Chunks handed to whoever comes.
+#include "sweeper.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace motley {
+namespace {
+
+/// Bodies a chunk: a few microseconds of streaming.
+constexpr std::int64_t rows_per_chunk = 1024;
+
+}  // namespace
+
+Sweeper::Sweeper(StageRunner& runner, Layout& layout)
+    : runner_(runner),
+      layout_(layout),
+      workspaces_(static_cast<std::size_t>(runner.executor()->concurrency()))
+{
+}
+
+void Sweeper::make_room()
+{
+    for (FigureWorkspace& workspace : workspaces_) workspace.make_room(layout_.figures.blocks());
+}
+
+void Sweeper::transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel)
+{
+    const TransferList& transfers = layout_.transfers();
+    runner_.run(static_cast<std::int64_t>(transfers.tiles.size()), [&](std::int64_t i) {
+        const TransferTile& tile = transfers.tiles[static_cast<std::size_t>(i)];
+        for (std::int32_t p = tile.first_part; p < tile.last_part; ++p) {
+            const TransferTile::Part& part = transfers.parts[static_cast<std::size_t>(p)];
+            (part.kernels->*kernel)(layout_.context, part.streams, layout_.data(part.type), part.begin,
+                                    part.end);
+        }
+    });
+}
+
+void Sweeper::integrate(BodyKernels::Move BodyKernels::*kernel)
+{
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        const BodyKernels::Move move = layout_.kernels().bodies[kind].*kernel;
+        if (move == nullptr) continue;
+        const auto& ranges = layout_.rows(kind);
+        runner_.run(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
+            const RowRange& range = ranges[static_cast<std::size_t>(i)];
+            move(layout_.context, range.begin, range.end);
+        });
+    }
+}
+
+void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+{
+    const auto run_chunk = [&](const SweepChunk& chunk) {
+        const ConstraintKernels::Sweep run = chunk.kernels->*kernel;
+        if (run == nullptr) return;
+        if (at_least == every_block) {
+            run(layout_.context, chunk.streams, chunk.begin, chunk.end);
+            return;
+        }
+        const auto runs = [&](std::int32_t block) {
+            return chunk.finished[block] == 0 && (at_least == 0 || chunk.wanted[block] >= at_least);
+        };
+        for_each_run(chunk.begin, chunk.end, runs, [&](std::int32_t begin, std::int32_t end) {
+            run(layout_.context, chunk.streams, begin, end);
+        });
+    };
+    // The overflow first and in order, so that the colours have the last word.
+    for (const SweepChunk& chunk : layout_.sweeps(overflow_colour)) run_chunk(chunk);
+    for (int colour = 0; colour < parallel_colours; ++colour) {
+        const auto& chunks = layout_.sweeps(colour);
+        runner_.run(static_cast<std::int64_t>(chunks.size()),
+                    [&](std::int64_t i) { run_chunk(chunks[static_cast<std::size_t>(i)]); });
+    }
+}
+
+void Sweeper::step_lone_figures(const FigureSteps& steps)
+{
+    const std::span<const std::int32_t> lone = layout_.figures.lone();
+    runner_.run(static_cast<std::int64_t>(lone.size()), [&](std::int64_t i, int worker) {
+        const auto block = static_cast<std::size_t>(lone[static_cast<std::size_t>(i)]);
+        step_figure(layout_.context, layout_.kernels().figures,
+                    workspaces_[static_cast<std::size_t>(worker)].take_in(layout_.figures.blocks()[block]),
+                    layout_.data(), steps);
+    });
+}
+
+template <class Work>
+void Sweeper::for_each_touched_tree(const Work& work)
+{
+    const std::span<const std::int32_t> touched = layout_.figures.touched_trees();
+    runner_.run(static_cast<std::int64_t>(touched.size()), [&](std::int64_t i) {
+        const auto block = static_cast<std::size_t>(touched[static_cast<std::size_t>(i)]);
+        work(layout_.figures.blocks()[block]);
+    });
+}
+
+void Sweeper::prepare_touched_trees()
+{
+    for_each_touched_tree(
+        [&](const FigureBlock& block) { prepare_tree(layout_.context, layout_.kernels().figures, block); });
+}
+
+void Sweeper::solve_touched_trees(float rate)
+{
+    for_each_touched_tree([&](const FigureBlock& block) {
+        solve_tree(layout_.context, layout_.kernels().figures, block, rate);
+    });
+}
+
+std::int64_t Sweeper::commit(BodyStore& bodies, std::uint32_t& first_slot)
+{
+    std::atomic<std::int64_t> contained{0};
+    std::atomic<std::uint32_t> lowest_slot{UINT32_MAX};
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        const std::int64_t rows = layout_.context.bodies[kind].size;
+        const auto in_lanes = layout_.kernels().bodies[kind].commit;
+        runner_.run((rows + rows_per_chunk - 1) / rows_per_chunk, [&](std::int64_t chunk) {
+            std::uint32_t slot = UINT32_MAX;
+            int count = 0;
+            const auto begin = static_cast<std::int32_t>(chunk * rows_per_chunk);
+            const auto end = static_cast<std::int32_t>(std::min((chunk + 1) * rows_per_chunk, rows));
+            for_each_piece(begin, end, block_lanes, [&](std::int32_t first, std::int32_t last) {
+                // In lanes, or one by one where a row is free, the last, or has come to grief.
+                if (in_lanes != nullptr && last - first == block_lanes &&
+                    in_lanes(layout_.context.bodies[kind], first))
+                    return;
+                count += bodies.commit(static_cast<BodyKind>(kind), static_cast<std::uint32_t>(first),
+                                       static_cast<std::uint32_t>(last), slot);
+            });
+            if (count == 0) return;
+            contained += count;
+            std::uint32_t lowest = lowest_slot.load();
+            while (slot < lowest && !lowest_slot.compare_exchange_weak(lowest, slot)) {
+            }
+        });
+    }
+    first_slot = lowest_slot;
+    return contained;
+}
+
+}  // namespace motley
