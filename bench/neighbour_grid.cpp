@@ -14,20 +14,24 @@ constexpr std::int64_t discs_per_chunk = 8192;
 /// Bands of rows that discs are sorted into first: few enough to write to all at once.
 constexpr std::int32_t most_bands = 128;
 
+/// Calls work(begin, end) for chunks of so many discs.
+template <class Work>
+void for_discs(std::size_t count, Executor& executor, const Work& work)
+{
+    parallel_for(executor, static_cast<std::int64_t>(count), discs_per_chunk,
+                 [&](std::int64_t begin, std::int64_t end) {
+                     work(static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+                 });
+}
+
 }  // namespace
 
 void NeighbourGrid::sort(std::span<const Vec3<double>> positions, std::span<const float> radii, float margin,
                          Executor& executor)
 {
     const std::size_t count = positions.size();
-    const auto for_discs = [&](const auto& work) {
-        parallel_for(executor, static_cast<std::int64_t>(count), discs_per_chunk,
-                     [&](std::int64_t begin, std::int64_t end) {
-                         work(static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
-                     });
-    };
     bounds_.assign(count / discs_per_chunk + 1, {});
-    for_discs([&](std::size_t begin, std::size_t end) {
+    for_discs(count, executor, [&](std::size_t begin, std::size_t end) {
         Bounds b;
         for (std::size_t i = begin; i < end; ++i) {
             b.min_x = std::min(b.min_x, positions[i].x);
@@ -73,20 +77,16 @@ void NeighbourGrid::sort_into_bands(std::span<const Vec3<double>> positions, std
     placed_.resize(count);
     sorted_.resize(count);
     places_.assign(chunks * bands, 0);
-    const auto for_discs = [&](const auto& work) {
-        parallel_for(executor, static_cast<std::int64_t>(count), discs_per_chunk,
-                     [&](std::int64_t begin, std::int64_t end) {
-                         std::int32_t* places =
-                             places_.data() + static_cast<std::size_t>(begin / discs_per_chunk) * bands;
-                         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end);
-                              ++i)
-                             work(i, places);
-                     });
+    const auto for_each_disc = [&](const auto& work) {
+        for_discs(count, executor, [&](std::size_t begin, std::size_t end) {
+            std::int32_t* places = places_.data() + begin / discs_per_chunk * bands;
+            for (std::size_t i = begin; i < end; ++i) work(i, places);
+        });
     };
     const auto band_of = [&](std::int32_t cell) {
         return static_cast<std::size_t>(cell / width_ / rows_per_band_);
     };
-    for_discs([&](std::size_t i, std::int32_t* places) {
+    for_each_disc([&](std::size_t i, std::int32_t* places) {
         cells_[i] = static_cast<std::int32_t>(index_of(column_of(positions[i].x), row_of(positions[i].y)));
         ++places[band_of(cells_[i])];
     });
@@ -98,7 +98,7 @@ void NeighbourGrid::sort_into_bands(std::span<const Vec3<double>> positions, std
             next += std::exchange(places_[chunk * bands + band], next);
     }
     first_in_band_[bands] = next;
-    for_discs([&](std::size_t i, std::int32_t* places) {
+    for_each_disc([&](std::size_t i, std::int32_t* places) {
         const auto place = static_cast<std::size_t>(places[band_of(cells_[i])]++);
         placed_[place] = {
             {static_cast<float>(positions[i].x - low_.x), static_cast<float>(positions[i].y - low_.y),
@@ -126,7 +126,7 @@ void NeighbourGrid::sort_band(std::int64_t band)
             disc.disc;
     // ...which is where the next cell starts.
     for (std::size_t c = starts.size(); c-- > 1;) starts[c] = starts[c - 1];
-    if (!starts.empty()) starts[0] = static_cast<std::int32_t>(begin);
+    starts[0] = static_cast<std::int32_t>(begin);
 }
 
 std::size_t NeighbourGrid::find_pairs(std::int64_t chunk, std::vector<Pair>& pairs) const

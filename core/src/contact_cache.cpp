@@ -97,18 +97,14 @@ void ContactCache::enter_lost(std::int64_t part)
     if (!looks_up_) return;
     const Range lost = parts_[static_cast<std::size_t>(part)].lost;
     for (std::uint32_t k = lost.begin; k < lost.end; ++k) {
-        table_.enter(current().entries[lost_[k]].key, KeyTable::List::lost, lost_[k],
-                     [&](KeyTable::List, std::uint32_t i) { return current().entries[i].key; });
+        table_.enter(current().entries[lost_[k]].key, KeyTable::List::lost, lost_[k], keys());
     }
 }
 
 std::uint32_t ContactCache::trace(std::int64_t part, std::uint32_t index)
 {
-    const ContactList& list = staged();
-    const auto key_of = [&](KeyTable::List which, std::uint32_t i) {
-        return (which == KeyTable::List::lost ? current() : list).entries[i].key;
-    };
-    const auto [which, found] = table_.enter(list.entries[index].key, KeyTable::List::fresh, index, key_of);
+    const auto [which, found] =
+        table_.enter(staged().entries[index].key, KeyTable::List::fresh, index, keys());
     if (found == KeyTable::Found::none) return none;
     if (which == KeyTable::List::fresh ||
         std::atomic_ref(claimed_[found]).exchange(1, std::memory_order_relaxed) != 0)
@@ -123,17 +119,13 @@ std::uint32_t ContactCache::trace(std::int64_t part, std::uint32_t index)
 void ContactCache::verify(std::int64_t part)
 {
     if (!looks_up_) return;
-    const ContactList& list = staged();
-    const auto key_of = [&](KeyTable::List which, std::uint32_t i) {
-        return (which == KeyTable::List::lost ? current() : list).entries[i].key;
-    };
     const std::span<const std::uint32_t> others = missed(part);
     auto next = others.begin();
     const Range range = this->part(part);
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
         if (next != others.end() && *next == i) {
             ++next;
-        } else if (table_.may_be_fresh(list.entries[i].key) && table_.is_fresh(list.entries[i].key, key_of)) {
+        } else if (table_.is_fresh(staged().entries[i].key, keys())) {
             mark_repeated();
         }
     }

@@ -155,7 +155,7 @@ Scene net(int side)
     return scene;
 }
 
-/// Renumbered now and then, also right after bodies went and left gaps, and written to a file in between.
+/// Renumbered now and then, also when bodies have gone and left gaps.
 TEST(SameBits, RenumberedBodiesGoOnLikeTheOthers)
 {
     SolverSettings exact;

@@ -81,6 +81,32 @@ RC_GTEST_PROP(ContactCache, FindsWhatTheLastAcceptedListHad,
     }
 }
 
+/// Keys of two lists that crowd into few buckets, against a std::map of the first that came.
+RC_GTEST_PROP(KeyTable, HasEachKeyOnce, (const std::vector<std::pair<bool, std::uint8_t>>& entries))
+{
+    using List = KeyTable::List;
+    const auto key_at = [&](List, std::uint32_t i) {
+        const std::uint64_t low = entries[i].second;
+        return low << 58 | low;
+    };
+    const auto list_at = [&](std::size_t i) { return entries[i].first ? List::fresh : List::lost; };
+    KeyTable table;
+    table.clear(entries.size(), entries.size());
+    std::map<std::uint64_t, std::uint32_t> first;
+    for (std::uint32_t i = 0; i < entries.size(); ++i) {
+        const std::uint64_t key = key_at({}, i);
+        const auto [known, is_new] = first.try_emplace(key, i);
+        const KeyTable::Found found = table.enter(key, list_at(i), i, key_at);
+        RC_ASSERT(found.index == (is_new ? KeyTable::Found::none : known->second));
+        RC_ASSERT(found.list == list_at(known->second));
+    }
+    for (std::uint64_t low = 0; low < 256; ++low) {
+        const auto known = first.find(low << 58 | low);
+        const bool is_fresh = known != first.end() && list_at(known->second) == List::fresh;
+        RC_ASSERT(table.is_fresh(low << 58 | low, key_at) == is_fresh);
+    }
+}
+
 TEST(ContactCache, ListsMayShrinkAndGrowByAnyAmount)
 {
     Checked checked;

@@ -50,10 +50,11 @@ class ContactCache {
     void begin(std::size_t count);
     [[nodiscard]] const ContactList& current() const { return lists_[current_]; }
     [[nodiscard]] ContactList& staged() { return lists_[1 - current_]; }
+    [[nodiscard]] const ContactList& staged() const { return lists_[1 - current_]; }
 
     [[nodiscard]] std::int64_t part_count() const { return static_cast<std::int64_t>(parts_.size()); }
     /// The contacts of the new list in a part.
-    [[nodiscard]] Range part(std::int64_t part) const { return share(lists_[1 - current_].count, part); }
+    [[nodiscard]] Range part(std::int64_t part) const { return share(staged().count, part); }
 
     /// Goes along the last list while a part of the new one is taken in.
     class Walk {
@@ -85,7 +86,7 @@ class ContactCache {
         const Part& own = parts_[static_cast<std::size_t>(part)];
         return {missed_.data() + own.missed.begin, own.missed.end - own.missed.begin};
     }
-    void prefetch(std::uint32_t index) const { table_.prefetch(lists_[1 - current_].entries[index].key); }
+    void prefetch(std::uint32_t index) const { table_.prefetch(staged().entries[index].key); }
     /// The lost contact that new contact `index` was, or none: then it is new.
     std::uint32_t trace(std::int64_t part, std::uint32_t index);
     void verify(std::int64_t part);
@@ -124,6 +125,13 @@ class ContactCache {
             return static_cast<std::uint32_t>(static_cast<std::int64_t>(count) * p / part_count());
         };
         return {at(part), at(part + 1)};
+    }
+    /// The keys that stand in the table.
+    [[nodiscard]] auto keys() const
+    {
+        return [this](KeyTable::List which, std::uint32_t i) {
+            return (which == KeyTable::List::lost ? current() : staged()).entries[i].key;
+        };
     }
     void mark_repeated() { std::atomic_ref(repeated_).store(true, std::memory_order_relaxed); }
 };

@@ -48,17 +48,12 @@ class KeyTable {
         }
         return {list, Found::none};
     }
-    /// Whether a key of the second list may be this one; when it is, always. Only when nobody enters any more.
-    [[nodiscard]] bool may_be_fresh(std::uint64_t key) const
-    {
-        const std::uint64_t bit = hash_of(key) >> filter_shift_;
-        return (filter_[bit / 64] >> bit % 64 & 1) != 0;
-    }
-    /// Whether a key of the second list is this one. Likewise.
+    /// Whether a key of the second list is this one. Only when nobody enters any more.
     template <class KeyOf>
     [[nodiscard]] bool is_fresh(std::uint64_t key, const KeyOf& key_of) const
     {
-        const std::uint64_t hash = hash_of(key);
+        const std::uint64_t hash = hash_of(key), bit = hash >> filter_shift_;
+        if ((filter_[bit / 64] >> bit % 64 & 1) == 0) return false;
         for (std::size_t i = place_of(hash); buckets_[i] != 0; i = (i + 1) & mask_) {
             const Found found = unpack(buckets_[i]);
             if (buckets_[i] >> 32 == hash && found.list == List::fresh &&
