@@ -70,8 +70,8 @@ const std::map<std::string, double>& operations()
 {
     static const std::map<std::string, double> all{
         {"smooth_contact/planar", operations_of<SmoothContact, BodyKind::planar>()},
-        {"contact/planar", operations_of<FrictionContact, BodyKind::planar>()},
-        {"contact/rigid", operations_of<FrictionContact, BodyKind::rigid>()},
+        {"contact/planar", operations_of<RoughContact, BodyKind::planar>()},
+        {"contact/rigid", operations_of<RoughContact, BodyKind::rigid>()},
         {"ball_socket/planar", operations_of<BallSocket, BodyKind::planar>()},
         {"ball_socket/rigid", operations_of<BallSocket, BodyKind::rigid>()},
         {"hinge/rigid", operations_of<FrameJointOf<HingeDefinition>::type, BodyKind::rigid>()},

@@ -37,9 +37,9 @@ std::unique_ptr<TieNet> make_net(const Tie& tie, BodyModel model, int side, Body
     return net;
 }
 
-Tie contact_tie(float friction)
+Tie contact_tie(float friction, float restitution)
 {
-    return [friction](TieNet& net, BodyId a, BodyId b, Vec3<float> arm) {
+    return [=](TieNet& net, BodyId a, BodyId b, Vec3<float> arm) {
         Contact contact;
         contact.body_a = a;
         contact.body_b = b;
@@ -49,6 +49,7 @@ Tie contact_tie(float friction)
         contact.arm_a = arm;
         contact.arm_b = -arm;
         contact.friction = friction;
+        contact.restitution = restitution;
         net.contacts.push_back(contact);
     };
 }
@@ -130,6 +131,8 @@ std::vector<NamedTie> every_tie()
             {"smooth_contact/rigid", rigid, contact_tie(0)},
             {"contact/planar", planar, contact_tie(0.5F)},
             {"contact/rigid", rigid, contact_tie(0.5F)},
+            {"bouncing_contact/planar", planar, contact_tie(0.5F, 0.5F)},
+            {"bouncing_contact/rigid", rigid, contact_tie(0.5F, 0.5F)},
             {"ball_socket/planar", planar, joint<BallSocketDefinition>(at_anchors<BallSocketDefinition>)},
             {"ball_socket/rigid", rigid, joint<BallSocketDefinition>(at_anchors<BallSocketDefinition>)},
             {"rod/planar", planar, rod},

@@ -30,7 +30,7 @@ using Tie = std::function<void(TieNet&, BodyId a, BodyId b, Vec3<float> arm)>;
 std::unique_ptr<TieNet> make_net(const Tie& tie, BodyModel model, int side,
                                  BodyOrder order = BodyOrder::in_line);
 /// Contacts that overlap by a millimetre.
-Tie contact_tie(float friction);
+Tie contact_tie(float friction, float restitution = 0);
 
 struct NamedTie {
     std::string name;  ///< "hinge/rigid"

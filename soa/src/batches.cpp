@@ -53,15 +53,14 @@ void BatchSet::Pool::leave_gap(std::size_t block, int lane, std::int32_t constra
 
 bool BatchSet::Pool::holds(std::size_t block, BodyRow a, BodyRow b) const
 {
-    const auto row_a = static_cast<std::int32_t>(a.row());
-    const auto row_b = static_cast<std::int32_t>(b.row());
+    const std::int32_t at_a = offset_of(a), at_b = offset_of(b);
     const BlockBodies& held = bodies[block];
     const bool same_kind = a.kind() == b.kind();
     for (int lane = 0; lane < counts[block]; ++lane) {
         // Fixed bodies are shared freely; one kind may stand on either side.
-        if (a.kind() != BodyKind::fixed && (held.a[lane] == row_a || (same_kind && held.b[lane] == row_a)))
+        if (a.kind() != BodyKind::fixed && (held.a[lane] == at_a || (same_kind && held.b[lane] == at_a)))
             return true;
-        if (b.kind() != BodyKind::fixed && (held.b[lane] == row_b || (same_kind && held.a[lane] == row_b)))
+        if (b.kind() != BodyKind::fixed && (held.b[lane] == at_b || (same_kind && held.a[lane] == at_b)))
             return true;
     }
     return false;

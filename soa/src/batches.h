@@ -138,8 +138,8 @@ class BatchSet {
         void make_room(std::int32_t blocks);
         void set_lane(std::size_t block, int lane, const Placement& placement)
         {
-            bodies[block].a[lane] = static_cast<std::int32_t>(placement.a.row());
-            bodies[block].b[lane] = static_cast<std::int32_t>(placement.b.row());
+            bodies[block].a[lane] = offset_of(placement.a);
+            bodies[block].b[lane] = offset_of(placement.b);
             who[block].lane[lane] = placement.constraint;
         }
         void pad(std::size_t block, int first, std::int32_t constraint);

@@ -17,10 +17,22 @@ namespace motley {
 
 inline constexpr int block_lanes = 16;
 
+/// Blocks say where a body's row begins, in pairs of floats: eight bytes are the most that an address of x86 counts in by
+/// itself, and kernels that move bodies in and out of lanes would multiply for every row they touch.
+inline constexpr int offset_floats = 2;
+constexpr std::int32_t offsets_a_row(BodyKind kind)
+{
+    return 4 / offset_floats * quads_of(kind);
+}
+inline std::int32_t offset_of(BodyRow row)
+{
+    return static_cast<std::int32_t>(row.row()) * offsets_a_row(row.kind());
+}
+
 /// The bodies of a block. Lanes from the block's count on are padding: their bodies are the null rows, and they are
 /// never stored.
 struct alignas(64) BlockBodies {
-    std::int32_t a[block_lanes];  ///< row of body a
+    std::int32_t a[block_lanes];  ///< offset_of body a
     std::int32_t b[block_lanes];
 };
 /// Whose numbers are in a block: indices in the list or store of the type.
@@ -85,6 +97,7 @@ struct KernelContext {
     StepConstants step;
     Measure measure = Measure::nothing;
     Replay replay = Replay::nothing;
+    bool bodies_are_far = false;  ///< more than a core keeps at hand: sweeps ask for the next block's in time
     BodyArrays bodies[body_kind_count];
 };
 

@@ -84,8 +84,9 @@ bool ContactIntake::place(const BodyStore& bodies, const Contact& contact, Place
     // Field by field: a struct made first and copied waits for its own stores.
     placement.a = a;
     placement.b = b;
-    // The list of contact types: smooth first, then with friction and restitution.
-    placement.type = contact.friction == 0 && contact.restitution == 0 ? 0 : 1;
+    placement.type = static_cast<std::uint8_t>(contact.restitution != 0 ? Touch::bouncing
+                                               : contact.friction != 0  ? Touch::rough
+                                                                        : Touch::smooth);
     return numbers_are_good(contact) && contact.body_a != contact.body_b &&
            !(a.kind() == BodyKind::fixed && b.kind() == BodyKind::fixed) &&
            !(is_planar(a, b) && contact.normal.z != 0);

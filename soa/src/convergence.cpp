@@ -163,10 +163,10 @@ void Convergence::take_wishes(const Scene& scene, const SweepLists& sweeps)
 std::int32_t Convergence::island_of(const SweepChunk& chunk, std::int32_t block, int lane) const
 {
     const bool use_b = chunk.kind_a == BodyKind::fixed;
-    const std::int32_t row =
-        use_b ? chunk.streams.bodies[block].b[lane] : chunk.streams.bodies[block].a[lane];
-    const auto kind = static_cast<std::size_t>(use_b ? chunk.kind_b : chunk.kind_a);
-    return bodies_.root(static_cast<std::size_t>(first_[kind] + row));
+    const BlockBodies& bodies = chunk.streams.bodies[block];
+    const BodyKind kind = use_b ? chunk.kind_b : chunk.kind_a;
+    const std::int32_t row = (use_b ? bodies.b[lane] : bodies.a[lane]) / offsets_a_row(kind);
+    return bodies_.root(static_cast<std::size_t>(first_[static_cast<std::size_t>(kind)] + row));
 }
 
 void Convergence::start_over(const SweepLists& sweeps)

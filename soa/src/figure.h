@@ -89,9 +89,10 @@ struct FigureShape {
 struct FigureBlock {
     const FigureShape* shape = nullptr;
     int count = 0;
-    const std::int32_t* rows = nullptr;  ///< sixteen a body of the shape; of padding lanes the null row
-    float* bodies = nullptr;             ///< CopyBody::floats a body
-    float* system = nullptr;             ///< of the tree
+    const std::int32_t* offsets =
+        nullptr;              ///< offset_of sixteen a body of the shape; of padding lanes the null row
+    float* bodies = nullptr;  ///< CopyBody::floats a body
+    float* system = nullptr;  ///< of the tree
     struct Joint {
         const ConstraintKernels* kernels;
         BlockStreams streams;

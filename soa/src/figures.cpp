@@ -138,7 +138,7 @@ void Figures::find(std::span<const Candidate> joints, std::size_t rigid_rows, co
 
     placed.clear();
     block_of_row_.assign(rigid_rows, -1);
-    std::vector<std::int32_t> rows;
+    std::vector<std::int32_t> offsets;
     std::int64_t memory = 0;
     std::vector<std::int64_t> first_float;
     for (const auto& [signature, copies] : groups) {
@@ -158,7 +158,7 @@ void Figures::find(std::span<const Candidate> joints, std::size_t rigid_rows, co
                 for (std::size_t lane = 0; lane < block_lanes; ++lane) {
                     const bool pads = lane >= count;
                     const BodyRow row = pads ? BodyRow{} : members[copies[first + lane]].bodies[body];
-                    rows.push_back(static_cast<std::int32_t>(row.row()));
+                    offsets.push_back(offset_of(row));
                     if (!pads && is_rigid(row)) block_of_row_[row.row()] = block;
                 }
             }
@@ -173,17 +173,17 @@ void Figures::find(std::span<const Candidate> joints, std::size_t rigid_rows, co
         shapes_.push_back(std::move(shape));
     }
 
-    rows_.assign(rows.begin(), rows.end());
+    offsets_.assign(offsets.begin(), offsets.end());
     memory_.assign(static_cast<std::size_t>(memory), 0.0F);
-    std::size_t first_row = 0;
+    std::size_t first_offset = 0;
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
         FigureBlock& block = blocks_[i];
-        block.rows = rows_.data() + first_row;
+        block.offsets = offsets_.data() + first_offset;
         if (block.shape->has_tree()) {
             block.bodies = memory_.data() + first_float[i];
             block.system = block.body(static_cast<int>(block.shape->bodies.size()));
         }
-        first_row += block.shape->bodies.size() * block_lanes;
+        first_offset += block.shape->bodies.size() * block_lanes;
     }
     for (const Candidate& joint : joints) {
         if (!can_be_in_lanes(joint.placement, kernels) || block_of_row_[rigid_row_of(joint.placement)] < 0)

@@ -50,7 +50,7 @@ class Figures {
     std::vector<FigureBlock> blocks_;
     std::vector<std::vector<FigureBlock::Joint>> joints_;  ///< of each block
     std::vector<std::vector<std::uint8_t*>> skipped_;  ///< of each block and joint: BatchSet::Block::skipped
-    AlignedVector<std::int32_t> rows_;                 ///< of all blocks in line
+    AlignedVector<std::int32_t> offsets_;              ///< of all blocks in line
     AlignedVector<float> memory_;                      ///< likewise
     std::vector<std::int32_t> block_of_row_;
     std::vector<std::uint8_t> alone_;

@@ -6,78 +6,78 @@ template <BodyKind kind>
 using Body = LaneBody<Lanes, kind>;
 
 [[gnu::always_inline]] inline Body<BodyKind::particle> load_body(const BodyArrays& arrays,
-                                                                 const std::int32_t* rows,
+                                                                 const std::int32_t* offsets,
                                                                  Body<BodyKind::particle>*)
 {
     Lanes v[4], d[4];
-    load_quads(arrays.velocity, 4, rows, v);
-    load_quads(arrays.delta, 4, rows, d);
+    load_quads(arrays.velocity, offset_floats, offsets, v);
+    load_quads(arrays.delta, offset_floats, offsets, d);
     return {{v[0], v[1], v[2]}, v[3], {d[0], d[1], d[2]}};
 }
 
 [[gnu::always_inline]] inline Body<BodyKind::planar> load_body(const BodyArrays& arrays,
-                                                               const std::int32_t* rows,
+                                                               const std::int32_t* offsets,
                                                                Body<BodyKind::planar>*)
 {
     Lanes v[4], d[4];
-    load_quads(arrays.velocity, 4, rows, v);
-    load_quads(arrays.delta, 4, rows, d);
+    load_quads(arrays.velocity, offset_floats, offsets, v);
+    load_quads(arrays.delta, offset_floats, offsets, d);
     return {{v[0], v[1]}, v[2], v[3], {d[0], d[1]}, d[2], d[3]};
 }
 
-[[gnu::always_inline]] inline Sym3<Lanes> load_tensor(const float* tensors, const std::int32_t* rows)
+[[gnu::always_inline]] inline Sym3<Lanes> load_tensor(const float* tensors, const std::int32_t* offsets)
 {
     Lanes i[4], j[4];
-    load_quads(tensors, 8, rows, i);
-    load_quads(tensors + 4, 8, rows, j);
+    load_quads(tensors, offset_floats, offsets, i);
+    load_quads(tensors + 4, offset_floats, offsets, j);
     return {i[0], i[1], i[2], i[3], j[0], j[1]};
 }
 
 [[gnu::always_inline]] inline Body<BodyKind::rigid> load_body(const BodyArrays& arrays,
-                                                              const std::int32_t* rows,
+                                                              const std::int32_t* offsets,
                                                               Body<BodyKind::rigid>*)
 {
     Lanes v[4], w[4], d[4], q[4];
-    load_quads(arrays.velocity, 8, rows, v);
-    load_quads(arrays.velocity + 4, 8, rows, w);
-    load_quads(arrays.delta, 8, rows, d);
-    load_quads(arrays.delta + 4, 8, rows, q);
+    load_quads(arrays.velocity, offset_floats, offsets, v);
+    load_quads(arrays.velocity + 4, offset_floats, offsets, w);
+    load_quads(arrays.delta, offset_floats, offsets, d);
+    load_quads(arrays.delta + 4, offset_floats, offsets, q);
     return {{v[0], v[1], v[2]},       v[3],
             {w[0], w[1], w[2]},       {d[0], d[1], d[2]},
-            {q[0], q[1], q[2], q[3]}, load_tensor(arrays.world_inverse_inertia, rows)};
+            {q[0], q[1], q[2], q[3]}, load_tensor(arrays.world_inverse_inertia, offsets)};
 }
 
 [[gnu::always_inline]] inline Body<BodyKind::fixed> load_body(const BodyArrays& arrays,
-                                                              const std::int32_t* rows,
+                                                              const std::int32_t* offsets,
                                                               Body<BodyKind::fixed>*)
 {
     Lanes v[4], w[4], d[4], q[4];
-    load_quads(arrays.velocity, 8, rows, v);
-    load_quads(arrays.velocity + 4, 8, rows, w);
-    load_quads(arrays.delta, 8, rows, d);
-    load_quads(arrays.delta + 4, 8, rows, q);
+    load_quads(arrays.velocity, offset_floats, offsets, v);
+    load_quads(arrays.velocity + 4, offset_floats, offsets, w);
+    load_quads(arrays.delta, offset_floats, offsets, d);
+    load_quads(arrays.delta + 4, offset_floats, offsets, q);
     return {{v[0], v[1], v[2]}, {w[0], w[1], w[2]}, {d[0], d[1], d[2]}, {q[0], q[1], q[2], q[3]}};
 }
 
-[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
+[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* offsets,
                                                   const Body<BodyKind::particle>& body, int count)
 {
-    store_quads(arrays.velocity, 4, rows, {body.linear.x, body.linear.y, body.linear.z, body.inverse_mass},
-                count);
+    store_quads(arrays.velocity, offset_floats, offsets,
+                {body.linear.x, body.linear.y, body.linear.z, body.inverse_mass}, count);
 }
-[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
+[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* offsets,
                                                   const Body<BodyKind::planar>& body, int count)
 {
-    store_quads(arrays.velocity, 4, rows, {body.linear.x, body.linear.y, body.yaw_rate, body.inverse_mass},
-                count);
+    store_quads(arrays.velocity, offset_floats, offsets,
+                {body.linear.x, body.linear.y, body.yaw_rate, body.inverse_mass}, count);
 }
-[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* rows,
+[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* offsets,
                                                   const Body<BodyKind::rigid>& body, int count)
 {
-    store_quads(arrays.velocity, 8, rows, {body.linear.x, body.linear.y, body.linear.z, body.inverse_mass},
-                count);
-    store_quads(arrays.velocity + 4, 8, rows, {body.angular.x, body.angular.y, body.angular.z, Lanes(0)},
-                count);
+    store_quads(arrays.velocity, offset_floats, offsets,
+                {body.linear.x, body.linear.y, body.linear.z, body.inverse_mass}, count);
+    store_quads(arrays.velocity + 4, offset_floats, offsets,
+                {body.angular.x, body.angular.y, body.angular.z, Lanes(0)}, count);
 }
 /// What cannot be moved is read by lanes and never written.
 [[gnu::always_inline]] inline void store_velocity(const BodyArrays&, const std::int32_t*,
@@ -87,34 +87,37 @@ using Body = LaneBody<Lanes, kind>;
 
 /// A turned body has turned inertia.
 template <BodyKind kind>
-[[gnu::always_inline]] inline void turn_inertia(const BodyArrays& arrays, const std::int32_t* rows,
+[[gnu::always_inline]] inline void turn_inertia(const BodyArrays& arrays, const std::int32_t* offsets,
                                                 Body<kind>& body)
 {
     if constexpr (kind == BodyKind::rigid)
         body.inverse_inertia =
-            rotate_tensor(body.delta_rotation, load_tensor(arrays.start_inverse_inertia, rows));
+            rotate_tensor(body.delta_rotation, load_tensor(arrays.start_inverse_inertia, offsets));
 }
 /// The displacement, and the inertia that turns with it.
-[[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows,
+[[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* offsets,
                                                const Body<BodyKind::particle>& body, int count)
 {
-    store_quads(arrays.delta, 4, rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)}, count);
-}
-[[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows,
-                                               const Body<BodyKind::planar>& body, int count)
-{
-    store_quads(arrays.delta, 4, rows, {body.delta.x, body.delta.y, body.delta_yaw, body.inverse_inertia},
+    store_quads(arrays.delta, offset_floats, offsets, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)},
                 count);
 }
-[[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* rows,
+[[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* offsets,
+                                               const Body<BodyKind::planar>& body, int count)
+{
+    store_quads(arrays.delta, offset_floats, offsets,
+                {body.delta.x, body.delta.y, body.delta_yaw, body.inverse_inertia}, count);
+}
+[[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* offsets,
                                                const Body<BodyKind::rigid>& body, int count)
 {
     const Quat<Lanes>& q = body.delta_rotation;
-    store_quads(arrays.delta, 8, rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)}, count);
-    store_quads(arrays.delta + 4, 8, rows, {q.x, q.y, q.z, q.w}, count);
+    store_quads(arrays.delta, offset_floats, offsets, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)},
+                count);
+    store_quads(arrays.delta + 4, offset_floats, offsets, {q.x, q.y, q.z, q.w}, count);
     const Sym3<Lanes>& i = body.inverse_inertia;
-    store_quads(arrays.world_inverse_inertia, 8, rows, {i.xx, i.xy, i.xz, i.yy}, count);
-    store_quads(arrays.world_inverse_inertia + 4, 8, rows, {i.yz, i.zz, Lanes(0), Lanes(0)}, count);
+    store_quads(arrays.world_inverse_inertia, offset_floats, offsets, {i.xx, i.xy, i.xz, i.yy}, count);
+    store_quads(arrays.world_inverse_inertia + 4, offset_floats, offsets, {i.yz, i.zz, Lanes(0), Lanes(0)},
+                count);
 }
 [[gnu::always_inline]] inline void store_delta(const BodyArrays&, const std::int32_t*,
                                                const Body<BodyKind::fixed>&, int)
@@ -130,29 +133,31 @@ template <BodyKind kind>
 /// What cannot be moved is never written.
 [[gnu::always_inline]] inline void store_copy_velocity(const Body<BodyKind::fixed>&, float*) {}
 
-/// Asks for the rows of a whole block. Fixed bodies are few and stay in cache.
-template <BodyKind kind>
-void prefetch_bodies(const BodyArrays& arrays, const std::int32_t* rows)
+/// Asks for the rows of a whole block, with or without its displacements. Fixed bodies are few and stay in cache.
+template <BodyKind kind, bool delta>
+[[gnu::always_inline]] inline void prefetch_bodies(const BodyArrays& arrays, const std::int32_t* offsets)
 {
     if constexpr (kind != BodyKind::fixed) {
         for (int lane = 0; lane < block_lanes; ++lane) {
-            __builtin_prefetch(arrays.velocity + std::int64_t{4} * quads_of(kind) * rows[lane]);
-            __builtin_prefetch(arrays.delta + std::int64_t{4} * quads_of(kind) * rows[lane]);
+            const std::int64_t first = std::int64_t{offset_floats} * offsets[lane];
+            __builtin_prefetch(arrays.velocity + first);
+            if constexpr (delta) __builtin_prefetch(arrays.delta + first);
+            if constexpr (kind == BodyKind::rigid) __builtin_prefetch(arrays.world_inverse_inertia + first);
         }
     }
 }
 
 /// What forces and gravity make of a body's velocity a second, m/s2; nothing of what cannot move.
 template <BodyKind kind>
-Vec3<Lanes> free_acceleration(const StepConstants& step, const BodyArrays& arrays, const std::int32_t* rows,
-                              const Body<kind>& body)
+Vec3<Lanes> free_acceleration(const StepConstants& step, const BodyArrays& arrays,
+                              const std::int32_t* offsets, const Body<kind>& body)
 {
     const Lanes zero(0);
     if constexpr (kind == BodyKind::fixed) {
         return {zero, zero, zero};
     } else {
         Lanes a[4];
-        load_quads(arrays.acceleration, 4 * quads_of(kind), rows, a);
+        load_quads(arrays.acceleration, offset_floats, offsets, a);
         const auto moves = body.inverse_mass > zero;
         const Vec3<float>& g = step.gravity;
         const Lanes z = kind == BodyKind::planar ? zero : a[2] + Lanes(g.z);

@@ -52,28 +52,25 @@ inline void turn(const float* delta, Quat<PoseReal>* orientation, Turns<float>& 
 /// A turned body has turned inertia.
 inline void turn_inertia(const BodyArrays& arrays, std::int32_t first, const Turns<float>& turns)
 {
-    alignas(64) float fields[6][block_lanes];
-    for (int lane = 0; lane < block_lanes; ++lane) {
-        const Sym3<float>& m = arrays.inverse_inertia[first + lane];
-        fields[0][lane] = m.xx;
-        fields[1][lane] = m.xy;
-        fields[2][lane] = m.xz;
-        fields[3][lane] = m.yy;
-        fields[4][lane] = m.yz;
-        fields[5][lane] = m.zz;
-    }
     for (int lane = 0; lane < block_lanes; lane += Lanes_width) {
-        const RowIndex index(first + lane, first + block_lanes);
-        const Sym3<Lanes> body{load_lanes(fields[0] + lane), load_lanes(fields[1] + lane),
-                               load_lanes(fields[2] + lane), load_lanes(fields[3] + lane),
-                               load_lanes(fields[4] + lane), load_lanes(fields[5] + lane)};
+        const RowIndex<BodyKind::rigid> index(first + lane);
+        // Six floats in line: the first four and the last four.
+        static_assert(sizeof(Sym3<float>) == 6 * sizeof(float));
+        std::int32_t row[Lanes_width];
+        for (int i = 0; i < Lanes_width; ++i) row[i] = first + lane + i;
+        Lanes low[4], high[4];
+        load_quads(&arrays.inverse_inertia->xx, 6, row, low);
+        load_quads(&arrays.inverse_inertia->xz, 6, row, high);
+        const Sym3<Lanes> body{low[0], low[1], low[2], low[3], high[2], high[3]};
         const Sym3<Lanes> world =
             rotate_tensor(Quat<Lanes>{load_lanes(turns.x + lane), load_lanes(turns.y + lane),
                                       load_lanes(turns.z + lane), load_lanes(turns.w + lane)},
                           body);
         for (float* tensors : {arrays.world_inverse_inertia, arrays.start_inverse_inertia}) {
-            store_quads(tensors, 8, index.rows, {world.xx, world.xy, world.xz, world.yy}, index.count);
-            store_quads(tensors + 4, 8, index.rows, {world.yz, world.zz, Lanes(0), Lanes(0)}, index.count);
+            store_quads(tensors, offset_floats, index.offsets, {world.xx, world.xy, world.xz, world.yy},
+                        index.count);
+            store_quads(tensors + 4, offset_floats, index.offsets, {world.yz, world.zz, Lanes(0), Lanes(0)},
+                        index.count);
         }
     }
 }

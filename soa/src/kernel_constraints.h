@@ -26,12 +26,12 @@ void scatter_struct(const Struct& value, float* table, std::int64_t stride, cons
 }
 
 /// x - point, narrowed a lane at a time.
-template <class Point>
-Vec3<Lanes> from_points(const BodyArrays& arrays, const std::int32_t* rows, const Point& point_of)
+template <BodyKind kind, class Point>
+Vec3<Lanes> from_points(const BodyArrays& arrays, const std::int32_t* offsets, const Point& point_of)
 {
     alignas(64) float x[Lanes_width], y[Lanes_width], z[Lanes_width];
     for (int lane = 0; lane < Lanes_width; ++lane) {
-        const Vec3<PoseReal>& at = arrays.pose[rows[lane]].position;
+        const Vec3<PoseReal>& at = arrays.pose[offsets[lane] / offsets_a_row(kind)].position;
         const Vec3<double>& point = point_of(lane);
         x[lane] = static_cast<float>(static_cast<double>(at.x) - point.x);
         y[lane] = static_cast<float>(static_cast<double>(at.y) - point.y);
@@ -51,31 +51,56 @@ Struct only_finite(Struct value)
     return value;
 }
 
-// ---- where bodies are when a step begins: subtracted as they are kept, and narrowed, a lane at a time -------
+// ---- where bodies are when a step begins: subtracted as they are kept, and narrowed, a body at a time -------
 
-inline Vec3<Lanes> between_bodies(const BodyArrays& a, const std::int32_t* rows_a, const BodyArrays& b,
-                                  const std::int32_t* rows_b)
+/// Four numbers of a pose in line, in one register where there is one so wide.
+using PoseQuad [[gnu::vector_size(4 * sizeof(PoseReal)), gnu::aligned(sizeof(PoseReal)), gnu::may_alias]] =
+    PoseReal;
+using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
+
+inline const PoseQuad& quad_at(const PoseReal& first)
 {
-    alignas(64) float x[Lanes_width], y[Lanes_width], z[Lanes_width];
+    return *reinterpret_cast<const PoseQuad*>(&first);
+}
+
+/// quad_of(lane) of every lane, narrowed: out[i] holds number i of each.
+template <class QuadOf>
+[[gnu::always_inline]] inline void narrow_quads(const QuadOf& quad_of, Lanes (&out)[4])
+{
+    alignas(64) float narrow[Lanes_width][4];
+    std::int32_t index[Lanes_width];
     for (int lane = 0; lane < Lanes_width; ++lane) {
-        const Vec3<PoseReal>& from = a.pose[rows_a[lane]].position;
-        const Vec3<PoseReal>& to = b.pose[rows_b[lane]].position;
-        x[lane] = static_cast<float>(to.x - from.x);
-        y[lane] = static_cast<float>(to.y - from.y);
-        z[lane] = static_cast<float>(to.z - from.z);
+        *reinterpret_cast<FloatQuad*>(narrow[lane]) = __builtin_convertvector(quad_of(lane), FloatQuad);
+        index[lane] = lane;
     }
-    return {load_lanes(x), load_lanes(y), load_lanes(z)};
+    load_quads(narrow[0], 4, index, out);
+}
+
+template <BodyKind kind_a, BodyKind kind_b>
+Vec3<Lanes> between_bodies(const BodyArrays& a, const std::int32_t* offsets_a, const BodyArrays& b,
+                           const std::int32_t* offsets_b)
+{
+    static_assert(sizeof(BodyPose) == sizeof(PoseQuad));
+    const auto pose_of = [](const BodyPose& pose) { return quad_at(pose.position.x); };
+    Lanes between[4];
+    narrow_quads(
+        [&](int lane) {
+            return pose_of(b.pose[offsets_b[lane] / offsets_a_row(kind_b)]) -
+                   pose_of(a.pose[offsets_a[lane] / offsets_a_row(kind_a)]);
+        },
+        between);
+    return {between[0], between[1], between[2]};
 }
 
 template <BodyKind kind>
-Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays, const std::int32_t* rows)
+Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays, const std::int32_t* offsets)
 {
     if constexpr (kind == BodyKind::particle) {
         return {};
     } else if constexpr (kind == BodyKind::planar) {
         alignas(64) float yaw[Lanes_width];
         for (int lane = 0; lane < Lanes_width; ++lane) {
-            const auto angle = static_cast<double>(arrays.pose[rows[lane]].yaw);
+            const auto angle = static_cast<double>(arrays.pose[offsets[lane] / offsets_a_row(kind)].yaw);
             const double turns = angle * 0.15915494309189535;
             const auto whole =
                 static_cast<double>(static_cast<long long>(turns < 0 ? turns - 0.5 : turns + 0.5));
@@ -83,15 +108,11 @@ Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays, const std::i
         }
         return {load_lanes(yaw)};
     } else {
-        alignas(64) float x[Lanes_width], y[Lanes_width], z[Lanes_width], w[Lanes_width];
-        for (int lane = 0; lane < Lanes_width; ++lane) {
-            const Quat<PoseReal>& q = arrays.orientation[rows[lane]];
-            x[lane] = static_cast<float>(q.x);
-            y[lane] = static_cast<float>(q.y);
-            z[lane] = static_cast<float>(q.z);
-            w[lane] = static_cast<float>(q.w);
-        }
-        return {{load_lanes(x), load_lanes(y), load_lanes(z), load_lanes(w)}};
+        static_assert(sizeof(Quat<PoseReal>) == sizeof(PoseQuad));
+        Lanes q[4];
+        narrow_quads(
+            [&](int lane) { return quad_at(arrays.orientation[offsets[lane] / offsets_a_row(kind)].x); }, q);
+        return {{q[0], q[1], q[2], q[3]}};
     }
 }
 
@@ -122,6 +143,8 @@ struct Kernels {
     using Parameters = typename Type::template Parameters<Lanes>;
     using Memory = typename Type::template Memory<Lanes>;
     using Swept = std::remove_cvref_t<decltype(swept<Type::recomputes_each_substep>(std::declval<Row>()))>;
+    /// What is made anew each substep is made by its warm start from where the bodies are; others look in each sweep.
+    static constexpr bool sees_delta_once = Type::recomputes_each_substep;
     static constexpr int row_stride = fields_of<Row> * block_lanes;
     static constexpr int substep_stride = fields_of<Substep> * block_lanes;
     static constexpr int impulse_stride = fields_of<Impulse> * block_lanes;
@@ -131,8 +154,8 @@ struct Kernels {
     struct Bundle {
         const BodyArrays& arrays_a;
         const BodyArrays& arrays_b;
-        const std::int32_t* rows_a;
-        const std::int32_t* rows_b;
+        const std::int32_t* offsets_a;
+        const std::int32_t* offsets_b;
         const std::int32_t* constraint;
         float* row;
         float* substep;
@@ -140,8 +163,8 @@ struct Kernels {
         float* residual;
         int count;  ///< lanes of this bundle that are not padding
         int lane;   ///< of the block, where it begins
-        [[nodiscard]] A load_a() const { return load_body(arrays_a, rows_a, static_cast<A*>(nullptr)); }
-        [[nodiscard]] B load_b() const { return load_body(arrays_b, rows_b, static_cast<B*>(nullptr)); }
+        [[nodiscard]] A load_a() const { return load_body(arrays_a, offsets_a, static_cast<A*>(nullptr)); }
+        [[nodiscard]] B load_b() const { return load_body(arrays_b, offsets_b, static_cast<B*>(nullptr)); }
     };
 
     template <class Work>
@@ -168,8 +191,8 @@ struct Kernels {
     static Vec3<Lanes> parting_acceleration(const KernelContext& context, const Bundle& bundle, const A& a,
                                             const B& b)
     {
-        return free_acceleration(context.step, bundle.arrays_b, bundle.rows_b, b) -
-               free_acceleration(context.step, bundle.arrays_a, bundle.rows_a, a);
+        return free_acceleration(context.step, bundle.arrays_b, bundle.offsets_b, b) -
+               free_acceleration(context.step, bundle.arrays_a, bundle.offsets_a, a);
     }
 
     static void prepare(const KernelContext& context, const BlockStreams& streams, const ConstraintData& data,
@@ -190,19 +213,22 @@ struct Kernels {
                 Impulse impulse;
                 if constexpr (requires { typename Type::Definition; }) {
                     const JointPose<Lanes, kind_a, kind_b> pose{
-                        between_bodies(bundle.arrays_a, bundle.rows_a, bundle.arrays_b, bundle.rows_b),
-                        load_orientation<kind_a>(bundle.arrays_a, bundle.rows_a),
-                        load_orientation<kind_b>(bundle.arrays_b, bundle.rows_b)};
+                        between_bodies<kind_a, kind_b>(bundle.arrays_a, bundle.offsets_a, bundle.arrays_b,
+                                                       bundle.offsets_b),
+                        load_orientation<kind_a>(bundle.arrays_a, bundle.offsets_a),
+                        load_orientation<kind_b>(bundle.arrays_b, bundle.offsets_b)};
                     if constexpr (requires { &Type::world_points; }) {
                         const auto points = [&](int lane) -> const WorldPoints& {
                             return data.world_points[bundle.constraint[lane]];
                         };
                         const WorldPose<Lanes, kind_a, kind_b> in_world{
                             pose,
-                            from_points(bundle.arrays_a, bundle.rows_a,
-                                        [&](int lane) -> const Vec3<double>& { return points(lane).a; }),
-                            from_points(bundle.arrays_b, bundle.rows_b,
-                                        [&](int lane) -> const Vec3<double>& { return points(lane).b; })};
+                            from_points<kind_a>(
+                                bundle.arrays_a, bundle.offsets_a,
+                                [&](int lane) -> const Vec3<double>& { return points(lane).a; }),
+                            from_points<kind_b>(
+                                bundle.arrays_b, bundle.offsets_b,
+                                [&](int lane) -> const Vec3<double>& { return points(lane).b; })};
                         store_row(Type::prepare(context.step, parameters, memory, in_world, a, b, impulse),
                                   bundle.row);
                     } else if constexpr (Type::has_restitution) {
@@ -228,7 +254,7 @@ struct Kernels {
                            std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
-            prefetch(context, streams, block, end);
+            prefetch<sees_delta_once>(context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
@@ -236,21 +262,22 @@ struct Kernels {
                 Type::template warm_start<Lanes>(context.step, load_row<Row>(bundle.row), substep,
                                                  load_row<Impulse>(bundle.impulse), a, b);
                 if constexpr (Type::recomputes_each_substep) store_row(substep, bundle.substep);
-                store_velocity(bundle.arrays_a, bundle.rows_a, a, bundle.count);
-                store_velocity(bundle.arrays_b, bundle.rows_b, b, bundle.count);
+                store_velocity(bundle.arrays_a, bundle.offsets_a, a, bundle.count);
+                store_velocity(bundle.arrays_b, bundle.offsets_b, b, bundle.count);
             });
         }
     }
 
-    /// Asks for the bodies of the next block, which lie anywhere. Its streams lie in line: the hardware sees to
-    /// them.
+    /// Asks for the bodies of the next block, which lie anywhere, if they are far. Its streams lie in line: the
+    /// hardware sees to them.
+    template <bool delta>
     [[gnu::always_inline]] static void prefetch(const KernelContext& context, const BlockStreams& streams,
                                                 std::int32_t block, std::int32_t end)
     {
-        if (block + 1 >= end) return;
+        if (!context.bodies_are_far || block + 1 >= end) return;
         const BlockBodies& next = streams.bodies[block + 1];
-        prefetch_bodies<kind_a>(context.bodies[static_cast<int>(kind_a)], next.a);
-        prefetch_bodies<kind_b>(context.bodies[static_cast<int>(kind_b)], next.b);
+        prefetch_bodies<kind_a, delta>(context.bodies[static_cast<int>(kind_a)], next.a);
+        prefetch_bodies<kind_b, delta>(context.bodies[static_cast<int>(kind_b)], next.b);
     }
 
     template <bool relax>
@@ -258,7 +285,7 @@ struct Kernels {
                       std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
-            prefetch(context, streams, block, end);
+            prefetch<!sees_delta_once>(context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
@@ -272,8 +299,8 @@ struct Kernels {
                     if (context.measure == Measure::without_solving) return;
                 }
                 store_row(impulse, bundle.impulse);
-                store_velocity(bundle.arrays_a, bundle.rows_a, a, bundle.count);
-                store_velocity(bundle.arrays_b, bundle.rows_b, b, bundle.count);
+                store_velocity(bundle.arrays_a, bundle.offsets_a, a, bundle.count);
+                store_velocity(bundle.arrays_b, bundle.offsets_b, b, bundle.count);
             });
         }
     }
@@ -283,15 +310,15 @@ struct Kernels {
                                         std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
-            prefetch(context, streams, block, end);
+            prefetch<true>(context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
                 auto impulse = load_row<Impulse>(bundle.impulse);
                 Type::template restitute<Lanes>(context.step, load_row<Row>(bundle.row), impulse, a, b);
                 store_row(impulse, bundle.impulse);
-                store_velocity(bundle.arrays_a, bundle.rows_a, a, bundle.count);
-                store_velocity(bundle.arrays_b, bundle.rows_b, b, bundle.count);
+                store_velocity(bundle.arrays_a, bundle.offsets_a, a, bundle.count);
+                store_velocity(bundle.arrays_b, bundle.offsets_b, b, bundle.count);
             });
         }
     }
@@ -300,16 +327,16 @@ struct Kernels {
                                       std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
-            prefetch(context, streams, block, end);
+            prefetch<true>(context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
                 Type::template project<Lanes>(context.step, load_row<Row>(bundle.row),
                                               load_row<Substep>(bundle.substep), a, b);
-                turn_inertia(bundle.arrays_a, bundle.rows_a, a);
-                turn_inertia(bundle.arrays_b, bundle.rows_b, b);
-                store_delta(bundle.arrays_a, bundle.rows_a, a, bundle.count);
-                store_delta(bundle.arrays_b, bundle.rows_b, b, bundle.count);
+                turn_inertia(bundle.arrays_a, bundle.offsets_a, a);
+                turn_inertia(bundle.arrays_b, bundle.offsets_b, b);
+                store_delta(bundle.arrays_a, bundle.offsets_a, a, bundle.count);
+                store_delta(bundle.arrays_b, bundle.offsets_b, b, bundle.count);
             });
         }
     }

@@ -10,12 +10,12 @@ void for_each_copy(const FigureBlock& figure, const Work& work)
 {
     for (std::size_t i = 0; i < figure.shape->bodies.size(); ++i) {
         float* body = figure.body(static_cast<int>(i));
-        const std::int32_t* rows = figure.rows + i * block_lanes;
+        const std::int32_t* offsets = figure.offsets + i * block_lanes;
         for (int lane = 0; lane < figure.count; lane += Lanes_width) {
             if (figure.shape->bodies[i] == BodyKind::rigid) {
-                work(static_cast<Mover*>(nullptr), body + lane, rows + lane, figure.count - lane);
+                work(static_cast<Mover*>(nullptr), body + lane, offsets + lane, figure.count - lane);
             } else {
-                work(static_cast<Standing*>(nullptr), body + lane, rows + lane, figure.count - lane);
+                work(static_cast<Standing*>(nullptr), body + lane, offsets + lane, figure.count - lane);
             }
         }
     }
@@ -23,8 +23,8 @@ void for_each_copy(const FigureBlock& figure, const Work& work)
 template <class Work>
 void for_each_moving_copy(const FigureBlock& figure, const Work& work)
 {
-    for_each_copy(figure, [&](auto* kind, float* body, const std::int32_t* rows, int count) {
-        if constexpr (std::is_same_v<decltype(kind), Mover*>) work(body, rows, count);
+    for_each_copy(figure, [&](auto* kind, float* body, const std::int32_t* offsets, int count) {
+        if constexpr (std::is_same_v<decltype(kind), Mover*>) work(body, offsets, count);
     });
 }
 
@@ -36,19 +36,20 @@ inline void load_field_quads(const float* fields, Lanes (&out)[4])
 
 inline void load_copies(const KernelContext& context, const FigureBlock& figure)
 {
-    for_each_copy(figure, [&](auto* kind, float* body, const std::int32_t* rows, int) {
+    for_each_copy(figure, [&](auto* kind, float* body, const std::int32_t* offsets, int) {
         const BodyArrays& arrays =
             context.bodies[static_cast<int>(std::remove_pointer_t<decltype(kind)>::kind)];
-        store_row(load_body(arrays, rows, kind), body);
+        const auto loaded = load_body(arrays, offsets, kind);
+        store_row(loaded, body);
         if constexpr (std::is_same_v<decltype(kind), Mover*>) {
             Lanes a[4], t[4];
-            load_quads(arrays.acceleration, 8, rows, a);
-            load_quads(arrays.acceleration + 4, 8, rows, t);
+            load_quads(arrays.acceleration, offset_floats, offsets, a);
+            load_quads(arrays.acceleration + 4, offset_floats, offsets, t);
             float* acceleration = body + CopyBody::acceleration * block_lanes;
             store_row(Vec3<Lanes>{a[0], a[1], a[2]}, acceleration);
             store_row(Vec3<Lanes>{t[0], t[1], t[2]}, acceleration + 3 * block_lanes);
-            store_row(load_tensor(arrays.start_inverse_inertia, rows),
-                      body + CopyBody::start_inertia * block_lanes);
+            // Asked for by those alone who are taken in as a step begins: nothing has turned yet.
+            store_row(loaded.inverse_inertia, body + CopyBody::start_inertia * block_lanes);
         }
     });
 }
@@ -56,26 +57,26 @@ inline void load_copies(const KernelContext& context, const FigureBlock& figure)
 inline void store_copies(const KernelContext& context, const FigureBlock& figure)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
-    for_each_moving_copy(figure, [&](const float* body, const std::int32_t* rows, int count) {
+    for_each_moving_copy(figure, [&](const float* body, const std::int32_t* offsets, int count) {
         const Mover mover = load_row<Mover>(body);
-        store_velocity(arrays, rows, mover, count);
-        store_delta(arrays, rows, mover, count);
+        store_velocity(arrays, offsets, mover, count);
+        store_delta(arrays, offsets, mover, count);
     });
 }
 
 inline void load_copy_velocities(const KernelContext& context, const FigureBlock& figure)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
-    for_each_moving_copy(figure, [&](float* body, const std::int32_t* rows, int) {
-        store_copy_velocity(load_body(arrays, rows, static_cast<Mover*>(nullptr)), body);
+    for_each_moving_copy(figure, [&](float* body, const std::int32_t* offsets, int) {
+        store_copy_velocity(load_body(arrays, offsets, static_cast<Mover*>(nullptr)), body);
     });
 }
 
 inline void store_copy_velocities(const KernelContext& context, const FigureBlock& figure)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
-    for_each_moving_copy(figure, [&](const float* body, const std::int32_t* rows, int count) {
-        store_velocity(arrays, rows, load_row<Mover>(body), count);
+    for_each_moving_copy(figure, [&](const float* body, const std::int32_t* offsets, int count) {
+        store_velocity(arrays, offsets, load_row<Mover>(body), count);
     });
 }
 

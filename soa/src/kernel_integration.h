@@ -24,20 +24,20 @@ inline Vec3<Lanes> gyrate(const Sym3<Lanes>& inertia, const Vec3<Lanes>& w, cons
     return w - Vec3<Lanes>{d * dot(r, yz), d * dot(x, cross(r, z)), d * dot(x, cross(y, r))};
 }
 
-inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* rows,
+inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* offsets,
                        Body<BodyKind::particle>& body)
 {
     Lanes a[4];
-    load_quads(arrays.acceleration, 4, rows, a);
+    load_quads(arrays.acceleration, offset_floats, offsets, a);
     const Lanes h(context.step.substep);
     const Vec3<float>& g = context.step.gravity;
     body.linear = body.linear + h * Vec3<Lanes>{a[0] + Lanes(g.x), a[1] + Lanes(g.y), a[2] + Lanes(g.z)};
 }
-inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* rows,
+inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* offsets,
                        Body<BodyKind::planar>& body)
 {
     Lanes a[4];
-    load_quads(arrays.acceleration, 4, rows, a);
+    load_quads(arrays.acceleration, offset_floats, offsets, a);
     const Lanes h(context.step.substep);
     body.linear = body.linear +
                   h * Vec2<Lanes>{a[0] + Lanes(context.step.gravity.x), a[1] + Lanes(context.step.gravity.y)};
@@ -53,25 +53,40 @@ inline void accelerate(const StepConstants& step, const Lanes (&a)[4], const Lan
     const Vec3<Lanes> turned = gyrate(inverse(body.inverse_inertia), body.angular, h);
     body.angular = turned + h * (body.inverse_inertia * Vec3<Lanes>{t[0], t[1], t[2]});
 }
-inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* rows,
+inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* offsets,
                        Body<BodyKind::rigid>& body)
 {
     Lanes a[4], t[4];
-    load_quads(arrays.acceleration, 8, rows, a);
-    load_quads(arrays.acceleration + 4, 8, rows, t);
+    load_quads(arrays.acceleration, offset_floats, offsets, a);
+    load_quads(arrays.acceleration + 4, offset_floats, offsets, t);
     accelerate(context.step, a, t, body);
 }
 
-/// The consecutive rows first ... first + width - 1 as an index; past `end`, the null row.
+/// Where the consecutive rows first ... first + width - 1 begin; from the count on, the null row.
+template <BodyKind kind>
 struct RowIndex {
-    std::int32_t rows[Lanes_width];
+    std::int32_t offsets[Lanes_width];
     int count;
-    RowIndex(std::int32_t first, std::int32_t end)
+    /// Of all of them the compiler makes one address and constants beside it.
+    explicit RowIndex(std::int32_t first) : count(Lanes_width)
     {
-        count = end - first < Lanes_width ? end - first : Lanes_width;
-        for (int lane = 0; lane < Lanes_width; ++lane) rows[lane] = lane < count ? first + lane : 0;
+        for (int lane = 0; lane < Lanes_width; ++lane) offsets[lane] = (first + lane) * offsets_a_row(kind);
+    }
+    RowIndex(std::int32_t first, int how_many) : count(how_many)
+    {
+        for (int lane = 0; lane < Lanes_width; ++lane)
+            offsets[lane] = lane < count ? (first + lane) * offsets_a_row(kind) : 0;
     }
 };
+
+/// Calls work(where they begin) for all rows from `begin` to `end` - 1, a bundle at a time.
+template <BodyKind kind, class Work>
+[[gnu::always_inline]] inline void for_each_rows(std::int32_t begin, std::int32_t end, const Work& work)
+{
+    std::int32_t first = begin;
+    for (; end - first >= Lanes_width; first += Lanes_width) work(RowIndex<kind>(first));
+    if (first < end) work(RowIndex<kind>(first, end - first));
+}
 
 /// Calls change(component, of `from`) for each component of velocity.
 template <class Body, class Change>
@@ -90,11 +105,11 @@ void for_each_component(Body& body, const Body& other, const Change& change)
 
 /// By forces and gravity, and by what constraints did in the last substep where that is replayed.
 template <BodyKind kind>
-void change_velocity(const KernelContext& context, const BodyArrays& arrays, const RowIndex& index,
+void change_velocity(const KernelContext& context, const BodyArrays& arrays, const RowIndex<kind>& index,
                      Body<kind>& body)
 {
     const Body<kind> before = body;
-    accelerate(context, arrays, index.rows, body);
+    accelerate(context, arrays, index.offsets, body);
     // A body without inverse mass is a null, free or contained row: it must not even fall.
     const auto moves = body.inverse_mass > Lanes(0);
     for_each_component(body, before, [&](Lanes& now, const Lanes& then) { now = select(moves, now, then); });
@@ -104,23 +119,23 @@ void change_velocity(const KernelContext& context, const BodyArrays& arrays, con
     arrays_unpushed.velocity = arrays.unpushed;
     if (context.replay == Replay::last_substep) {
         Body<kind> change = before;
-        for_each_component(change, load_body(arrays_unpushed, index.rows, static_cast<Body<kind>*>(nullptr)),
+        for_each_component(change,
+                           load_body(arrays_unpushed, index.offsets, static_cast<Body<kind>*>(nullptr)),
                            [](Lanes& now, const Lanes& then) { now = now - then; });
         for_each_component(body, change, [](Lanes& now, const Lanes& pushed) { now = now + pushed; });
     }
-    store_velocity(arrays_unpushed, index.rows, unpushed, index.count);
+    store_velocity(arrays_unpushed, index.offsets, unpushed, index.count);
 }
 
 template <BodyKind kind>
 void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
-    for (std::int32_t first = begin; first < end; first += Lanes_width) {
-        const RowIndex index(first, end);
-        Body<kind> body = load_body(arrays, index.rows, static_cast<Body<kind>*>(nullptr));
+    for_each_rows<kind>(begin, end, [&](const RowIndex<kind>& index) {
+        Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
         change_velocity(context, arrays, index, body);
-        store_velocity(arrays, index.rows, body, index.count);
-    }
+        store_velocity(arrays, index.offsets, body, index.count);
+    });
 }
 
 // ---- x += h v
@@ -142,22 +157,21 @@ void integrate_positions(const KernelContext& context, std::int32_t begin, std::
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
     const Lanes h(context.step.substep);
-    for (std::int32_t first = begin; first < end; first += Lanes_width) {
-        const RowIndex index(first, end);
-        Body<kind> body = load_body(arrays, index.rows, static_cast<Body<kind>*>(nullptr));
+    for_each_rows<kind>(begin, end, [&](const RowIndex<kind>& index) {
+        Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
         advance(body, h);
-        turn_inertia(arrays, index.rows, body);
+        turn_inertia(arrays, index.offsets, body);
         if constexpr (kind == BodyKind::fixed) {
             const Quat<Lanes>& q = body.delta_rotation;
-            store_quads(arrays.delta, 8, index.rows, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)},
-                        index.count);
-            store_quads(arrays.delta + 4, 8, index.rows, {q.x, q.y, q.z, q.w}, index.count);
+            store_quads(arrays.delta, offset_floats, index.offsets,
+                        {body.delta.x, body.delta.y, body.delta.z, Lanes(0)}, index.count);
+            store_quads(arrays.delta + 4, offset_floats, index.offsets, {q.x, q.y, q.z, q.w}, index.count);
         } else {
-            store_delta(arrays, index.rows, body, index.count);
+            store_delta(arrays, index.offsets, body, index.count);
             if constexpr (runs_on) {
                 change_velocity(context, arrays, index, body);
-                store_velocity(arrays, index.rows, body, index.count);
+                store_velocity(arrays, index.offsets, body, index.count);
             }
         }
-    }
+    });
 }

@@ -34,16 +34,27 @@ TEST(Readme, BytesALaneAreWhatTheKernelsStream)
         if (cells.size() > 3) bytes_cells[cells[0]] = cells[3];
     }
     // The table's rows by their beginnings, in the order of the list of types.
-    const char* const rows[] = {"contact, smooth", "contact with friction",
-                                "ball-socket",     "distance",
-                                "fixed",           "hinge",
-                                "slider",          "point on a plane",
-                                "point on a line", "rotation lock",
-                                "parallel axes",   "perpendicular axes",
-                                "slide drive",     "twist drive",
-                                "swing limit",     "point servo",
-                                "angular servo",   "gear",
-                                "rack and pinion", "pulley",
+    const char* const rows[] = {"contact, smooth",
+                                "contact with friction",
+                                "contact that bounces",
+                                "ball-socket",
+                                "distance",
+                                "fixed",
+                                "hinge",
+                                "slider",
+                                "point on a plane",
+                                "point on a line",
+                                "rotation lock",
+                                "parallel axes",
+                                "perpendicular axes",
+                                "slide drive",
+                                "twist drive",
+                                "swing limit",
+                                "point servo",
+                                "angular servo",
+                                "gear",
+                                "rack and pinion",
+                                "pulley",
                                 "manifold"};
     static_assert(std::size(rows) == constraint_type_count, "a row for every type");
     for (const Isa isa : available_isas()) {

@@ -177,12 +177,12 @@ TEST(Figures, EveryJointIsPlacedOnceAndEveryLaneIsItsOwnCopys)
                 EXPECT_GE(block.count, exact ? 1 : 8);
                 for (std::size_t body = 0; body < block.shape->bodies.size(); ++body) {
                     for (int lane = 0; lane < block_lanes; ++lane) {
-                        const std::int32_t row =
-                            block.rows[body * block_lanes + static_cast<std::size_t>(lane)];
+                        const std::int32_t offset =
+                            block.offsets[body * block_lanes + static_cast<std::size_t>(lane)];
                         if (lane >= block.count) {
-                            EXPECT_EQ(row, 0);
+                            EXPECT_EQ(offset, 0);
                         } else if (block.shape->bodies[body] == BodyKind::rigid) {
-                            EXPECT_TRUE(taken.insert(row).second) << "a body is in one lane";
+                            EXPECT_TRUE(taken.insert(offset).second) << "a body is in one lane";
                         }
                     }
                 }

@@ -20,7 +20,8 @@ struct TypeList {
     static constexpr int size = sizeof...(Types);
 };
 
-using ContactTypes = TypeList<SmoothContact, FrictionContact>;
+/// In the order of Touch.
+using ContactTypes = TypeList<SmoothContact, RoughContact, BouncingContact>;
 template <class Definition>
 struct FrameJointOf;
 template <LinearLock linear, AngularLock angular>

@@ -34,11 +34,17 @@ struct ContactMemory {
     Vec3<Real> friction;
 };
 
-/// With friction and restitution, or (`smooth`) with neither: no friction, no friction rows.
-template <bool smooth>
+/// What a contact does besides keeping bodies apart, each what the one before does and more: no friction, no friction rows;
+/// no restitution, nothing to remember of the impact.
+enum class Touch { smooth, rough, bouncing };
+
+template <Touch touch>
 struct ContactKind {
-    static constexpr const char* name = smooth ? "smooth contact" : "contact";
-    static constexpr bool has_restitution = !smooth;
+    static constexpr bool smooth = touch == Touch::smooth;
+    static constexpr bool has_restitution = touch == Touch::bouncing;
+    static constexpr const char* name = smooth            ? "smooth contact"
+                                        : has_restitution ? "bouncing contact"
+                                                          : "contact";
     static constexpr bool recomputes_each_substep = false;
     template <class Real>
     using Parameters = ContactParameters<Real>;
@@ -56,11 +62,12 @@ struct ContactKind {
         [[no_unique_address]] Lever<Real, a, is_planar_pair(a, b)> lever_a;
         [[no_unique_address]] Lever<Real, b, is_planar_pair(a, b)> lever_b;
     };
+    /// The plane's two masses are made anew from what a sweep has at hand: from memory that is no dearer than to fetch them,
+    /// in cache it costs a sweep a tenth.
     template <class Real>
     struct PlanarSweep {
         Vec2<Real> normal, arm_a, arm_b;
         Real separation;
-        Real normal_mass, tangent_mass;
         Real friction;
     };
     template <class Real>
@@ -73,31 +80,39 @@ struct ContactKind {
         Real friction;
     };
     template <class Real, BodyKind a, BodyKind b>
-    struct FullRow {
-        std::conditional_t<is_planar_pair(a, b), PlanarSweep<Real>, SpatialSweep<Real>> in_sweep;
+    using RoughRow = std::conditional_t<is_planar_pair(a, b), PlanarSweep<Real>, SpatialSweep<Real>>;
+    template <class Real, BodyKind a, BodyKind b>
+    struct BouncingRow {
+        RoughRow<Real, a, b> in_sweep;
         Real restitution, approach, acceleration;  ///< see opening_speed
     };
     template <class Real, BodyKind a, BodyKind b>
-    using Row = std::conditional_t<smooth, SmoothRow<Real, a, b>, FullRow<Real, a, b>>;
+    using Row = std::conditional_t<
+        smooth, SmoothRow<Real, a, b>,
+        std::conditional_t<has_restitution, BouncingRow<Real, a, b>, RoughRow<Real, a, b>>>;
 
     template <class Real>
     struct SmoothImpulse {
         Real normal;
     };
-    template <class Real>
-    struct PlanarImpulse {
-        Real normal, tangent, peak;  ///< peak: the largest normal impulse of the step, decides restitution
-    };
-    template <class Real>
-    struct SpatialImpulse {
+    template <class Tangent, class Real>
+    struct RoughImpulse {
         Real normal;
-        Vec2<Real> tangent;
-        Real peak;
+        Tangent tangent;
+    };
+    template <class Tangent, class Real>
+    struct BouncingImpulse {
+        Real normal;
+        Tangent tangent;
+        Real peak;  ///< the largest normal impulse of the step, decides restitution
     };
     template <class Real, BodyKind a, BodyKind b>
-    using Impulse = std::conditional_t<
-        smooth, SmoothImpulse<Real>,
-        std::conditional_t<is_planar_pair(a, b), PlanarImpulse<Real>, SpatialImpulse<Real>>>;
+    using Tangent = std::conditional_t<is_planar_pair(a, b), Real, Vec2<Real>>;
+    template <class Real, BodyKind a, BodyKind b>
+    using Impulse =
+        std::conditional_t<smooth, SmoothImpulse<Real>,
+                           std::conditional_t<has_restitution, BouncingImpulse<Tangent<Real, a, b>, Real>,
+                                              RoughImpulse<Tangent<Real, a, b>, Real>>>;
 
     /// A unit vector across n: n x (the axis it leans away from).
     template <class Real>
@@ -128,7 +143,7 @@ struct ContactKind {
         row.separation = contact.separation;
         const Vector arm_a = to_space<Vector>(contact.arm_a), arm_b = to_space<Vector>(contact.arm_b);
         const auto k = inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b);
-        row.normal_mass = inverse_or_zero(dot(row.normal, k * row.normal));
+        if constexpr (requires { row.normal_mass; }) row.normal_mass = mass_along(row.normal, k);
         const Real warm(step.warm_start_scale);
         impulse.normal = warm * memory.normal;
         if constexpr (smooth) {
@@ -138,14 +153,14 @@ struct ContactKind {
             row.arm_a = arm_a;
             row.arm_b = arm_b;
             row.friction = contact.friction;
-            whole.restitution = contact.restitution;
-            whole.approach = speed<Real>(row, a, b);
-            whole.acceleration = dot(contact.normal, acceleration);
-            impulse.peak = Real(0);
+            if constexpr (has_restitution) {
+                whole.restitution = contact.restitution;
+                whole.approach = speed<Real>(row, a, b);
+                whole.acceleration = dot(contact.normal, acceleration);
+                impulse.peak = Real(0);
+            }
             if constexpr (is_planar_pair(A::kind, B::kind)) {
-                const Vector t = tangent_of(row.normal);
-                row.tangent_mass = inverse_or_zero(dot(t, k * t));
-                impulse.tangent = warm * dot(t, to_space<Vector>(memory.friction));
+                impulse.tangent = warm * dot(tangent_of(row.normal), to_space<Vector>(memory.friction));
             } else {
                 row.tangent = tangent_of(row.normal);
                 const Vector t2 = cross(row.normal, row.tangent);
@@ -193,9 +208,9 @@ struct ContactKind {
         if constexpr (!smooth) solve_friction<Real>(row, impulse, a, b);
 
         constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
-        const Real wanted = contact_impulse<relax>(step, on_fixed ? step.static_contact : step.contact,
-                                                   row.separation + moved<Real>(row, a, b),
-                                                   speed<Real>(row, a, b), row.normal_mass, impulse.normal);
+        const Real wanted = contact_impulse<relax>(
+            step, on_fixed ? step.static_contact : step.contact, row.separation + moved<Real>(row, a, b),
+            speed<Real>(row, a, b), normal_mass<Real>(row, a, b), impulse.normal);
         push_normal<Real>(row, wanted, impulse, a, b);
     }
 
@@ -206,9 +221,9 @@ struct ContactKind {
         const auto& row = in_sweep(whole);
         const Real opening = opening_speed(step, whole.restitution, whole.approach, whole.acceleration,
                                            row.separation, row.separation + moved<Real>(row, a, b));
-        const Real wanted = impulse.normal - row.normal_mass * (speed<Real>(row, a, b) - opening);
-        const auto bounces = (whole.restitution > Real(0)) &
-                             (whole.approach < Real(-step.restitution_threshold)) & (impulse.peak > Real(0));
+        const Real wanted =
+            impulse.normal - normal_mass<Real>(row, a, b) * (speed<Real>(row, a, b) - opening);
+        const auto bounces = (whole.approach < Real(-step.restitution_threshold)) & (impulse.peak > Real(0));
         push_normal<Real>(row, select(bounces, maximum(wanted, Real(0)), impulse.normal), impulse, a, b);
     }
 
@@ -219,7 +234,7 @@ struct ContactKind {
         const auto& row = in_sweep(whole);
         const Real deep = minimum(row.separation + moved<Real>(row, a, b) + Real(step.slop), Real(0));
         const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep start must not explode
-        const Real lambda = -(row.normal_mass * Real(step.projection_rate) * error);
+        const Real lambda = -(normal_mass<Real>(row, a, b) * Real(step.projection_rate) * error);
         if constexpr (smooth) {
             displace_along(a, row.normal, row.lever_a, -lambda);
             displace_along(b, row.normal, row.lever_b, lambda);
@@ -245,10 +260,26 @@ struct ContactKind {
     template <class Row>
     static auto& in_sweep(Row& row)
     {
-        if constexpr (smooth) {
-            return row;
-        } else {
+        if constexpr (has_restitution) {
             return row.in_sweep;
+        } else {
+            return row;
+        }
+    }
+    /// 1 / (J M^-1 J^T) along a direction, K being the inverse mass of the point.
+    template <class Vector, class Symmetric>
+    static auto mass_along(const Vector& direction, const Symmetric& k)
+    {
+        return inverse_or_zero(dot(direction, k * direction));
+    }
+    template <class Real, class Row, class A, class B>
+    static Real normal_mass(const Row& row, const A& a, const B& b)
+    {
+        if constexpr (requires { row.normal_mass; }) {
+            return row.normal_mass;
+        } else {
+            return mass_along(row.normal,
+                              inverse_point_mass(a, row.arm_a) + inverse_point_mass(b, row.arm_b));
         }
     }
     // The normal's row of J: times v, times the displacement of the step, and M^-1 J^T lambda.
@@ -288,7 +319,7 @@ struct ContactKind {
     {
         const Real change = wanted - impulse.normal;
         impulse.normal = wanted;
-        if constexpr (!smooth) impulse.peak = maximum(impulse.peak, wanted);
+        if constexpr (has_restitution) impulse.peak = maximum(impulse.peak, wanted);
         push<Real>(row, change, a, b);
     }
 
@@ -313,7 +344,9 @@ struct ContactKind {
             apply_impulse(b, row.arm_b, push);
         } else {
             const Vec2<Real> t = tangent_of(row.normal);
-            const Real free = impulse.tangent - row.tangent_mass * dot(t, slip);
+            const Real mass =
+                mass_along(t, inverse_point_mass(a, row.arm_a) + inverse_point_mass(b, row.arm_b));
+            const Real free = impulse.tangent - mass * dot(t, slip);
             const Real held = maximum(minimum(free, bound), -bound);
             const Vec2<Real> push = (held - impulse.tangent) * t;
             impulse.tangent = held;
@@ -323,7 +356,8 @@ struct ContactKind {
     }
 };
 
-using FrictionContact = ContactKind<false>;
-using SmoothContact = ContactKind<true>;
+using SmoothContact = ContactKind<Touch::smooth>;
+using RoughContact = ContactKind<Touch::rough>;
+using BouncingContact = ContactKind<Touch::bouncing>;
 
 }  // namespace motley
