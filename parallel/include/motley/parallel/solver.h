@@ -20,7 +20,7 @@ struct SolverOptions {
     int threads = 1;  ///< >= 1; 1 starts no thread at all; ignored when `executor` is set
     /// Steps of fewer contacts (a joint counts as four, two bodies as one) run on the caller alone: they are done before
     /// another thread has come.
-    std::size_t alone_below = 4096;
+    std::size_t alone_below = 8192;
     std::optional<Isa> isa{};      ///< default: MOTLEY_ISA, else the widest this machine has
     Executor* executor = nullptr;  ///< the host's own threads; not owned, must outlive the solver
 };
