@@ -142,9 +142,9 @@ class MixedScene {
         contact.key = key;
         contact.normal = convert<float>(normal);
         contact.separation = static_cast<float>(separation);
-        // A third of the contacts are smooth, so that both kinds share colours.
+        // A third of the contacts each are smooth, have friction, and bounce: all kinds share colours.
         contact.friction = key % 3 == 0 ? 0 : friction;
-        contact.restitution = key % 3 == 0 ? 0 : restitution;
+        contact.restitution = key % 3 == 2 ? restitution : 0;
         return contact;
     }
     void add(BodyId a, BodyId b, std::uint64_t key, Vec3<double> normal, double separation, double ra,

@@ -1,7 +1,9 @@
 // Colouring and placing. Constraints that persist keep their colour; the rest take the first that is free.
 #include "layout.h"
 
+#if __has_include(<unistd.h>)
 #include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <cstddef>

@@ -234,9 +234,12 @@ TYPED_TEST(EveryJoint, KeepsMomentaAndNeverAddsEnergyInFreeFlight)
 
 TEST(AgainstReference, ContactsAgreeForEveryPairAndMethod)
 {
-    for (const float mu : {0.0F, 0.4F}) {
-        for_every_pair([mu](Twin& twin, testing::Random& random, const SolverSettings& settings,
-                            const std::string& name, int a, int b) {
+    struct Touches {
+        float friction, restitution;
+    };
+    for (const Touches touches : {Touches{0, 0}, {0.4F, 0}, {0, 0.5F}, {0.4F, 0.5F}}) {
+        for_every_pair([touches](Twin& twin, testing::Random& random, const SolverSettings& settings,
+                                 const std::string& name, int a, int b) {
             // The pair approaches along n; the geometry is replayed from the reference's positions, so that both see
             // the same list. Balls of radius 0.3 around each centre.
             Solver solver(settings);
@@ -269,8 +272,8 @@ TEST(AgainstReference, ContactsAgreeForEveryPairAndMethod)
                 contact.separation = static_cast<float>(distance - 0.6);
                 contact.arm_a = 0.3F * contact.normal;
                 contact.arm_b = -0.3F * contact.normal;
-                contact.friction = mu;
-                contact.restitution = mu > 0 ? 0.5F : 0;
+                contact.friction = touches.friction;
+                contact.restitution = touches.restitution;
                 const StepReport report = solver.step(twin.scene, dt, {&contact, 1});
                 ASSERT_EQ(report.status, StepStatus::done) << report.error;
                 twin.world.step(static_cast<double>(dt), settings, {{0, 1, contact}});
