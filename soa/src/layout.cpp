@@ -17,8 +17,8 @@ namespace {
 /// Bodies a range: a few microseconds of streaming.
 constexpr std::int32_t rows_per_range = 1024;
 
-/// Of a core, B. Bodies that lie in it come in time by themselves, and asking for them is a third of a small kernel's
-/// instructions; of more, those not asked for cost a sweep up to half its time.
+/// Of a core, B. Bodies that lie in it come in time by themselves, and asking for them is a quarter of a small kernel's
+/// instructions: without it 10,000 people sweep 1.4 times as fast, a million 0.8 times.
 std::int64_t second_level_cache()
 {
     constexpr std::int64_t usual = 1 << 20;
