@@ -1,7 +1,9 @@
 // Claims, spins and the hand-over between stages.
 #include "stage_runner.h"
 
+#include <algorithm>
 #include <thread>
+#include <utility>
 
 namespace motley {
 namespace {
@@ -16,6 +18,28 @@ inline void pause()
 /// Spins before a thread offers its core to others: longer than any serial stretch inside a sweep, shorter
 /// than a scheduler's slice, so that a loaded machine is not held up by a worker without work.
 constexpr int spins_before_yield = 4000;
+/// Spins before a thread takes the last chunk of another's share: longer than a chunk takes.
+constexpr int spins_before_last_chunk = 400;
+/// How much of what a stage tells of the workers' speeds is believed.
+constexpr double learning_rate = 1.0 / 32;
+
+/// The stage that a share is of, whether its worker has come to it, its chunks (one past the last) and the next of them to
+/// claim, in one word.
+struct ShareWord {
+    static constexpr int bits = 24;
+    static constexpr std::uint64_t most = (std::uint64_t{1} << bits) - 1;
+    static constexpr std::uint64_t owner_came = std::uint64_t{1} << 2 * bits;
+    std::uint64_t word;
+    static ShareWord of(std::uint32_t stage, std::uint64_t first, std::uint64_t last)
+    {
+        return {std::uint64_t{stage} << (2 * bits + 1) | last << bits | first};
+    }
+    [[nodiscard]] std::uint64_t stage() const { return word >> (2 * bits + 1); }
+    [[nodiscard]] std::uint64_t last() const { return word >> bits & most; }
+    [[nodiscard]] std::uint64_t next() const { return word & most; }
+    /// What others may not take yet.
+    [[nodiscard]] std::uint64_t reserved() const { return (word & owner_came) != 0 ? 1 : 0; }
+};
 
 }  // namespace
 
@@ -24,6 +48,8 @@ StageRunner::StageRunner(Executor* executor)
       workers_(executor->concurrency()),
       shares_(std::make_unique<Share[]>(static_cast<std::size_t>(workers_)))
 {
+    for (int worker = 0; worker < workers_; ++worker)
+        shares_[static_cast<std::size_t>(worker)].size = 1.0 / workers_;
 }
 
 void StageRunner::open()
@@ -32,64 +58,98 @@ void StageRunner::open()
     open_ = true;
 }
 
-void StageRunner::publish(Job job, std::uint32_t count)
+void StageRunner::publish(Job job, std::int64_t count)
 {
     job_ = job;
     done_.store(0, std::memory_order_relaxed);
-    std::uint64_t first = 0;
-    for (int worker = 0; worker < workers_; ++worker) {
-        const std::uint64_t last = std::uint64_t{count} * static_cast<std::uint64_t>(worker + 1) /
-                                   static_cast<std::uint64_t>(workers_);
-        shares_[static_cast<std::size_t>(worker)].word.store(last << 32 | first, std::memory_order_release);
-        first = last;
-    }
-    while (claim_and_run(0)) {
-    }
+    ++stage_;
+    hand_out(count);
     for (int spins = 0; done_.load(std::memory_order_acquire) != count;) {
-        if (++spins < spins_before_yield) {
-            pause();
-        } else {
-            std::this_thread::yield();
-        }
+        spins = come_to_work(0, spins) ? 0 : spins + 1;
+    }
+    learn_sizes(count);
+}
+
+/// The caller's own share last, so that nobody waits for it to be done with the others.
+void StageRunner::hand_out(std::int64_t count)
+{
+    double before = 1;  // the share of all workers before this one
+    auto last = static_cast<std::uint64_t>(count);
+    for (int worker = workers_; worker-- > 0;) {
+        Share& share = shares_[static_cast<std::size_t>(worker)];
+        before -= share.size;
+        const std::uint64_t first =
+            worker == 0 ? 0
+                        : std::min(last, static_cast<std::uint64_t>(
+                                             std::max(0.0, before * static_cast<double>(count) + 0.5)));
+        share.word.store(ShareWord::of(stage_, first, last).word, std::memory_order_release);
+        last = first;
     }
 }
 
-/// One chunk of the worker's own share, or else of the next one that has any left.
-bool StageRunner::claim_and_run(int worker)
+/// Whoever ran more than his share has a larger one next time.
+void StageRunner::learn_sizes(std::int64_t count)
 {
-    for (int i = 0; i < workers_; ++i) {
-        const int whose = worker + i < workers_ ? worker + i : worker + i - workers_;
-        if (claim_and_run(shares_[static_cast<std::size_t>(whose)], worker)) return true;
+    const bool tells = count >= 4 * workers_;
+    for (int worker = 0; worker < workers_; ++worker) {
+        Share& share = shares_[static_cast<std::size_t>(worker)];
+        const auto ran = static_cast<double>(std::exchange(share.ran, 0));
+        if (tells) share.size += learning_rate * (ran / static_cast<double>(count) - share.size);
+    }
+}
+
+/// Claims a chunk of a share of this stage and runs it. Whoever is no owner and still `patient` leaves him the last.
+bool StageRunner::claim_and_run(int whose, int worker, std::uint64_t stage, bool patient)
+{
+    std::atomic<std::uint64_t>& word = shares_[static_cast<std::size_t>(whose)].word;
+    const bool is_own = whose == worker;
+    ShareWord seen{word.load(std::memory_order_acquire)};
+    while (seen.stage() == stage && seen.next() + (patient ? seen.reserved() : 0) < seen.last()) {
+        const std::uint64_t claimed = (seen.word + 1) | (is_own ? ShareWord::owner_came : 0);
+        if (word.compare_exchange_weak(seen.word, claimed, std::memory_order_acq_rel,
+                                       std::memory_order_acquire)) {
+            job_.call(job_.self, static_cast<std::int64_t>(seen.next()), worker);
+            return true;
+        }
     }
     return false;
 }
 
-bool StageRunner::claim_and_run(Share& share, int worker)
+bool StageRunner::help_others(int worker, std::uint64_t stage, bool patient)
 {
-    std::uint64_t word = share.word.load(std::memory_order_acquire);
-    for (;;) {
-        const auto next = static_cast<std::uint32_t>(word);
-        if (next >= static_cast<std::uint32_t>(word >> 32)) return false;
-        if (share.word.compare_exchange_weak(word, word + 1, std::memory_order_acq_rel,
-                                             std::memory_order_acquire)) {
-            job_.call(job_.self, next, worker);
-            done_.fetch_add(1, std::memory_order_release);
-            return true;
-        }
+    for (int i = 1; i < workers_; ++i) {
+        const int whose = worker + i < workers_ ? worker + i : worker + i - workers_;
+        if (claim_and_run(whose, worker, stage, patient)) return true;
     }
+    return false;
+}
+
+/// What is left of the own share, or else a chunk of another's of the same stage; waits a moment when there is none.
+bool StageRunner::come_to_work(int worker, int spins)
+{
+    Share& own = shares_[static_cast<std::size_t>(worker)];
+    const std::uint64_t stage = ShareWord{own.word.load(std::memory_order_acquire)}.stage();
+    std::int64_t count = 0;
+    while (claim_and_run(worker, worker, stage, false)) ++count;
+    if (count == 0 && help_others(worker, stage, spins < spins_before_last_chunk)) count = 1;
+    if (count > 0) {
+        own.ran += count;
+        done_.fetch_add(count, std::memory_order_release);
+        return true;
+    }
+    if (spins < spins_before_yield) {
+        pause();
+    } else {
+        std::this_thread::yield();
+    }
+    return false;
 }
 
 void StageRunner::work(int worker)
 {
     int spins = 0;
     while (!closed_.load(std::memory_order_acquire)) {
-        if (claim_and_run(worker)) {
-            spins = 0;
-        } else if (++spins < spins_before_yield) {
-            pause();
-        } else {
-            std::this_thread::yield();
-        }
+        spins = come_to_work(worker, spins) ? 0 : spins + 1;
     }
 }
 

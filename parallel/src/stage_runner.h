@@ -1,9 +1,13 @@
 // Runs the stages of a step on an executor's threads without giving them back between stages. Each worker has a share
-// of a stage's chunks, the same share every time, so that what a sweep leaves in a core's cache the next one finds
-// there; whoever is done helps the others. A share is one word that says how many chunks it has and how many are
-// claimed; workers spin on it, and a claim is one compare and swap, so a hand-over costs a few hundred nanoseconds
-// instead of a task launch. The caller claims from every share and waits only for chunks that a worker has begun: a
-// step finishes with whichever threads come, even none.
+// of a stage's chunks, about the same share every time, so that what a sweep leaves in a core's cache the next one finds
+// there; whoever is done helps the others, and slowly gets a larger share: cores are seldom equally fast. A share is one word that says which stage it is of, how many chunks it has and
+// how many are claimed; workers spin on it, and a claim is one compare and swap, so a hand-over costs a few hundred
+// nanoseconds instead of a task launch. The caller claims from every share and waits only for chunks that a worker has
+// begun: a step finishes with whichever threads come, even none.
+//
+// A chunk that changes cores takes its bodies along, and costs the next stage the way back: several times what the chunk
+// takes. So nobody helps before his own share of the stage is there, and a share's last chunk is left to its owner for a
+// while.
 #pragma once
 
 #include <atomic>
@@ -55,7 +59,7 @@ class StageRunner {
         }
         publish({&chunk, [](const void* self, std::int64_t i,
                             int worker) { call(*static_cast<const Chunk*>(self), i, worker); }},
-                static_cast<std::uint32_t>(count));
+                count);
     }
 
     [[nodiscard]] Executor* executor() const { return executor_; }
@@ -74,23 +78,30 @@ class StageRunner {
             chunk(index);
         }
     }
-    /// Chunks in the high half (one past the last), the next to claim in the low half. A claim that succeeds is
-    /// always one of the present stage: the caller does not move on before every claimed chunk is done.
+    /// A ShareWord. A claim that succeeds is always one of the present stage: the caller does not move on before every
+    /// claimed chunk is done.
     struct alignas(64) Share {
         std::atomic<std::uint64_t> word{0};
+        std::int64_t ran =
+            0;  ///< chunks of this stage that its worker has run, of any share; the worker's until done_ says so
+        double size = 0;  ///< of all chunks; the caller's
     };
     void open();
-    void publish(Job job, std::uint32_t count);
-    bool claim_and_run(int worker);
-    bool claim_and_run(Share& share, int worker);
+    void publish(Job job, std::int64_t count);
+    void hand_out(std::int64_t count);
+    void learn_sizes(std::int64_t count);
+    bool claim_and_run(int whose, int worker, std::uint64_t stage, bool patient);
+    bool help_others(int worker, std::uint64_t stage, bool patient);
+    bool come_to_work(int worker, int spins);
     void work(int worker);
 
     Executor* executor_;
     bool open_ = false;
     Job job_;
     int workers_;
+    std::uint32_t stage_ = 0;
     std::unique_ptr<Share[]> shares_;
-    alignas(64) std::atomic<std::uint32_t> done_{0};
+    alignas(64) std::atomic<std::int64_t> done_{0};
     alignas(64) std::atomic<bool> closed_{false};
 };
 

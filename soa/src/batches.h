@@ -72,6 +72,20 @@ void for_each_piece(std::int32_t begin, std::int32_t end, std::int32_t most, con
 {
     for (; begin < end; begin += most) work(begin, std::min(begin + most, end));
 }
+/// The same in pieces of about one size: one, or else a multiple of four, so that two or four threads have equal shares, and
+/// those of every colour and of the bodies end at about the same bodies. Pieces end at multiples of `unit`.
+template <int unit, class Work>
+void for_each_even_piece(std::int32_t begin, std::int32_t end, std::int32_t most, const Work& work)
+{
+    const std::int64_t size = end - begin, pieces = size <= most ? 1 : (size + 4 * most - 1) / (4 * most) * 4;
+    const std::int64_t first = begin;
+    for (std::int64_t piece = 1; piece <= pieces; ++piece) {
+        const auto last =
+            piece == pieces ? end : static_cast<std::int32_t>((first + size * piece / pieces) / unit * unit);
+        work(begin, last);
+        begin = last;
+    }
+}
 
 using SweepLists = std::array<std::vector<SweepChunk>, parallel_colours + 1>;
 struct TransferList {

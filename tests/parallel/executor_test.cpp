@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "mixed_scene.h"
+#include "stage_runner.h"
 
 namespace motley {
 namespace {
@@ -58,6 +59,30 @@ TEST(Executor, AStepFinishesWithFewerThreadsThanWerePromisedEvenNone)
     for (const int lent : {0, 1, 3}) {
         ThreadExecutor host(5, lent);
         EXPECT_EQ(hash_after_steps({.alone_below = 0, .executor = &host}), alone) << lent;
+    }
+}
+
+TEST(Executor, StagesRunEachChunkOnceAndOneAfterTheOtherHoweverSlowAThreadIs)
+{
+    for (const int lent : {0, 1, 4}) {
+        ThreadExecutor host(5, lent);
+        StageRunner runner(&host);
+        std::vector<int> stages_run(200, 0);  // of each chunk; stages touch the same ones, without atomics
+        runner.with_workers(false, [&] {
+            for (int stage = 0; stage < 500; ++stage) {
+                const int count = stage % 200 + 1;
+                runner.run(count, [&](std::int64_t i, int worker) {
+                    for (int idle = 0; idle < worker; ++idle) std::this_thread::yield();
+                    ++stages_run[static_cast<std::size_t>(i)];
+                });
+            }
+        });
+        for (int i = 0; i < 200; ++i) {
+            int expected = 0;
+            for (int stage = 0; stage < 500; ++stage) expected += i < stage % 200 + 1 ? 1 : 0;
+            EXPECT_EQ(stages_run[static_cast<std::size_t>(i)], expected)
+                << "chunk " << i << ", lent " << lent;
+        }
     }
 }
 
