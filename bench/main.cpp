@@ -13,6 +13,7 @@
 #include "page.h"
 #include "replay.h"
 #include "runner.h"
+#include "scale.h"
 #include "soak.h"
 #include "sweep.h"
 
@@ -302,6 +303,18 @@ int main(int count, char** arguments)
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
     anchors_app->add_flag("--quick", anchor_options.quick, "small scenes, for a look");
+    ScaleOptions scale_options;
+    CLI::App* scale_app = app.add_subcommand(
+        "scale", "the crowd from a thousand to a million: what a contact costs, and the share of bandwidth");
+    scale_app->add_option("--people", scale_options.people, "sizes; several: 1000,10000")
+        ->delimiter(',')
+        ->check(CLI::PositiveNumber);
+    scale_app->add_option("--rounds", scale_options.rounds, "runs of each, in turn")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    scale_app->add_option("--threads", scale_options.solver.threads, "threads, the caller's counted")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
     CLI::App* compare_app =
         app.add_subcommand("compare", "the same, with every peer that is installed, in one run");
     compare_command.declare(*compare_app);
@@ -344,6 +357,10 @@ int main(int count, char** arguments)
         if (*sweep_app) return sweep_command();
         if (*anchors_app) {
             fmt::print("{}", table_of(measure_anchors(anchor_options)));
+            return 0;
+        }
+        if (*scale_app) {
+            fmt::print("{}", table_of(measure_scale(scale_options)));
             return 0;
         }
         if (*compare_app) return compare_command();

@@ -170,12 +170,16 @@ double peak(Isa isa)
 
 }  // namespace
 
+double memory_triad(int threads)
+{
+    constexpr std::size_t far_beyond_caches = std::size_t{1} << 25;
+    return triad(far_beyond_caches, threads);
+}
+
 MachineLimits measure_machine(Isa isa)
 {
-    constexpr std::size_t far_beyond_caches = std::size_t{1} << 25,
-                          within_second_level = std::size_t{1} << 16;
-    return {triad(far_beyond_caches, 1), triad(far_beyond_caches, 2), triad(within_second_level, 1),
-            peak(isa)};
+    constexpr std::size_t within_second_level = std::size_t{1} << 16;
+    return {memory_triad(1), memory_triad(2), triad(within_second_level, 1), peak(isa)};
 }
 
 KernelFigure measure_kernel(const std::string& name, Isa isa, bool in_cache)

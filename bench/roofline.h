@@ -16,6 +16,8 @@ struct MachineLimits {
     double flops_per_second = 0;  ///< multiplications and additions, not fused: what equal bits allow
 };
 MachineLimits measure_machine(Isa isa);
+/// Best rate of x = y + s z over arrays far larger than the caches, B/s, counting three streams.
+double memory_triad(int threads);
 
 /// One kernel's sweep of `solve`.
 struct KernelFigure {

@@ -13,6 +13,7 @@ inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float
 
 #include "kernel_copies.h"
 
+#include "kernel_tree_rows.h"
 #include "kernel_trees.h"
 
 #include "kernel_closures.h"

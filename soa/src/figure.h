@@ -28,14 +28,16 @@ struct FigureNode {
     int parent;       ///< body that it hangs on, moving or fixed; -1 for a root that floats
     int parent_node;  ///< that body's node; -1 where it is fixed or none
     int rows;         ///< of all its locks together, 0 to 6
+    bool
+        hangs_by_point;  ///< by one lock: its first three rows are a point's, along x, y and z, the others only turn
     /// Where its numbers begin in FigureBlock::system, floats.
-    std::int64_t jacobian;  ///< EqualityRows
+    std::int64_t jacobian;  ///< EqualityRows; once factored, what kernel_tree_rows.h keeps of them
     std::int64_t response;  ///< M'^-1 J^T, six floats a row
     std::int64_t factor;    ///< of K = J M'^-1 J^T
     std::int64_t
         target;  ///< K^-1 of what the rows lack; a float a row. Before it is factored: lambda of the last
                  ///< substep times its length, N s2
-    std::int64_t change;  ///< of the body's velocity, six
+    std::int64_t change;  ///< of the body's velocity, six. Until it is factored: the pivots of M
     std::int64_t mass;    ///< M', of the body and all that hangs on it: lower triangle; then its factor
     std::int64_t force;   ///< on the body, of what hangs on it, six
     std::int64_t kept;    ///< the body's velocity while responses are tried, six

@@ -81,12 +81,11 @@ Vec3<Lanes> between_bodies(const BodyArrays& a, const std::int32_t* offsets_a, c
                            const std::int32_t* offsets_b)
 {
     static_assert(sizeof(BodyPose) == sizeof(PoseQuad));
-    const auto pose_of = [](const BodyPose& pose) { return quad_at(pose.position.x); };
     Lanes between[4];
     narrow_quads(
         [&](int lane) {
-            return pose_of(b.pose[offsets_b[lane] / offsets_a_row(kind_b)]) -
-                   pose_of(a.pose[offsets_a[lane] / offsets_a_row(kind_a)]);
+            return quad_at(b.pose[offsets_b[lane] / offsets_a_row(kind_b)].position.x) -
+                   quad_at(a.pose[offsets_a[lane] / offsets_a_row(kind_a)].position.x);
         },
         between);
     return {between[0], between[1], between[2]};

@@ -1,7 +1,6 @@
 // The motion of bodies, a row of theirs a lane. Included inside an anonymous namespace, after kernel_bodies.h.
 
-// ---- v += h a
-// -----------------------------------------------------------------------------------------------
+// ---- v += h a ----------------------------------------------------------------------------------------
 
 /// Solves I (w' - w) + h w' x (I w') = 0 by one Newton step from w: implicit, so it cannot pump energy into a
 /// tumbling body as the explicit gyroscopic term does. (E. Catto, Numerical Methods, GDC 2015)
@@ -138,8 +137,7 @@ void integrate_velocities(const KernelContext& context, std::int32_t begin, std:
     });
 }
 
-// ---- x += h v
-// -----------------------------------------------------------------------------------------------
+// ---- x += h v ----------------------------------------------------------------------------------------
 
 template <BodyKind kind>
 void advance(Body<kind>& body, const Lanes& h)

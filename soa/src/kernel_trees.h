@@ -1,5 +1,5 @@
 // All locks of a figure at once: J M^-1 J^T factored along its tree, a copy a lane. Included inside an anonymous
-// namespace, after kernel_copies.h.
+// namespace, after kernel_tree_rows.h.
 //
 // In the system
 //
@@ -10,19 +10,6 @@
 // they hang on: the articulated inertia of R. Featherstone (Rigid Body Dynamics Algorithms, 2008, chapter 7). Masses
 // are only ever added, so nothing cancels whatever their ratio; eliminated from the locks' side, 1/m + 1/m' - ... would.
 
-using Row6 = Lanes[6];
-
-/// Calls work(i) for i = 0 ... count - 1, each i a constant: what a node computes with has to stay in registers, and
-/// compilers give up unrolling loops within loops.
-template <int count, class Work>
-[[gnu::always_inline]] inline void unrolled(const Work& work)
-{
-    [&]<int... i>(std::integer_sequence<int, i...>)
-    {
-        (work(std::integral_constant<int, i>{}), ...);
-    }
-    (std::make_integer_sequence<int, count>{});
-}
 /// Of a lower triangle row by row, the diagonal with it.
 constexpr int in_triangle(int row, int column)
 {
@@ -53,11 +40,15 @@ void factor_in_place(Triangle<n>& k, const Lanes (&least)[n])
         k.at(i, i) = inverse_or_zero(maximum(pivot, least[i]));
     });
 }
-/// K^-1 x in place.
-template <int n>
+/// K^-1 x in place; entries of x before `first` are 0.
+template <int first = 0, int n>
 void solve_in_place(const Triangle<n>& f, Lanes (&x)[n])
 {
-    unrolled<n>([&](auto i) { unrolled<i>([&](auto j) { x[i] = x[i] - f.at(i, j) * x[j]; }); });
+    unrolled<n>([&](auto i) {
+        unrolled<i>([&](auto j) {
+            if constexpr (j() >= first) x[i] = x[i] - f.at(i, j) * x[j];
+        });
+    });
     unrolled<n>([&](auto i) { x[i] = x[i] * f.at(i, i); });
     unrolled<n>([&](auto back) {
         constexpr int i = n - 1 - back;
@@ -65,44 +56,6 @@ void solve_in_place(const Triangle<n>& f, Lanes (&x)[n])
     });
 }
 
-template <int count>
-void load_array(const float* from, Lanes (&to)[count])
-{
-    unrolled<count>([&](auto i) { to[i] = load_lanes(from + i * block_lanes); });
-}
-template <int count>
-void store_array(const Lanes (&from)[count], float* to)
-{
-    unrolled<count>([&](auto i) { store_lanes(from[i], to + i * block_lanes); });
-}
-inline Lanes dot6(const Row6& u, const Row6& v)
-{
-    return ((u[0] * v[0] + u[1] * v[1]) + (u[2] * v[2] + u[3] * v[3])) + (u[4] * v[4] + u[5] * v[5]);
-}
-inline void put(const Vec3<Lanes>& linear, const Vec3<Lanes>& angular, Row6& out)
-{
-    out[0] = linear.x, out[1] = linear.y, out[2] = linear.z;
-    out[3] = angular.x, out[4] = angular.y, out[5] = angular.z;
-}
-
-/// J of a node's locks on the body that hangs, on the one that it hangs on, and C.
-template <int rows>
-struct NodeRows {
-    Row6 child[rows], parent[rows];
-    Lanes error[rows];
-};
-template <int rows>
-NodeRows<rows> load_rows(const FigureNode& node, const float* system)
-{
-    NodeRows<rows> out;
-    unrolled<rows>([&](auto i) {
-        const auto row = load_row<EqualityRow<Lanes>>(system + node.jacobian + i * FigureNode::row_floats);
-        put(row.linear, row.lever_b, out.child[i]);
-        put(-row.linear, -row.lever_a, out.parent[i]);
-        out.error[i] = row.error;
-    });
-    return out;
-}
 /// Locks that have the hanging body as their body a are turned round: J v and C change sign.
 inline void turn_round(float* row)
 {
@@ -129,17 +82,20 @@ inline Triangle<6> mass_of(const Mover& body)
              zero, zero, zero, inertia.xz, inertia.yz, inertia.zz}};
 }
 
-/// Factors M', in whose pivots nothing is less than in those of M alone.
-inline void factor_mass(const Mover& body, Triangle<6>& mass)
+/// The pivots of M.
+inline void pivots_of(const Mover& body, const Triangle<6>& mass, Row6& pivots)
 {
-    const Triangle<6> alone = mass_of(body);
-    Lanes least[6];
-    least[0] = least[1] = least[2] = alone.at(0, 0);
-    least[3] = alone.at(3, 3);
-    least[4] = alone.at(4, 4) - alone.at(4, 3) * alone.at(4, 3) * inverse_or_zero(alone.at(3, 3));
+    pivots[0] = pivots[1] = pivots[2] = mass.at(0, 0);
+    pivots[3] = mass.at(3, 3);
+    pivots[4] = mass.at(4, 4) - mass.at(4, 3) * mass.at(4, 3) * inverse_or_zero(mass.at(3, 3));
     // The last pivot of I is 1 / (I^-1)_zz.
-    least[5] = inverse_or_zero(body.inverse_inertia.zz);
-    factor_in_place(mass, least);
+    pivots[5] = inverse_or_zero(body.inverse_inertia.zz);
+}
+
+/// Factors M', in whose pivots nothing is less than in those of M alone.
+inline void factor_mass(const Mover& body, const Row6& pivots_alone, Triangle<6>& mass)
+{
+    factor_in_place(mass, pivots_alone);
     const auto moves = body.inverse_mass > Lanes(0);
     unrolled<6>([&](auto i) { mass.at(i, i) = select(moves, mass.at(i, i), Lanes(0)); });
 }
@@ -152,39 +108,41 @@ constexpr float tree_rounding = 1e-7F;
 constexpr float tree_turn = 0.25F;
 
 /// The size of a node's levers, m (of its axes, 1): what an error divided by it turns bodies by.
-template <int rows>
-Lanes reach_of(const NodeRows<rows>& j)
+template <class Rows>
+Lanes reach_of(const Rows& j)
 {
     Lanes squares(0);
-    unrolled<rows>([&](auto i) {
+    unrolled<Rows::count>([&](auto i) {
+        Row6 child, parent;
+        j.child_row(i, child);
+        j.parent_row(i, parent);
         unrolled<3>([&](auto c) {
-            squares =
-                squares + (j.child[i][3 + c] * j.child[i][3 + c] + j.parent[i][3 + c] * j.parent[i][3 + c]);
+            squares = squares + (child[3 + c] * child[3 + c] + parent[3 + c] * parent[3 + c]);
         });
     });
     return square_root(squares);
 }
 
-template <int rows>
+template <class Rows>
 void factor_locks(const Mover& body, const FigureNode& node, float* system, float* parent_mass,
                   const Triangle<6>& mass)
 {
-    const NodeRows<rows> j = load_rows<rows>(node, system);
+    constexpr int rows = Rows::count;
+    Rows j = Rows::of(system + node.jacobian);
     const Lanes most = Lanes(tree_turn) * reach_of(j);
-    unrolled<rows>([&](auto i) {
-        store_lanes(maximum(minimum(j.error[i], most), -most),
-                    system + node.jacobian + i * FigureNode::row_floats + 9 * block_lanes);
-    });
+    unrolled<rows>([&](auto i) { j.error[i] = maximum(minimum(j.error[i], most), -most); });
+    j.keep(system + node.jacobian);
     Triangle<rows> k;
     Lanes least[rows];
     unrolled<rows>([&](auto i) {
-        Row6 response;
-        unrolled<6>([&](auto c) { response[c] = j.child[i][c]; });
-        solve_in_place(mass, response);
+        Row6 row, response;
+        j.child_row(i, row);
+        j.child_row(i, response);
+        solve_in_place<Rows::first_entry(i)>(mass, response);
         store_array(response, system + node.response + i * 6 * block_lanes);
-        unrolled<i + 1>([&](auto m) { k.at(i, m) = dot6(j.child[m], response); });
-        const Vec3<Lanes> linear{j.child[i][0], j.child[i][1], j.child[i][2]};
-        const Vec3<Lanes> lever{j.child[i][3], j.child[i][4], j.child[i][5]};
+        unrolled<i + 1>([&](auto m) { k.at(i, m) = j.along_child(m, response); });
+        const Vec3<Lanes> linear{row[0], row[1], row[2]};
+        const Vec3<Lanes> lever{row[3], row[4], row[5]};
         least[i] = Lanes(tree_rounding) *
                    (body.inverse_mass * dot(linear, linear) + dot(lever, body.inverse_inertia * lever));
     });
@@ -195,13 +153,19 @@ void factor_locks(const Mover& body, const FigureNode& node, float* system, floa
     auto sum = load_row<Triangle<6>>(parent_mass);
     Row6 b[rows];
     unrolled<rows>([&](auto i) {
+        j.parent_row(i, b[i]);
         unrolled<6>([&](auto c) {
-            b[i][c] = j.parent[i][c];
-            unrolled<i>([&](auto m) { b[i][c] = b[i][c] - k.at(i, m) * b[m][c]; });
+            unrolled<i>([&](auto m) {
+                if constexpr (Rows::reaches_parent(m, c)) b[i][c] = b[i][c] - k.at(i, m) * b[m][c];
+            });
         });
         unrolled<6>([&](auto c) {
-            const Lanes scaled = k.at(i, i) * b[i][c];
-            unrolled<c + 1>([&](auto d) { sum.at(c, d) = sum.at(c, d) + scaled * b[i][d]; });
+            if constexpr (Rows::reaches_parent(i, c)) {
+                const Lanes scaled = k.at(i, i) * b[i][c];
+                unrolled<c + 1>([&](auto d) {
+                    if constexpr (Rows::reaches_parent(i, d)) sum.at(c, d) = sum.at(c, d) + scaled * b[i][d];
+                });
+            }
         });
     });
     store_row(sum, parent_mass);
@@ -211,11 +175,12 @@ void factor_locks(const Mover& body, const FigureNode& node, float* system, floa
 enum class TreeSweep { solves, answers };
 
 /// From what hangs to what it hangs on: y = K^-1 (target - J_c M'^-1 f), and what it pulls with.
-template <int rows>
+template <class Rows>
 void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, float* parent_force,
               const Row6& change, const Lanes& rate, TreeSweep sweep, int lane)
 {
-    const NodeRows<rows> j = load_rows<rows>(node, system);
+    constexpr int rows = Rows::count;
+    const Rows j = Rows::kept(system + node.jacobian);
     const Mover body = load_row<Mover>(figure.body(node.body) + lane);
     Row6 child, parent;
     put(body.linear, body.angular, child);
@@ -229,16 +194,16 @@ void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, 
         unrolled<6>([&](auto c) { parent[c] = Lanes(0); });
     }
     Lanes y[rows];
-    unrolled<rows>(
-        [&](auto i) { y[i] = -((dot6(j.child[i], child) + dot6(j.parent[i], parent)) + rate * j.error[i]); });
-    unrolled<rows>([&](auto i) { y[i] = y[i] - dot6(j.child[i], change); });
+    unrolled<rows>([&](auto i) {
+        y[i] = -((j.along_child(i, child) + j.along_parent(i, parent)) + rate * j.error[i]);
+        y[i] = y[i] - j.along_child(i, change);
+    });
     solve_in_place(load_factor<rows>(system + node.factor), y);
     store_array(y, system + node.target);
     if (parent_force == nullptr) return;
     Row6 force;
     load_array(parent_force, force);
-    unrolled<rows>(
-        [&](auto i) { unrolled<6>([&](auto c) { force[c] = force[c] + y[i] * j.parent[i][c]; }); });
+    j.push_parent(y, force);
     store_array(force, parent_force);
 }
 
@@ -250,18 +215,19 @@ inline float* impulse_of(const FigureBlock& figure, int joint)
 }
 
 /// And back: lambda = y - K^-1 J_p (change of what it hangs on), change = M'^-1 (f + J_c^T lambda).
-template <int rows>
+template <class Rows>
 void reach_down(const FigureBlock& figure, const FigureNode& node, float* system, const float* parent_change,
                 Row6& change, TreeSweep sweep, int lane)
 {
+    constexpr int rows = Rows::count;
     Lanes lambda[rows];
     load_array(system + node.target, lambda);
     if (parent_change != nullptr) {
-        const NodeRows<rows> j = load_rows<rows>(node, system);
+        const Rows j = Rows::kept(system + node.jacobian);
         Row6 above;
         load_array(parent_change, above);
         Lanes lacking[rows];
-        unrolled<rows>([&](auto i) { lacking[i] = dot6(j.parent[i], above); });
+        unrolled<rows>([&](auto i) { lacking[i] = j.along_parent(i, above); });
         solve_in_place(load_factor<rows>(system + node.factor), lacking);
         unrolled<rows>([&](auto i) { lambda[i] = lambda[i] - lacking[i]; });
     }
@@ -281,12 +247,20 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
     }
 }
 
-/// Calls work(an integral constant) with the number of a node's rows.
+/// Calls work with a null pointer to the form of a node's rows.
 template <class Work>
-void with_rows(int rows, const Work& work)
+void with_rows(const FigureNode& node, const Work& work)
 {
     unrolled<6>([&](auto i) {
-        if (rows == i + 1) work(std::integral_constant<int, i + 1>{});
+        constexpr int rows = i + 1;
+        if (rows != node.rows) return;
+        if constexpr (rows >= 3) {
+            if (node.hangs_by_point) {
+                work(static_cast<PointRows<rows>*>(nullptr));
+                return;
+            }
+        }
+        work(static_cast<AnyRows<rows>*>(nullptr));
     });
 }
 
@@ -316,12 +290,6 @@ inline void stiffen(const Mover& body, const Vec3<Lanes>& lever, const Vec3<Lane
     store_row(load_row<Vec3<Lanes>>(pull) - k * body.angular, pull);
 }
 
-/// The lever of a point's rows along x, y and z: r x e_x = (0, r_z, -r_y), ...
-inline Vec3<Lanes> lever_of_point(const Vec3<Lanes>& along_x, const Vec3<Lanes>& along_y)
-{
-    return {along_y.z, -along_x.z, along_x.y};
-}
-
 inline void stiffen_locks(const FigureBlock& figure, const FigureNode& node, float* system, int lane)
 {
     for (const FigureNode::Lock& lock : node.locks) {
@@ -349,19 +317,26 @@ inline void factor_tree(const FigureBlock& figure, int lane)
             for (int i = lock.first_row; lock.reversed && i < lock.first_row + lock.rows; ++i)
                 turn_round(system + node.jacobian + i * FigureNode::row_floats);
         }
-        store_row(mass_of(load_row<Mover>(figure.body(node.body) + lane)), system + node.mass);
+        const Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        const Triangle<6> mass = mass_of(body);
+        Row6 pivots;
+        pivots_of(body, mass, pivots);
+        store_row(mass, system + node.mass);
+        store_array(pivots, system + node.change);
         store_row(Vec3<Lanes>{Lanes(0), Lanes(0), Lanes(0)}, system + node.pull);
     }
     for (const FigureNode& node : nodes) stiffen_locks(figure, node, system, lane);
     for (const FigureNode& node : nodes) {
         const Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        Row6 pivots_alone;
+        load_array(system + node.change, pivots_alone);
         auto factor = load_row<Triangle<6>>(system + node.mass);
-        factor_mass(body, factor);
+        factor_mass(body, pivots_alone, factor);
         store_row(factor, system + node.mass);
         float* parent_mass =
             node.parent_node < 0 ? nullptr : system + nodes[static_cast<std::size_t>(node.parent_node)].mass;
-        with_rows(node.rows,
-                  [&](auto rows) { factor_locks<rows()>(body, node, system, parent_mass, factor); });
+        with_rows(node,
+                  [&]<class Rows>(Rows*) { factor_locks<Rows>(body, node, system, parent_mass, factor); });
     }
 }
 
@@ -388,8 +363,8 @@ inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, i
         solve_in_place(load_factor<6>(system + node.mass), change);
         store_array(change, system + node.change);
         float* parent_force = parent_of(node, &FigureNode::force);
-        with_rows(node.rows, [&](auto rows) {
-            reach_up<rows()>(figure, node, system, parent_force, change, Lanes(rate), sweep, lane);
+        with_rows(node, [&]<class Rows>(Rows*) {
+            reach_up<Rows>(figure, node, system, parent_force, change, Lanes(rate), sweep, lane);
         });
     }
     for (std::size_t i = nodes.size(); i-- > 0;) {
@@ -397,8 +372,8 @@ inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, i
         Row6 change;
         load_array(system + node.change, change);
         const float* parent_change = parent_of(node, &FigureNode::change);
-        with_rows(node.rows, [&](auto rows) {
-            reach_down<rows()>(figure, node, system, parent_change, change, sweep, lane);
+        with_rows(node, [&]<class Rows>(Rows*) {
+            reach_down<Rows>(figure, node, system, parent_change, change, sweep, lane);
         });
         store_array(change, system + node.change);
         Mover body = load_row<Mover>(figure.body(node.body) + lane);

@@ -29,7 +29,7 @@
 //   report(definition, memory, state_a, state_b, inverse_substep)       force, torque, error, state, in double
 //   equality_count, locks_point, is_equality(definition), equality_rows<Real>(row, a, b, rows*)
 //                                         if it locks: its J and C row by row, for SolverSettings::exact_joints;
-//                                         locks_point: the first three rows are of a point on a point, along x, y and z
+//                                         locks_point: three rows of a point along x, y and z, then others of turning alone
 //   world_points(definition) -> WorldPoints                             if it has any; prepare then gets a WorldPose
 #pragma once
 

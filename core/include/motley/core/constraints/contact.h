@@ -142,7 +142,7 @@ struct ContactKind {
         row.normal = to_space<Vector>(contact.normal);
         row.separation = contact.separation;
         const Vector arm_a = to_space<Vector>(contact.arm_a), arm_b = to_space<Vector>(contact.arm_b);
-        const auto k = inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b);
+        const auto k = point_response(a, arm_a, b, arm_b);
         if constexpr (requires { row.normal_mass; }) row.normal_mass = mass_along(row.normal, k);
         const Real warm(step.warm_start_scale);
         impulse.normal = warm * memory.normal;
@@ -266,6 +266,12 @@ struct ContactKind {
             return row;
         }
     }
+    /// K = J M^-1 J^T of the point where they touch, in every direction.
+    template <class Vector, class A, class B>
+    static auto point_response(const A& a, const Vector& arm_a, const B& b, const Vector& arm_b)
+    {
+        return inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b);
+    }
     /// 1 / (J M^-1 J^T) along a direction, K being the inverse mass of the point.
     template <class Vector, class Symmetric>
     static auto mass_along(const Vector& direction, const Symmetric& k)
@@ -278,8 +284,7 @@ struct ContactKind {
         if constexpr (requires { row.normal_mass; }) {
             return row.normal_mass;
         } else {
-            return mass_along(row.normal,
-                              inverse_point_mass(a, row.arm_a) + inverse_point_mass(b, row.arm_b));
+            return mass_along(row.normal, point_response(a, row.arm_a, b, row.arm_b));
         }
     }
     // The normal's row of J: times v, times the displacement of the step, and M^-1 J^T lambda.
@@ -344,8 +349,7 @@ struct ContactKind {
             apply_impulse(b, row.arm_b, push);
         } else {
             const Vec2<Real> t = tangent_of(row.normal);
-            const Real mass =
-                mass_along(t, inverse_point_mass(a, row.arm_a) + inverse_point_mass(b, row.arm_b));
+            const Real mass = mass_along(t, point_response(a, row.arm_a, b, row.arm_b));
             const Real free = impulse.tangent - mass * dot(t, slip);
             const Real held = maximum(minimum(free, bound), -bound);
             const Vec2<Real> push = (held - impulse.tangent) * t;

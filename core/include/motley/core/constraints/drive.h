@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "motley/core/constraints/drive_definition.h"
 #include "motley/core/invalid_input.h"
@@ -32,17 +33,31 @@ struct Drive {
     static constexpr float far_away = 1e12F;
     static constexpr float half_turn = 3.14159265F;
 
+    /// What only a slide has: where its frames are, and so levers. A twist turns about its axis wherever that is.
+    template <class Real>
+    struct Anchors {
+        Vec3<Real> position_a, position_b;
+    };
+    template <class Real>
+    struct Arms {
+        Vec3<Real> a, b, separation;
+    };
+    template <class Real>
+    struct Levers {
+        Vec3<Real> a, b;
+    };
+    struct Nothing {};
+    template <class Part>
+    using OfSlide = std::conditional_t<slides, Part, Nothing>;
+
     template <class Real>
     struct Parameters {
-        Vec3<Real> position_a;
-        Real lower;
-        Quat<Real> rotation_a;
-        Vec3<Real> position_b;
-        Real upper;
-        Quat<Real> rotation_b;
+        Quat<Real> rotation_a, rotation_b;
+        Real lower, upper;
         Real motor_speed, motor_max_force;
         Real spring_hertz, spring_damping_ratio;
         Real spring_target, spring_max_force;
+        [[no_unique_address]] OfSlide<Anchors<Real>> anchors;
     };
     template <class Real>
     struct Memory {
@@ -58,16 +73,16 @@ struct Drive {
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
-        Vec3<Real> start_arm_a, start_arm_b, start_separation;
+        [[no_unique_address]] OfSlide<Arms<Real>> start_arms;
         Quat<Real> start_frame_a, start_frame_b;
         InSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
-        Vec3<Real> axis;              ///< x_a or t
-        Vec3<Real> lever_a, lever_b;  ///< slide only; of a twist they are the axis
-        Real inverse_mass, mass;      ///< K and its inverse
-        Real value;                   ///< C
+        Vec3<Real> axis;  ///< x_a or t
+        [[no_unique_address]] OfSlide<Levers<Real>> levers;
+        Real inverse_mass, mass;  ///< K and its inverse
+        Real value;               ///< C
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -93,18 +108,19 @@ struct Drive {
     }
     static Parameters<float> parameters(const Definition& drive)
     {
-        return {drive.frame_a.position,
-                std::fmax(drive.lower, -far_away),
-                unit(drive.frame_a.rotation),
-                drive.frame_b.position,
-                std::fmin(drive.upper, far_away),
-                unit(drive.frame_b.rotation),
-                drive.motor_speed,
-                drive.motor_max_force,
-                drive.spring_hertz,
-                drive.spring_damping_ratio,
-                drive.spring_target,
-                std::fmin(drive.spring_max_force, largest_force)};
+        Parameters<float> parameters{unit(drive.frame_a.rotation),
+                                     unit(drive.frame_b.rotation),
+                                     std::fmax(drive.lower, -far_away),
+                                     std::fmin(drive.upper, far_away),
+                                     drive.motor_speed,
+                                     drive.motor_max_force,
+                                     drive.spring_hertz,
+                                     drive.spring_damping_ratio,
+                                     drive.spring_target,
+                                     std::fmin(drive.spring_max_force, largest_force),
+                                     {}};
+        if constexpr (slides) parameters.anchors = {drive.frame_a.position, drive.frame_b.position};
+        return parameters;
     }
 
     template <class Real, class A, class B>
@@ -113,9 +129,11 @@ struct Drive {
                         Impulse<Real, A::kind, B::kind>& impulse)
     {
         Row<Real, A::kind, B::kind> row;
-        row.start_arm_a = to_world(pose.orientation_a, drive.position_a);
-        row.start_arm_b = to_world(pose.orientation_b, drive.position_b);
-        row.start_separation = pose.between + row.start_arm_b - row.start_arm_a;
+        if constexpr (slides) {
+            row.start_arms.a = to_world(pose.orientation_a, drive.anchors.position_a);
+            row.start_arms.b = to_world(pose.orientation_b, drive.anchors.position_b);
+            row.start_arms.separation = pose.between + row.start_arms.b - row.start_arms.a;
+        }
         row.start_frame_a = to_world(pose.orientation_a, drive.rotation_a);
         row.start_frame_b = to_world(pose.orientation_b, drive.rotation_b);
         row.in_sweep.lower = drive.lower;
@@ -173,8 +191,8 @@ struct Drive {
         build<Real>(row, now, a, b);
         const Real lambda = -(now.mass * beyond_range(now.value, row.in_sweep.lower, row.in_sweep.upper));
         if constexpr (slides) {
-            displace(a, -(lambda * now.axis), -(lambda * now.lever_a));
-            displace(b, lambda * now.axis, lambda * now.lever_b);
+            displace(a, -(lambda * now.axis), -(lambda * now.levers.a));
+            displace(b, lambda * now.axis, lambda * now.levers.b);
         } else {
             const Vec3<Real> none{Real(0), Real(0), Real(0)};
             displace(a, none, -(lambda * now.axis));
@@ -220,18 +238,18 @@ struct Drive {
     {
         const Quat<Real> frame_a = turn_of(a) * row.start_frame_a;
         if constexpr (slides) {
-            const Vec3<Real> arm_a = rotate(turn_of(a), row.start_arm_a),
-                             arm_b = rotate(turn_of(b), row.start_arm_b);
-            const Vec3<Real> d =
-                anchor_error(row.start_separation, row.start_arm_a, row.start_arm_b, arm_a, arm_b, a, b);
+            const Vec3<Real> arm_a = rotate(turn_of(a), row.start_arms.a),
+                             arm_b = rotate(turn_of(b), row.start_arms.b);
+            const Vec3<Real> d = anchor_error(row.start_arms.separation, row.start_arms.a, row.start_arms.b,
+                                              arm_a, arm_b, a, b);
             substep.axis = axis_x(frame_a);
-            substep.lever_a = cross(arm_a + d, substep.axis);
-            substep.lever_b = cross(arm_b, substep.axis);
+            substep.levers.a = cross(arm_a + d, substep.axis);
+            substep.levers.b = cross(arm_b, substep.axis);
             substep.value = dot(substep.axis, d);
             substep.inverse_mass =
                 dot(substep.axis, over_mass(a, substep.axis) + over_mass(b, substep.axis)) +
-                dot(substep.lever_a, over_inertia(a, substep.lever_a)) +
-                dot(substep.lever_b, over_inertia(b, substep.lever_b));
+                dot(substep.levers.a, over_inertia(a, substep.levers.a)) +
+                dot(substep.levers.b, over_inertia(b, substep.levers.b));
         } else {
             const Quat<Real> frame_b = turn_of(b) * row.start_frame_b;
             const Quat<Real> q = relative_rotation(frame_a, frame_b);
@@ -239,7 +257,6 @@ struct Drive {
             // The axes of a hinge never come near opposite; without one, half a turn of swing has no twist.
             const Real scale = Real(1) / maximum(Real(1) + dot(x_a, x_b), Real(0.01F));
             substep.axis = scale * (x_a + x_b);
-            substep.lever_a = substep.lever_b = substep.axis;
             substep.value = Real(2) * arc_tangent2(q.x, q.w);
             substep.inverse_mass =
                 dot(substep.axis, over_inertia(a, substep.axis) + over_inertia(b, substep.axis));
@@ -253,8 +270,8 @@ struct Drive {
     static auto speed_of(const Substep& substep, const A& a, const B& b)
     {
         if constexpr (slides) {
-            return dot(substep.axis, linear_of(b) - linear_of(a)) + dot(substep.lever_b, angular_of(b)) -
-                   dot(substep.lever_a, angular_of(a));
+            return dot(substep.axis, linear_of(b) - linear_of(a)) + dot(substep.levers.b, angular_of(b)) -
+                   dot(substep.levers.a, angular_of(a));
         } else {
             return dot(substep.axis, angular_of(b) - angular_of(a));
         }
@@ -264,8 +281,8 @@ struct Drive {
     static void push(const Substep& substep, const Real& lambda, A& a, B& b)
     {
         if constexpr (slides) {
-            apply_wrench(a, -(lambda * substep.axis), -(lambda * substep.lever_a));
-            apply_wrench(b, lambda * substep.axis, lambda * substep.lever_b);
+            apply_wrench(a, -(lambda * substep.axis), -(lambda * substep.levers.a));
+            apply_wrench(b, lambda * substep.axis, lambda * substep.levers.b);
         } else {
             apply_turn(a, -(lambda * substep.axis));
             apply_turn(b, lambda * substep.axis);

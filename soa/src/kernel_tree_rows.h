@@ -1,0 +1,192 @@
+// J and C of the locks that a body hangs by, in the two forms that a tree keeps them. Included inside an anonymous
+// namespace, before kernel_trees.h.
+//
+// Of a point's rows most numbers are 0 or 1. What hangs by one point and locks of turning (by a ball-socket, a hinge or a
+// fixed joint: nearly every figure does) keeps its levers and computes without the rest, which leaves a third of the memory
+// and half of the work. Sums are in the order of the whole rows: the bits are the same.
+
+using Row6 = Lanes[6];
+
+/// Calls work(i) for i = 0 ... count - 1, each i a constant: what a node computes with has to stay in registers, and
+/// compilers give up unrolling loops within loops.
+template <int count, class Work>
+[[gnu::always_inline]] inline void unrolled(const Work& work)
+{
+    [&]<int... i>(std::integer_sequence<int, i...>)
+    {
+        (work(std::integral_constant<int, i>{}), ...);
+    }
+    (std::make_integer_sequence<int, count>{});
+}
+template <int count>
+void load_array(const float* from, Lanes (&to)[count])
+{
+    unrolled<count>([&](auto i) { to[i] = load_lanes(from + i * block_lanes); });
+}
+template <int count>
+void store_array(const Lanes (&from)[count], float* to)
+{
+    unrolled<count>([&](auto i) { store_lanes(from[i], to + i * block_lanes); });
+}
+inline Lanes dot6(const Row6& u, const Row6& v)
+{
+    return ((u[0] * v[0] + u[1] * v[1]) + (u[2] * v[2] + u[3] * v[3])) + (u[4] * v[4] + u[5] * v[5]);
+}
+inline void put(const Vec3<Lanes>& linear, const Vec3<Lanes>& angular, Row6& out)
+{
+    out[0] = linear.x, out[1] = linear.y, out[2] = linear.z;
+    out[3] = angular.x, out[4] = angular.y, out[5] = angular.z;
+}
+
+/// The lever of a point's rows along x, y and z: r x e_x = (0, r_z, -r_y), ...
+inline Vec3<Lanes> lever_of_point(const Vec3<Lanes>& along_x, const Vec3<Lanes>& along_y)
+{
+    return {along_y.z, -along_x.z, along_x.y};
+}
+
+/// Locks of any kind: J on the body that hangs, on the one that it hangs on, and C. Rows are told by integral constants.
+template <int rows>
+struct AnyRows {
+    static constexpr int count = rows;
+    Row6 child[rows], parent[rows];
+    Lanes error[rows];
+
+    /// From EqualityRows, and from what keep() left of them.
+    static AnyRows of(const float* from)
+    {
+        AnyRows out;
+        unrolled<rows>([&](auto i) {
+            const auto row = load_row<EqualityRow<Lanes>>(from + i * FigureNode::row_floats);
+            put(row.linear, row.lever_b, out.child[i]);
+            put(-row.linear, -row.lever_a, out.parent[i]);
+            out.error[i] = row.error;
+        });
+        return out;
+    }
+    static AnyRows kept(const float* from) { return of(from); }
+    void keep(float* to) const
+    {
+        unrolled<rows>(
+            [&](auto i) { store_lanes(error[i], to + i * FigureNode::row_floats + 9 * block_lanes); });
+    }
+    /// Entries of J on the child before this one are 0; J on the parent of this row and those before it is 0 there.
+    static constexpr int first_entry(int) { return 0; }
+    static constexpr bool reaches_parent(int, int) { return true; }
+
+    void child_row(auto i, Row6& out) const
+    {
+        unrolled<6>([&](auto c) { out[c] = child[i][c]; });
+    }
+    void parent_row(auto i, Row6& out) const
+    {
+        unrolled<6>([&](auto c) { out[c] = parent[i][c]; });
+    }
+    Lanes along_child(auto i, const Row6& x) const { return dot6(child[i], x); }
+    Lanes along_parent(auto i, const Row6& x) const { return dot6(parent[i], x); }
+    /// x += J^T y of the body that it hangs on.
+    void push_parent(const Lanes (&y)[rows], Row6& x) const
+    {
+        unrolled<rows>([&](auto i) { unrolled<6>([&](auto c) { x[c] = x[c] + y[i] * parent[i][c]; }); });
+    }
+};
+
+/// Three rows of a point on a point along x, y and z, and locks of turning.
+template <int rows>
+struct PointRows {
+    static constexpr int count = rows;
+    static constexpr int turns = rows - 3;
+    Vec3<Lanes> arm_child, arm_parent;
+    Lanes error[rows];
+    Vec3<Lanes> turn[turns > 0 ? turns : 1];  ///< J on the child, and - J on the parent
+
+    static PointRows of(const float* from)
+    {
+        PointRows out;
+        unrolled<rows>([&](auto i) {
+            out.error[i] = load_row<EqualityRow<Lanes>>(from + i * FigureNode::row_floats).error;
+        });
+        const auto x = load_row<EqualityRow<Lanes>>(from);
+        const auto y = load_row<EqualityRow<Lanes>>(from + FigureNode::row_floats);
+        out.arm_child = lever_of_point(x.lever_b, y.lever_b);
+        out.arm_parent = lever_of_point(x.lever_a, y.lever_a);
+        unrolled<turns>([&](auto i) {
+            out.turn[i] = load_row<EqualityRow<Lanes>>(from + (3 + i) * FigureNode::row_floats).lever_b;
+        });
+        return out;
+    }
+    static PointRows kept(const float* from)
+    {
+        PointRows out;
+        out.arm_child = load_row<Vec3<Lanes>>(from);
+        out.arm_parent = load_row<Vec3<Lanes>>(from + 3 * block_lanes);
+        load_array(from + 6 * block_lanes, out.error);
+        unrolled<turns>(
+            [&](auto i) { out.turn[i] = load_row<Vec3<Lanes>>(from + (6 + rows + 3 * i) * block_lanes); });
+        return out;
+    }
+    void keep(float* to) const
+    {
+        store_row(arm_child, to);
+        store_row(arm_parent, to + 3 * block_lanes);
+        store_array(error, to + 6 * block_lanes);
+        unrolled<turns>([&](auto i) { store_row(turn[i], to + (6 + rows + 3 * i) * block_lanes); });
+    }
+    static constexpr int first_entry(int row) { return row < 3 ? row : 3; }
+    static constexpr bool reaches_parent(int row, int entry)
+    {
+        return entry < 3 ? entry <= row : row > 0 || entry != 3;
+    }
+
+    void child_row(auto i, Row6& out) const { whole_row(i, arm_child, out); }
+    void parent_row(auto i, Row6& out) const
+    {
+        whole_row(i, arm_parent, out);
+        unrolled<6>([&](auto c) { out[c] = -out[c]; });
+    }
+    Lanes along_child(auto i, const Row6& x) const { return along(i, arm_child, x); }
+    Lanes along_parent(auto i, const Row6& x) const { return -along(i, arm_parent, x); }
+    void push_parent(const Lanes (&y)[rows], Row6& x) const
+    {
+        const Vec3<Lanes>& r = arm_parent;
+        x[0] = x[0] - y[0];
+        x[1] = x[1] - y[1];
+        x[2] = x[2] - y[2];
+        x[3] = (x[3] + y[1] * r.z) - y[2] * r.y;
+        x[4] = (x[4] - y[0] * r.z) + y[2] * r.x;
+        x[5] = (x[5] + y[0] * r.y) - y[1] * r.x;
+        unrolled<turns>([&](auto i) {
+            x[3] = x[3] - y[3 + i] * turn[i].x;
+            x[4] = x[4] - y[3 + i] * turn[i].y;
+            x[5] = x[5] - y[3 + i] * turn[i].z;
+        });
+    }
+
+  private:
+    void whole_row(auto i, const Vec3<Lanes>& r, Row6& out) const
+    {
+        const Lanes zero(0);
+        unrolled<3>([&](auto c) { out[c] = i() == c() ? Lanes(1) : zero; });
+        if constexpr (i() == 0) {
+            out[3] = zero, out[4] = r.z, out[5] = -r.y;
+        } else if constexpr (i() == 1) {
+            out[3] = -r.z, out[4] = zero, out[5] = r.x;
+        } else if constexpr (i() == 2) {
+            out[3] = r.y, out[4] = -r.x, out[5] = zero;
+        } else {
+            out[3] = turn[i - 3].x, out[4] = turn[i - 3].y, out[5] = turn[i - 3].z;
+        }
+    }
+    Lanes along(auto i, const Vec3<Lanes>& r, const Row6& x) const
+    {
+        if constexpr (i() == 0) {
+            return x[0] + (r.z * x[4] - r.y * x[5]);
+        } else if constexpr (i() == 1) {
+            return (x[1] - r.z * x[3]) + r.x * x[5];
+        } else if constexpr (i() == 2) {
+            return (x[2] + r.y * x[3]) - r.x * x[4];
+        } else {
+            const Vec3<Lanes>& t = turn[i - 3];
+            return t.x * x[3] + (t.y * x[4] + t.z * x[5]);
+        }
+    }
+};

@@ -1,0 +1,32 @@
+// What `motley scale` measures: figures of the right size, and that go together. How fast is no test's business.
+#include "scale.h"
+
+#include <gtest/gtest.h>
+
+namespace motley::bench {
+namespace {
+
+TEST(Scale, EverySizeHasItsFigures)
+{
+    const ScaleResult result =
+        measure_scale({.people = {200, 800}, .rounds = 1, .solver = {.threads = 1}, .progress = false});
+    ASSERT_EQ(result.sizes.size(), 2U);
+    for (const ScaleResult::Size& size : result.sizes) {
+        // At 5 per m2 about every person touches, or is within the margin of, two others.
+        const auto people = static_cast<double>(size.people);
+        EXPECT_GT(size.contacts, 0.3 * people);
+        EXPECT_LT(size.contacts, 3 * people);
+        EXPECT_GE(size.step_seconds, size.solver_seconds);
+        // Sweeps are a part of the step: four substeps of one solve and one relaxation.
+        EXPECT_LT(8 * size.contacts * size.sweep_seconds, 2 * size.solver_seconds);
+        EXPECT_GT(size.sweep_seconds, 0);
+        // A smooth contact between planar bodies: 36 B of row, 100 of its bodies and impulse.
+        EXPECT_NEAR(size.sweep_bytes_per_second * size.sweep_seconds, 136, 1e-6);
+        EXPECT_GT(size.triad_bytes_per_second, 1e8);
+    }
+    EXPECT_EQ(result.sizes[1].people, 800);
+    EXPECT_NE(table_of(result).find("of triad"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace motley::bench
