@@ -1,13 +1,13 @@
 // Runs the stages of a step on an executor's threads without giving them back between stages. Each worker has a share
 // of a stage's chunks, about the same share every time, so that what a sweep leaves in a core's cache the next one finds
-// there; whoever is done helps the others, and slowly gets a larger share: cores are seldom equally fast. A share is one word that says which stage it is of, how many chunks it has and
-// how many are claimed; workers spin on it, and a claim is one compare and swap, so a hand-over costs a few hundred
-// nanoseconds instead of a task launch. The caller claims from every share and waits only for chunks that a worker has
-// begun: a step finishes with whichever threads come, even none.
+// there; whoever is done helps the others, and has a slightly larger share next time, for cores are seldom equally fast. A
+// share is one word that says which stage it is of, how many chunks it has and how many are claimed; workers spin on it, and
+// a claim is one compare and swap, so a hand-over costs a few hundred nanoseconds instead of a task launch. The caller claims
+// from every share and waits only for chunks that a worker has begun: a step finishes with whichever threads come, even none.
 //
 // A chunk that changes cores takes its bodies along, and costs the next stage the way back: several times what the chunk
-// takes. So nobody helps before his own share of the stage is there, and a share's last chunk is left to its owner for a
-// while.
+// takes. So nobody helps before his own share of the stage is there, and the last chunk of a worker who has come is left to
+// him for a while.
 #pragma once
 
 #include <atomic>
@@ -83,7 +83,7 @@ class StageRunner {
     struct alignas(64) Share {
         std::atomic<std::uint64_t> word{0};
         std::int64_t ran =
-            0;  ///< chunks of this stage that its worker has run, of any share; the worker's until done_ says so
+            0;            ///< chunks of any share that its worker has run in this stage, as told to done_
         double size = 0;  ///< of all chunks; the caller's
     };
     void open();
