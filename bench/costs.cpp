@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <functional>
 #include <stdexcept>
 
+#include "median.h"
 #include "runner.h"
 #include "tie_net.h"
 
@@ -19,13 +19,6 @@ struct Case {
     std::string group, name;
     std::function<Sample()> run;
 };
-
-double median(std::vector<double> values)
-{
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// A step of a net of 10,000 bodies at the default settings; `moved_at` m/s, 1e-40 being denormal.
 Sample run_net(const std::string& name, float moved_at)

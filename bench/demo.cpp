@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <thread>
 #include <vector>
 
 #include "host.h"
+#include "median.h"
 #include "runner.h"
 
 namespace motley::bench {
@@ -20,12 +20,6 @@ struct Way {
     std::vector<double> solver_rates;
     RunResult last;
 };
-
-double median(std::vector<double> values)
-{
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 /// True when every way ended in the same bits.
 bool compare_ways(const DemoOptions& options, std::int64_t agents)

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "median.h"
 #include "motley/core/aligned_vector.h"
 #include "motley/core/lane_body.h"
 #include "tie_net.h"
@@ -195,15 +196,13 @@ KernelFigure measure_kernel(const std::string& name, Isa isa, bool in_cache)
         if (report.status != StepStatus::done) throw std::runtime_error(report.error);
         seconds.push_back(report.seconds[static_cast<std::size_t>(Stage::solve)]);
     }
-    std::nth_element(seconds.begin(), seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2),
-                     seconds.end());
     const auto constraints = static_cast<double>(report.contacts + report.joints);
     const auto counted = operations().find(name);
     return {name,
             in_cache,
             isa,
             constraints,
-            seconds[seconds.size() / 2] / (iterations * constraints),
+            median(seconds) / (iterations * constraints),
             report.bytes_per_constraint,
             counted == operations().end() ? 0 : counted->second};
 }

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "frames.h"
+#include "median.h"
 #include "trajectories.h"
 
 namespace motley::bench {
@@ -19,14 +20,6 @@ namespace {
 double now()
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double median(std::vector<double> values)
-{
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 /// A bar on a terminal; elsewhere a line each quarter.

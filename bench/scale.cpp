@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "host.h"
+#include "median.h"
 #include "roofline.h"
 #include "runner.h"
 
@@ -18,12 +17,6 @@ constexpr double simulated_seconds = 1;
 /// B that a contact between planar bodies asks for besides its row: of each body a velocity read and written, and a
 /// displacement read; and its impulse written back.
 constexpr double body_bytes = 2 * 3 * 16 + 4;
-
-double median(std::vector<double> values)
-{
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 ScaleResult::Size measure_once(std::int64_t people, const ScaleOptions& options)
 {

@@ -10,8 +10,8 @@
 namespace motley::bench {
 
 struct ScaleOptions {
-    std::vector<std::int64_t> people{1000, 10000, 100000, 1000000};
-    int rounds = 3;  ///< runs of each size, in turn
+    std::vector<std::int64_t> people{1000, 10000, 100000, 1000000};  ///< >= 1 each
+    int rounds = 3;                                                  ///< runs of each size, in turn; >= 1
     SolverOptions solver{.threads = 2};
     bool progress = true;
 };
@@ -32,7 +32,7 @@ struct ScaleResult {
     double host_load = 0;
 };
 
-/// Throws InvalidInput for options out of range.
+/// Throws InvalidInput for options of the solver out of range.
 ScaleResult measure_scale(const ScaleOptions& options);
 std::string table_of(const ScaleResult& result);
 

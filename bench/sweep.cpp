@@ -12,6 +12,7 @@
 
 #include "engine.h"
 #include "host.h"
+#include "median.h"
 #include "rig.h"
 #include "runner.h"
 
@@ -25,14 +26,6 @@ constexpr int steps_a_look = 10;
 double now()
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double median(std::vector<double> values)
-{
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 /// What one run of one point gave.
