@@ -82,9 +82,8 @@ class StageRunner {
     /// claimed chunk is done.
     struct alignas(64) Share {
         std::atomic<std::uint64_t> word{0};
-        std::int64_t ran =
-            0;            ///< chunks of any share that its worker has run in this stage, as told to done_
-        double size = 0;  ///< of all chunks; the caller's
+        std::int64_t ran = 0;  ///< chunks of this stage, of any share, by its worker
+        double size = 0;       ///< of all chunks; the caller's
     };
     void open();
     void publish(Job job, std::int64_t count);

@@ -28,8 +28,6 @@ struct FigureNode {
     int parent;       ///< body that it hangs on, moving or fixed; -1 for a root that floats
     int parent_node;  ///< that body's node; -1 where it is fixed or none
     int rows;         ///< of all its locks together, 0 to 6
-    bool
-        hangs_by_point;  ///< by one lock: its first three rows are a point's, along x, y and z, the others only turn
     /// Where its numbers begin in FigureBlock::system, floats.
     std::int64_t jacobian;  ///< EqualityRows; once factored, what kernel_tree_rows.h keeps of them
     std::int64_t response;  ///< M'^-1 J^T, six floats a row
@@ -49,6 +47,8 @@ struct FigureNode {
         bool reversed;     ///< the hanging body is the joint's body a: errors and impulses change sign
     };
     std::vector<Lock> locks;
+    /// By one lock, whose first three rows are a point's, along x, y and z; the others only turn.
+    [[nodiscard]] bool hangs_by_point() const { return locks.size() == 1 && locks.front().locks_point; }
     static constexpr int row_floats = 10 * block_lanes;  ///< of an EqualityRow
 };
 

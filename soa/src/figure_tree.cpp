@@ -84,7 +84,6 @@ bool FigureShape::plant_tree()
         return std::exchange(end, end + std::int64_t{floats} * block_lanes);
     };
     for (FigureNode& node : reached) {
-        node.hangs_by_point = node.locks.size() == 1 && node.locks[0].locks_point;
         node.jacobian = take(FigureNode::row_floats / block_lanes * node.rows);
         node.response = take(6 * node.rows);
         node.factor = take(node.rows * (node.rows + 1) / 2);

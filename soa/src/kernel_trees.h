@@ -255,7 +255,7 @@ void with_rows(const FigureNode& node, const Work& work)
         constexpr int rows = i + 1;
         if (rows != node.rows) return;
         if constexpr (rows >= 3) {
-            if (node.hangs_by_point) {
+            if (node.hangs_by_point()) {
                 work(static_cast<PointRows<rows>*>(nullptr));
                 return;
             }
