@@ -10,9 +10,9 @@
 #pragma once
 
 #include <cmath>
-#include <type_traits>
 
 #include "motley/core/constraints/drive_definition.h"
+#include "motley/core/if_needed.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_report.h"
@@ -46,9 +46,6 @@ struct Drive {
     struct Levers {
         Vec3<Real> a, b;
     };
-    struct Nothing {};
-    template <class Part>
-    using OfSlide = std::conditional_t<slides, Part, Nothing>;
 
     template <class Real>
     struct Parameters {
@@ -57,7 +54,7 @@ struct Drive {
         Real motor_speed, motor_max_force;
         Real spring_hertz, spring_damping_ratio;
         Real spring_target, spring_max_force;
-        [[no_unique_address]] OfSlide<Anchors<Real>> anchors;
+        [[no_unique_address]] IfNeeded<slides, Anchors<Real>> anchors;
     };
     template <class Real>
     struct Memory {
@@ -73,14 +70,14 @@ struct Drive {
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
-        [[no_unique_address]] OfSlide<Arms<Real>> start_arms;
+        [[no_unique_address]] IfNeeded<slides, Arms<Real>> start_arms;
         Quat<Real> start_frame_a, start_frame_b;
         InSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         Vec3<Real> axis;  ///< x_a or t
-        [[no_unique_address]] OfSlide<Levers<Real>> levers;
+        [[no_unique_address]] IfNeeded<slides, Levers<Real>> levers;
         Real inverse_mass, mass;  ///< K and its inverse
         Real value;               ///< C
     };

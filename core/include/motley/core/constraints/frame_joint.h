@@ -14,6 +14,7 @@
 
 #include "motley/core/constraints/frame_joint_definition.h"
 #include "motley/core/equality_row.h"
+#include "motley/core/if_needed.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_report.h"
@@ -57,12 +58,6 @@ struct FrameJoint {
     struct Memory {
         Real lambda[rows];  ///< N s of the linear rows, N m s of the angular ones
     };
-    /// What a joint without such rows has instead of a part; tagged, so that two of them need no room.
-    template <int tag>
-    struct Nothing {
-    };
-    template <bool has_it, int tag, class Part>
-    using IfNeeded = std::conditional_t<has_it, Part, Nothing<tag>>;
     static constexpr bool has_arms = linear_rows > 0;
     static constexpr bool has_axes = linear_lock == LinearLock::plane || linear_lock == LinearLock::line;
     static constexpr bool has_turns = angular_rows > 0;
@@ -82,16 +77,16 @@ struct FrameJoint {
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
         // When the step began, in the world.
-        [[no_unique_address]] IfNeeded<has_arms, 0, Anchors<Real>> start;
-        [[no_unique_address]] IfNeeded<has_axes || has_turns, 1, Quat<Real>> start_frame_a;
-        [[no_unique_address]] IfNeeded<has_turns, 2, Quat<Real>> start_frame_b;
+        [[no_unique_address]] IfNeeded<has_arms, Anchors<Real>> start;
+        [[no_unique_address]] IfNeeded<has_axes || has_turns, Quat<Real>, 1> start_frame_a;
+        [[no_unique_address]] IfNeeded<has_turns, Quat<Real>, 2> start_frame_b;
         LaneSoftness<Real> in_sweep;  ///< what a sweep reads of a row
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
-        [[no_unique_address]] IfNeeded<has_arms, 0, Arms<Real>> arm;
-        [[no_unique_address]] IfNeeded<has_axes, 1, Axes<Real, has_axes ? linear_rows : 1>> linear;  ///< e
-        [[no_unique_address]] IfNeeded<has_turns, 2, Axes<Real, has_turns ? angular_rows : 1>>
+        [[no_unique_address]] IfNeeded<has_arms, Arms<Real>> arm;
+        [[no_unique_address]] IfNeeded<has_axes, Axes<Real, has_axes ? linear_rows : 1>, 1> linear;  ///< e
+        [[no_unique_address]] IfNeeded<has_turns, Axes<Real, has_turns ? angular_rows : 1>, 2>
             angular;  ///< g
         SmallFactor<Real, rows> mass;
         Real error[rows];  ///< C
