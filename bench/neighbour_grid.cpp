@@ -2,6 +2,7 @@
 #include "neighbour_grid.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -70,10 +71,11 @@ void NeighbourGrid::sort_into_bands(std::span<const Vec3<double>> positions, std
                                     float margin, Executor& executor)
 {
     const std::size_t count = positions.size(), chunks = count / discs_per_chunk + 1;
-    rows_per_band_ = height_ / most_bands + 1;
-    band_count_ = (height_ + rows_per_band_ - 1) / rows_per_band_;
+    band_shift_ = static_cast<int>(std::bit_width(static_cast<std::uint32_t>((height_ - 1) / most_bands)));
+    band_count_ = ((height_ - 1) >> band_shift_) + 1;
     const auto bands = static_cast<std::size_t>(band_count_);
     cells_.resize(count);
+    bands_.resize(count);
     placed_.resize(count);
     sorted_.resize(count);
     places_.assign(chunks * bands, 0);
@@ -83,12 +85,11 @@ void NeighbourGrid::sort_into_bands(std::span<const Vec3<double>> positions, std
             for (std::size_t i = begin; i < end; ++i) work(i, places);
         });
     };
-    const auto band_of = [&](std::int32_t cell) {
-        return static_cast<std::size_t>(cell / width_ / rows_per_band_);
-    };
     for_each_disc([&](std::size_t i, std::int32_t* places) {
-        cells_[i] = static_cast<std::int32_t>(index_of(column_of(positions[i].x), row_of(positions[i].y)));
-        ++places[band_of(cells_[i])];
+        const std::int32_t row = row_of(positions[i].y);
+        cells_[i] = static_cast<std::int32_t>(index_of(column_of(positions[i].x), row));
+        bands_[i] = static_cast<std::uint8_t>(row >> band_shift_);
+        ++places[bands_[i]];
     });
     std::int32_t next = 0;
     first_in_band_.resize(bands + 1);
@@ -99,7 +100,7 @@ void NeighbourGrid::sort_into_bands(std::span<const Vec3<double>> positions, std
     }
     first_in_band_[bands] = next;
     for_each_disc([&](std::size_t i, std::int32_t* places) {
-        const auto place = static_cast<std::size_t>(places[band_of(cells_[i])]++);
+        const auto place = static_cast<std::size_t>(places[bands_[i]]++);
         placed_[place] = {
             {static_cast<float>(positions[i].x - low_.x), static_cast<float>(positions[i].y - low_.y),
              radii[i] + margin / 2, static_cast<std::int32_t>(i)},
@@ -109,9 +110,9 @@ void NeighbourGrid::sort_into_bands(std::span<const Vec3<double>> positions, std
 
 void NeighbourGrid::sort_band(std::int64_t band)
 {
-    const auto first_row = static_cast<std::int32_t>(band) * rows_per_band_;
+    const auto first_row = static_cast<std::int32_t>(band) << band_shift_;
     const std::size_t first_cell = index_of(0, first_row);
-    const std::size_t last_cell = index_of(0, std::min(first_row + rows_per_band_, height_));
+    const std::size_t last_cell = index_of(0, std::min(first_row + (1 << band_shift_), height_));
     const std::span<std::int32_t> starts(starts_.data() + first_cell, last_cell - first_cell);
     const auto begin = static_cast<std::size_t>(first_in_band_[static_cast<std::size_t>(band)]);
     const auto end = static_cast<std::size_t>(first_in_band_[static_cast<std::size_t>(band) + 1]);
@@ -132,8 +133,9 @@ void NeighbourGrid::sort_band(std::int64_t band)
 std::size_t NeighbourGrid::find_pairs(std::int64_t chunk, std::vector<Pair>& pairs) const
 {
     std::size_t found = 0;
-    for (std::int32_t y = first_row(chunk); y < first_row(chunk + 1); ++y) {
-        for (std::int32_t x = 0; x < width_; ++x) {
+    const Rectangle cells = cells_of(chunk);
+    for (std::int32_t y = cells.first_row; y < cells.end_row; ++y) {
+        for (std::int32_t x = cells.first_column; x < cells.end_column; ++x) {
             const std::int32_t begin = starts_[index_of(x, y)], end = starts_[index_of(x, y) + 1];
             if (begin == end) continue;
             // Cells in line are discs in line: the rest of this cell and the one to the right, then three above.

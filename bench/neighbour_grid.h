@@ -29,9 +29,12 @@ class NeighbourGrid {
     template <class Visit>
     void for_each_disc_in(std::int64_t chunk, Vec2<double> low, Vec2<double> high, const Visit& visit) const
     {
-        const std::int32_t first_column = column_of(low.x), last_column = column_of(high.x);
-        const std::int32_t last_row = std::min(first_row(chunk + 1) - 1, row_of(high.y));
-        for (std::int32_t y = std::max(first_row(chunk), row_of(low.y)); y <= last_row; ++y) {
+        const Rectangle cells = cells_of(chunk);
+        const std::int32_t first_column = std::max(cells.first_column, column_of(low.x));
+        const std::int32_t last_column = std::min(cells.end_column - 1, column_of(high.x));
+        if (first_column > last_column) return;
+        const std::int32_t last_row = std::min(cells.end_row - 1, row_of(high.y));
+        for (std::int32_t y = std::max(cells.first_row, row_of(low.y)); y <= last_row; ++y) {
             const std::int32_t begin = starts_[index_of(first_column, y)];
             const std::int32_t end = starts_[index_of(last_column, y) + 1];
             for (std::int32_t i = begin; i < end; ++i) visit(sorted_[static_cast<std::size_t>(i)].disc);
@@ -39,11 +42,19 @@ class NeighbourGrid {
     }
     /// How far from its centre a disc of the last sort can be near something, m.
     [[nodiscard]] double longest_reach() const { return longest_reach_; }
-    /// Chunks of rows; depends on the crowd only.
-    [[nodiscard]] std::int64_t chunk_count() const { return (height_ + rows_per_chunk - 1) / rows_per_chunk; }
+    /// Chunks go down one strip of columns after the other, so that pairs in line are among few discs; they depend on the
+    /// crowd only.
+    [[nodiscard]] std::int64_t chunk_count() const
+    {
+        return std::int64_t{chunks_down()} * pieces(width_, columns_per_strip);
+    }
 
   private:
-    static constexpr std::int32_t rows_per_chunk = 4;
+    static constexpr std::int32_t columns_per_strip = 128, rows_per_chunk = 8;
+    /// The cells of a chunk.
+    struct Rectangle {
+        std::int32_t first_column, end_column, first_row, end_row;
+    };
     struct Sorted {
         float x, y;   ///< from the grid's corner, m
         float reach;  ///< m
@@ -54,10 +65,12 @@ class NeighbourGrid {
         std::int32_t cell;
     };
     AlignedVector<std::int32_t> cells_;   ///< of each disc
+    AlignedVector<std::uint8_t> bands_;   ///< likewise
     AlignedVector<Placed> placed_;        ///< by bands of rows, each band's discs as they came
     AlignedVector<std::int32_t> places_;  ///< of each chunk of discs in each band: the next place in placed_
     std::vector<std::int32_t> first_in_band_;
-    std::int32_t rows_per_band_ = 1, band_count_ = 0;
+    std::int32_t band_count_ = 0;
+    int band_shift_ = 0;                  ///< a band is 2^this rows
     AlignedVector<std::int32_t> starts_;  ///< of each cell in sorted_, and one past the last
     AlignedVector<Sorted> sorted_;
     std::int32_t width_ = 1, height_ = 1;
@@ -84,10 +97,17 @@ class NeighbourGrid {
     {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
     }
-    [[nodiscard]] std::int32_t first_row(std::int64_t chunk) const
+    static std::int32_t pieces(std::int32_t cells, std::int32_t a_piece)
     {
-        const auto row = static_cast<std::int32_t>(chunk) * rows_per_chunk;
-        return row < height_ ? row : height_;
+        return (cells + a_piece - 1) / a_piece;
+    }
+    [[nodiscard]] std::int32_t chunks_down() const { return pieces(height_, rows_per_chunk); }
+    [[nodiscard]] Rectangle cells_of(std::int64_t chunk) const
+    {
+        const auto column = static_cast<std::int32_t>(chunk / chunks_down()) * columns_per_strip;
+        const auto row = static_cast<std::int32_t>(chunk % chunks_down()) * rows_per_chunk;
+        return {column, std::min(column + columns_per_strip, width_), row,
+                std::min(row + rows_per_chunk, height_)};
     }
 };
 
