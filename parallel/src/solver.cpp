@@ -305,7 +305,7 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
         }
     });
     if (cache.has_repeated_key()) return ContactIntake::repeated_key(contacts);
-    runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.count(chunk); });
+    runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.count_contacts(chunk); });
     layout.contacts.open(layout.kernels());
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
     layout.cut(scene, contacts, tells_blocks_apart);

@@ -67,12 +67,16 @@ void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_
         });
     };
     // The overflow first and in order, so that the colours have the last word.
-    for (const SweepChunk& chunk : layout_.sweeps(overflow_colour)) run_chunk(chunk);
+    const SweepLists& sweeps = layout_.sweeps();
+    for (const SweepChunk& chunk : sweeps.of_colour(overflow_colour)) run_chunk(chunk);
     for (int colour = 0; colour < parallel_colours; ++colour) {
-        const auto& chunks = layout_.sweeps(colour);
+        const std::span<const SweepChunk> chunks = sweeps.of_colour(colour);
         runner_.run(static_cast<std::int64_t>(chunks.size()),
                     [&](std::int64_t i) { run_chunk(chunks[static_cast<std::size_t>(i)]); });
     }
+    runner_.run(static_cast<std::int64_t>(sweeps.patches.size()), [&](std::int64_t patch) {
+        for (const SweepChunk& chunk : sweeps.of_patch(patch)) run_chunk(chunk);
+    });
 }
 
 void Sweeper::step_lone_figures(const FigureSteps& steps)

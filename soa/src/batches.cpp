@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "motley/core/growth.h"
+#include "patches.h"
 
 namespace motley {
 namespace {
@@ -15,7 +16,7 @@ constexpr std::int32_t blocks_per_tile = 8;
 /// Overflow blocks that stay open to newcomers: enough to fill lanes from a few hubs, few enough to search.
 constexpr std::int32_t open_overflow_blocks = 8;
 /// Constraints a chunk when they are sorted.
-constexpr std::size_t placements_per_chunk = 4096;
+constexpr std::size_t placements_per_chunk = Patches::contacts_a_patch;
 
 template <class T>
 void grow(AlignedVector<T>& stream, std::size_t size)
@@ -69,15 +70,9 @@ bool BatchSet::Pool::holds(std::size_t block, BodyRow a, BodyRow b) const
 BatchSet::BatchSet(int first_type, int last_type)
     : first_class_(first_type * body_kind_count * body_kind_count),
       pools_(static_cast<std::size_t>((last_type - first_type) * body_kind_count * body_kind_count)),
-      totals_(pools_.size() * colours)
+      totals_(keys())
 {
     used_.reserve(pools_.size());
-}
-
-std::span<std::int32_t> BatchSet::places_of(std::int64_t chunk)
-{
-    const std::size_t keys = pools_.size() * colours;
-    return std::span(places_).subspan(static_cast<std::size_t>(chunk) * keys, keys);
 }
 
 std::span<const Placement> BatchSet::placements_of(std::int64_t chunk) const
@@ -91,19 +86,31 @@ std::int64_t BatchSet::chunk_count() const
     return static_cast<std::int64_t>((placements_.size() + placements_per_chunk - 1) / placements_per_chunk);
 }
 
-void BatchSet::begin(std::span<const Placement> placements)
+void BatchSet::begin(std::span<const Placement> placements, bool has_patches)
 {
     placements_ = placements;
-    const std::size_t wanted = static_cast<std::size_t>(chunk_count()) * pools_.size() * colours;
-    if (places_.size() < wanted) places_.resize(with_room_to_grow(wanted));
+    has_patches_ = has_patches;
+    const std::size_t wanted = static_cast<std::size_t>(chunk_count()) * keys();
+    const auto make_room = [&](std::vector<std::int32_t>& table) {
+        if (table.size() < wanted) table.resize(with_room_to_grow(wanted));
+    };
+    make_room(places_);
+    if (!has_patches) return;
+    make_room(patch_places_);
+    make_room(patch_blocks_);
 }
 
 void BatchSet::count(std::int64_t chunk)
 {
-    const std::span<std::int32_t> counts = places_of(chunk);
-    std::fill(counts.begin(), counts.end(), 0);
+    const std::span<std::int32_t> across = of_chunk(places_, chunk);
+    std::fill(across.begin(), across.end(), 0);
+    std::span<std::int32_t> inside;
+    if (has_patches_) {
+        inside = of_chunk(patch_places_, chunk);
+        std::fill(inside.begin(), inside.end(), 0);
+    }
     for (const Placement& placement : placements_of(chunk)) {
-        if (!placement.is_left_out()) ++counts[key_of(placement)];
+        if (!placement.is_left_out()) ++(placement.in_patch ? inside : across)[key_of(placement)];
     }
 }
 
@@ -111,7 +118,7 @@ void BatchSet::open(const KernelTable& kernels)
 {
     std::fill(totals_.begin(), totals_.end(), 0);
     for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
-        const std::span<std::int32_t> places = places_of(chunk);
+        const std::span<std::int32_t> places = of_chunk(places_, chunk);
         for (std::size_t key = 0; key < places.size(); ++key) {
             const std::int32_t here = places[key];
             places[key] = totals_[key];
@@ -133,16 +140,35 @@ void BatchSet::open(const KernelTable& kernels)
         pool.make_room(blocks);
     }
     if (has_overflow) place_overflow();
+    for (Pool& pool : pools_) pool.all_blocks = pool.first_block[colours];
+    if (has_patches_) open_patches();
     used_.clear();
     for (std::size_t p = 0; p < pools_.size(); ++p) {
-        if (pools_[p].block_count() == 0) continue;
+        if (pools_[p].all_blocks == 0) continue;
         used_.push_back(p);
         const ConstraintKernels& own = kernels.constraints[static_cast<std::size_t>(first_class_) + p];
-        const std::size_t lanes = static_cast<std::size_t>(pools_[p].block_count()) * block_lanes;
+        const std::size_t lanes = static_cast<std::size_t>(pools_[p].all_blocks) * block_lanes;
         grow(pools_[p].rows, lanes * static_cast<std::size_t>(own.row_floats));
         grow(pools_[p].substep_rows, lanes * static_cast<std::size_t>(own.substep_floats));
         grow(pools_[p].impulses, lanes * static_cast<std::size_t>(own.impulse_floats));
     }
+}
+
+/// Gives each colour of each patch its blocks, patch after patch.
+void BatchSet::open_patches()
+{
+    for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
+        const std::span<std::int32_t> places = of_chunk(patch_places_, chunk);
+        const std::span<std::int32_t> first = of_chunk(patch_blocks_, chunk);
+        for (std::size_t key = 0; key < places.size(); ++key) {
+            std::int32_t& blocks = pools_[key / colours].all_blocks;
+            const std::int32_t here = places[key];
+            first[key] = blocks;
+            places[key] = blocks * block_lanes;
+            blocks += (here + block_lanes - 1) / block_lanes;
+        }
+    }
+    for (Pool& pool : pools_) pool.make_room(pool.all_blocks);
 }
 
 /// The overflow of a class behind its colours: first fit among the last few blocks, so that no block has a body
@@ -169,11 +195,18 @@ void BatchSet::place_overflow()
 
 void BatchSet::fill(std::int64_t chunk)
 {
-    const std::span<std::int32_t> places = places_of(chunk);
+    const std::span<std::int32_t> places = of_chunk(places_, chunk);
+    std::span<std::int32_t> patch_places;
+    if (has_patches_) patch_places = of_chunk(patch_places_, chunk);
     for (const Placement& placement : placements_of(chunk)) {
         if (placement.colour >= overflow_colour) continue;  // placed already, or left out
         const std::size_t key = key_of(placement);
         Pool& pool = pools_[key / colours];
+        if (placement.in_patch) {
+            const auto place = static_cast<std::size_t>(patch_places[key]++);
+            pool.set_lane(place / block_lanes, static_cast<int>(place % block_lanes), placement);
+            continue;
+        }
         const std::int32_t place = places[key]++;
         const int lane = place % block_lanes;
         const auto block = static_cast<std::size_t>(pool.first_block[placement.colour] + place / block_lanes);
@@ -186,6 +219,24 @@ void BatchSet::fill(std::int64_t chunk)
         if (lane == 0) {
             pool.pad(block, std::min(pool.constraints[placement.colour] - place, block_lanes),
                      placement.constraint);
+        }
+    }
+    if (has_patches_) finish_patch(chunk);
+}
+
+/// Counts and padding of a patch's blocks.
+void BatchSet::finish_patch(std::int64_t chunk)
+{
+    const std::span<std::int32_t> places = of_chunk(patch_places_, chunk);
+    const std::span<std::int32_t> first = of_chunk(patch_blocks_, chunk);
+    for (const std::size_t p : used_) {
+        Pool& pool = pools_[p];
+        for (std::size_t colour = 0; colour < parallel_colours; ++colour) {
+            const std::size_t key = p * colours + colour;
+            for (std::int32_t block = first[key]; block < first[key + 1]; ++block) {
+                const auto b = static_cast<std::size_t>(block);
+                pool.pad(b, std::min(places[key] - block * block_lanes, block_lanes), pool.who[b].lane[0]);
+            }
         }
     }
 }
@@ -208,35 +259,55 @@ BlockStreams BatchSet::Pool::streams(bool tells_apart)
             tells_apart ? residuals.data() : nullptr};
 }
 
+SweepChunk BatchSet::sweep_chunk(const KernelTable& table, std::size_t p, std::int32_t begin,
+                                 std::int32_t end, bool tells_apart)
+{
+    Pool& pool = pools_[p];
+    const int constraint_class = first_class_ + static_cast<int>(p);
+    return {&table.constraints[constraint_class],
+            pool.streams(tells_apart),
+            begin,
+            end,
+            constraint_class / (body_kind_count * body_kind_count),
+            kind_a_of(constraint_class),
+            kind_b_of(constraint_class),
+            tells_apart ? pool.finished.data() : nullptr,
+            tells_apart ? pool.islands.data() : nullptr,
+            tells_apart ? pool.wanted.data() : nullptr};
+}
+
+TransferTile::Part BatchSet::transfer_part(const KernelTable& table, std::size_t p, std::int32_t begin,
+                                           std::int32_t end)
+{
+    const int constraint_class = first_class_ + static_cast<int>(p);
+    return {&table.constraints[constraint_class], pools_[p].streams(false),
+            constraint_class / (body_kind_count * body_kind_count), begin, end};
+}
+
 void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweeps, TransferList& transfers)
 {
     std::int32_t tiles = 1;
     for (const std::size_t p : used_) {
         Pool& pool = pools_[p];
-        const int constraint_class = first_class_ + static_cast<int>(p);
-        const ConstraintKernels& kernels = table.constraints[constraint_class];
         if (tells_apart) {
-            grow(pool.residuals, static_cast<std::size_t>(pool.block_count()) * 2 * block_lanes);
-            grow(pool.finished, static_cast<std::size_t>(pool.block_count()));
-            grow(pool.islands, static_cast<std::size_t>(pool.block_count()));
-            grow(pool.wanted, static_cast<std::size_t>(pool.block_count()));
+            const auto blocks = static_cast<std::size_t>(pool.all_blocks);
+            grow(pool.residuals, blocks * 2 * block_lanes);
+            grow(pool.finished, blocks);
+            grow(pool.islands, blocks);
+            grow(pool.wanted, blocks);
         }
         for (std::size_t colour = 0; colour < colours; ++colour) {
             const std::int32_t end = pool.first_block[colour + 1];
             tiles = std::max(tiles, (end - pool.first_block[colour]) / blocks_per_tile);
-            const auto add_chunk = [&](std::int32_t first, std::int32_t last) {
-                sweeps[colour].push_back({&kernels, pool.streams(tells_apart), first, last,
-                                          constraint_class / (body_kind_count * body_kind_count),
-                                          kind_a_of(constraint_class), kind_b_of(constraint_class),
-                                          tells_apart ? pool.finished.data() : nullptr,
-                                          tells_apart ? pool.islands.data() : nullptr,
-                                          tells_apart ? pool.wanted.data() : nullptr});
-            };
             for_each_run(
                 pool.first_block[colour], end,
                 [&](std::int32_t block) { return pool.skips(block) == skip_nothing; },
                 [&](std::int32_t first, std::int32_t last) {
-                    for_each_even_piece<1>(first, last, blocks_per_chunk, add_chunk);
+                    for_each_even_piece<1>(first, last, blocks_per_chunk,
+                                           [&](std::int32_t from, std::int32_t to) {
+                                               sweeps.add(static_cast<int>(colour),
+                                                          sweep_chunk(table, p, from, to, tells_apart));
+                                           });
                 });
         }
     }
@@ -244,7 +315,6 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
         const auto first_part = static_cast<std::int32_t>(transfers.parts.size());
         for (const std::size_t p : used_) {
             Pool& pool = pools_[p];
-            const int constraint_class = first_class_ + static_cast<int>(p);
             for (std::size_t colour = 0; colour < colours; ++colour) {
                 const std::int32_t first = pool.first_block[colour];
                 const std::int64_t blocks = pool.first_block[colour + 1] - first;
@@ -254,14 +324,36 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
                     first + static_cast<std::int32_t>(blocks * (tile + 1) / tiles),
                     [&](std::int32_t block) { return pool.skips(block) != skip_altogether; },
                     [&](std::int32_t begin, std::int32_t end) {
-                        transfers.parts.push_back({&table.constraints[constraint_class], pool.streams(false),
-                                                   constraint_class / (body_kind_count * body_kind_count),
-                                                   begin, end});
+                        transfers.parts.push_back(transfer_part(table, p, begin, end));
                     });
             }
         }
-        const auto last_part = static_cast<std::int32_t>(transfers.parts.size());
-        if (last_part > first_part) transfers.tiles.push_back({first_part, last_part});
+        transfers.close_tile(first_part);
+    }
+    if (has_patches_) cut_patches(table, tells_apart, sweeps, transfers);
+}
+
+/// Nothing in a patch is skipped: contacts are never left to figures.
+void BatchSet::cut_patches(const KernelTable& table, bool tells_apart, SweepLists& sweeps,
+                           TransferList& transfers)
+{
+    for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
+        const std::span<std::int32_t> first = of_chunk(patch_blocks_, chunk);
+        const std::int32_t first_chunk = sweeps.patch_chunks();
+        for (int colour = 0; colour < parallel_colours; ++colour) {
+            for (const std::size_t p : used_) {
+                const std::size_t key = p * colours + static_cast<std::size_t>(colour);
+                if (first[key] == first[key + 1]) continue;
+                sweeps.add_to_patch(colour, sweep_chunk(table, p, first[key], first[key + 1], tells_apart));
+            }
+        }
+        sweeps.close_patch(first_chunk);
+        const auto first_part = static_cast<std::int32_t>(transfers.parts.size());
+        for (const std::size_t p : used_) {
+            const std::int32_t begin = first[p * colours], end = first[p * colours + parallel_colours];
+            if (begin < end) transfers.parts.push_back(transfer_part(table, p, begin, end));
+        }
+        transfers.close_tile(first_part);
     }
 }
 
@@ -271,11 +363,11 @@ BatchSet::Count BatchSet::count(const KernelTable& table) const
     for (const std::size_t p : used_) {
         const Pool& pool = pools_[p];
         std::int64_t constraints = 0;
-        for (std::int32_t block = 0; block < pool.block_count(); ++block)
+        for (std::int32_t block = 0; block < pool.all_blocks; ++block)
             constraints += pool.counts[static_cast<std::size_t>(block)];
         const ConstraintKernels& kernels = table.constraints[static_cast<std::size_t>(first_class_) + p];
         const double floats = kernels.swept_floats + kernels.impulse_floats + 2;  // two body indices
-        total.blocks += pool.block_count();
+        total.blocks += pool.all_blocks;
         total.constraints += constraints;
         total.overflow += pool.overflow;
         total.streamed_bytes += 4.0 * floats * static_cast<double>(constraints);

@@ -2,7 +2,8 @@
 //
 // A counting sort in two passes over chunks of constraints, so that any number of threads may share them: how many
 // of each class and colour a chunk has, then, when every chunk knows where its own begin, each constraint into its
-// lane. Blocks of one colour lie in line, and so do their streams: a sweep reads memory from front to back.
+// lane. Blocks of one colour lie in line, and so do their streams: a sweep reads memory from front to back. Behind them lie
+// the patches, each with colours of its own.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +24,7 @@ struct Placement {
     std::int32_t constraint = 0;  ///< index in the list or store of its type
     std::uint8_t type = 0;
     std::uint8_t colour = no_colour;
+    bool in_patch = false;  ///< inside one: see Patches
     /// Takes a lane in the block of the constraints before it and leaves it empty; `constraint` is ~ of one of them.
     [[nodiscard]] bool is_gap() const { return constraint < 0; }
     [[nodiscard]] bool is_left_out() const { return colour == left_out_colour; }
@@ -87,10 +89,62 @@ void for_each_even_piece(std::int32_t begin, std::int32_t end, std::int32_t most
     }
 }
 
-using SweepLists = std::array<std::vector<SweepChunk>, parallel_colours + 1>;
+/// The chunks of one patch, colour after colour: the unit of work of a sweep in cache.
+struct PatchChunks {
+    std::int32_t first, last;
+};
+/// What a sweep runs over: chunks of each colour, of the overflow, and last those of the patches.
+struct SweepLists {
+    static constexpr int patch_list = parallel_colours + 1;
+    std::array<std::vector<SweepChunk>, patch_list + 1> lists;
+    std::vector<PatchChunks> patches;
+    std::uint32_t colours = 0;  ///< a bit for each that is in use, in patches or across
+
+    [[nodiscard]] std::span<const SweepChunk> of_colour(int colour) const
+    {
+        return lists[static_cast<std::size_t>(colour)];
+    }
+    [[nodiscard]] std::span<const SweepChunk> of_patch(std::int64_t patch) const
+    {
+        const PatchChunks& range = patches[static_cast<std::size_t>(patch)];
+        return {lists[patch_list].data() + range.first, lists[patch_list].data() + range.last};
+    }
+    void add(int colour, const SweepChunk& chunk)
+    {
+        lists[static_cast<std::size_t>(colour)].push_back(chunk);
+        if (colour != overflow_colour) colours |= 1U << colour;
+    }
+    void add_to_patch(int colour, const SweepChunk& chunk)
+    {
+        lists[patch_list].push_back(chunk);
+        colours |= 1U << colour;
+    }
+    /// What was added to patches since there were `first_chunk` chunks is one, if it is anything.
+    void close_patch(std::int32_t first_chunk)
+    {
+        const std::int32_t last_chunk = patch_chunks();
+        if (first_chunk < last_chunk) patches.push_back({first_chunk, last_chunk});
+    }
+    [[nodiscard]] std::int32_t patch_chunks() const
+    {
+        return static_cast<std::int32_t>(lists[patch_list].size());
+    }
+    void clear()
+    {
+        for (auto& chunks : lists) chunks.clear();
+        patches.clear();
+        colours = 0;
+    }
+};
 struct TransferList {
     std::vector<TransferTile::Part> parts;
     std::vector<TransferTile> tiles;
+    /// What came behind `first_part` is a tile, if anything did.
+    void close_tile(std::int32_t first_part)
+    {
+        const auto last_part = static_cast<std::int32_t>(parts.size());
+        if (first_part < last_part) tiles.push_back({first_part, last_part});
+    }
 };
 
 /// The blocks of the types [first_type, last_type), by class and colour.
@@ -98,8 +152,9 @@ class BatchSet {
   public:
     BatchSet(int first_type, int last_type);
 
-    /// Starts over with these constraints, which must stay where they are until fill() is done.
-    void begin(std::span<const Placement> placements);
+    /// Starts over with these constraints, which must stay where they are until fill() is done. With patches, every chunk
+    /// is one.
+    void begin(std::span<const Placement> placements, bool has_patches);
     [[nodiscard]] std::int64_t chunk_count() const;
     /// Counts the constraints of a chunk. Chunks may run on different threads.
     void count(std::int64_t chunk);
@@ -143,11 +198,11 @@ class BatchSet {
         std::array<std::int32_t, colours + 1> first_block{};       ///< of each colour, and one past the last
         std::array<std::int32_t, parallel_colours> constraints{};  ///< of each colour
         std::int64_t overflow = 0;
+        std::int32_t all_blocks = 0;  ///< those of patches too, which come last
         [[nodiscard]] std::uint8_t skips(std::int32_t block) const
         {
             return skipped[static_cast<std::size_t>(block)];
         }
-        [[nodiscard]] std::int32_t block_count() const { return first_block[colours]; }
         [[nodiscard]] BlockStreams streams(bool tells_apart);
         void make_room(std::int32_t blocks);
         void set_lane(std::size_t block, int lane, const Placement& placement)
@@ -170,14 +225,32 @@ class BatchSet {
     std::vector<std::int32_t> places_;
     std::vector<std::int32_t> totals_;  ///< of each class and colour
 
+    /// Of a chunk that is a patch, for each class and colour: how many, then the next place, in lanes of the class's blocks;
+    /// and which block comes first. The overflow, of which a patch has none, stands for the end of the class.
+    std::vector<std::int32_t> patch_places_, patch_blocks_;
+    bool has_patches_ = false;
+
+    [[nodiscard]] std::size_t keys() const { return pools_.size() * colours; }
     [[nodiscard]] std::size_t key_of(const Placement& placement) const
     {
         const int pool = class_of(placement.type, placement.a.kind(), placement.b.kind()) - first_class_;
         return static_cast<std::size_t>(pool * colours + placement.colour);
     }
-    [[nodiscard]] std::span<std::int32_t> places_of(std::int64_t chunk);
+    /// A chunk's part of a table with an entry for each class and colour.
+    [[nodiscard]] std::span<std::int32_t> of_chunk(std::vector<std::int32_t>& table, std::int64_t chunk) const
+    {
+        return std::span(table).subspan(static_cast<std::size_t>(chunk) * keys(), keys());
+    }
     [[nodiscard]] std::span<const Placement> placements_of(std::int64_t chunk) const;
     void place_overflow();
+    void open_patches();
+    void finish_patch(std::int64_t chunk);
+    void cut_patches(const KernelTable& kernels, bool tells_apart, SweepLists& sweeps,
+                     TransferList& transfers);
+    [[nodiscard]] SweepChunk sweep_chunk(const KernelTable& kernels, std::size_t pool, std::int32_t begin,
+                                         std::int32_t end, bool tells_apart);
+    [[nodiscard]] TransferTile::Part transfer_part(const KernelTable& kernels, std::size_t pool,
+                                                   std::int32_t begin, std::int32_t end);
 };
 
 }  // namespace motley

@@ -2,6 +2,7 @@
 // that fails it is looked at again, to say which field, which value and what was expected.
 #include "contact_intake.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <unordered_set>
@@ -64,6 +65,8 @@ void ContactIntake::begin(Scene& scene, std::size_t count)
         placements.resize(room);
         memory_index.resize(room);
     }
+    count_ = count;
+    patches.begin(scene.bodies(), count);
     scene.contact_cache().begin(count);
     first_bad_.store(none, std::memory_order_relaxed);
     bounces_.store(false, std::memory_order_relaxed);
@@ -84,6 +87,7 @@ bool ContactIntake::place(const BodyStore& bodies, const Contact& contact, Place
     // Field by field: a struct made first and copied waits for its own stores.
     placement.a = a;
     placement.b = b;
+    placement.in_patch = false;
     placement.type = static_cast<std::uint8_t>(contact.restitution != 0 ? Touch::bouncing
                                                : contact.friction != 0  ? Touch::rough
                                                                         : Touch::smooth);
@@ -123,6 +127,10 @@ void ContactIntake::walk(Scene& scene, std::span<const Contact> contacts, std::i
             mark_bad(i);
             continue;
         }
+        if (patches.are_wanted()) {
+            patches.claim(placements[i].a, i);
+            patches.claim(placements[i].b, i);
+        }
         bounces = bounces || contact.restitution > 0;
         ContactList::Entry& entry = cache.staged().entries[i];
         entry.key = contact.key;
@@ -142,6 +150,17 @@ void ContactIntake::trace(ContactCache& cache, std::int64_t part)
     for (std::size_t k = 0; k < missed.size(); ++k) {
         if (k + ahead < missed.size()) cache.prefetch(missed[k + ahead]);
         remember(cache, missed[k], cache.trace(part, missed[k]));
+    }
+}
+
+void ContactIntake::mark_insides(std::int64_t patch)
+{
+    const auto begin = static_cast<std::size_t>(patch) * Patches::contacts_a_patch;
+    const std::size_t end = std::min(begin + Patches::contacts_a_patch, count_);
+    for (std::size_t i = begin; i < end; ++i) {
+        Placement& placement = placements[i];
+        placement.in_patch = placement.colour < overflow_colour &&
+                             patches.holds(placement.a, placement.b, static_cast<std::uint32_t>(i));
     }
 }
 

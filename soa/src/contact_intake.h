@@ -9,6 +9,7 @@
 
 #include "batches.h"
 #include "motley/core/scene.h"
+#include "patches.h"
 
 namespace motley {
 
@@ -33,17 +34,22 @@ class ContactIntake {
         return {};
     }
 
+    /// When all have colours: marks those of a patch's stretch of the list that are inside it.
+    void mark_insides(std::int64_t patch);
+
     /// Whether one of the contacts taken in gives anything back.
     [[nodiscard]] bool bounces() const { return bounces_.load(std::memory_order_relaxed); }
     /// What is wrong when a key came twice. Serial.
     [[nodiscard]] static std::string repeated_key(std::span<const Contact> contacts);
 
     AlignedVector<Placement> placements;  ///< with the colour of the step before, or no_colour
+    Patches patches;
     std::vector<std::int32_t>
         memory_index;  ///< entry in the last list's impulses; 0, the zero entry, when new
 
   private:
     static constexpr std::size_t none = SIZE_MAX;
+    std::size_t count_ = 0;
     std::atomic<std::size_t> first_bad_{none};
     std::atomic<bool> bounces_{false};
 

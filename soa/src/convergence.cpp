@@ -12,7 +12,7 @@ namespace {
 template <class Visit>
 void for_each_unfinished(const SweepLists& sweeps, const Visit& visit)
 {
-    for (const auto& chunks : sweeps) {
+    for (const auto& chunks : sweeps.lists) {
         for (const SweepChunk& chunk : chunks) {
             for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
                 if (chunk.finished[block] == 0) visit(chunk, block);
@@ -112,7 +112,7 @@ void Convergence::count(std::span<const Placement> placements)
 /// Most blocks are of one island: their worst lane is all that has to be known of them.
 void Convergence::name_islands(const SweepLists& sweeps)
 {
-    for (const auto& chunks : sweeps) {
+    for (const auto& chunks : sweeps.lists) {
         for (const SweepChunk& chunk : chunks) {
             for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
                 const std::int32_t first = island_of(chunk, block, 0);
@@ -141,7 +141,7 @@ void Convergence::take_wishes(const Scene& scene, const SweepLists& sweeps)
     scene.joints().for_each([&](const auto& store, int type) {
         slots[static_cast<std::size_t>(contact_type_count + type)] = store.slots.data();
     });
-    for (const auto& chunks : sweeps) {
+    for (const auto& chunks : sweeps.lists) {
         for (const SweepChunk& chunk : chunks) {
             const std::uint32_t* slot_of = slots[static_cast<std::size_t>(chunk.type)];
             for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
@@ -171,7 +171,7 @@ std::int32_t Convergence::island_of(const SweepChunk& chunk, std::int32_t block,
 
 void Convergence::start_over(const SweepLists& sweeps)
 {
-    for (const auto& chunks : sweeps) {
+    for (const auto& chunks : sweeps.lists) {
         for (const SweepChunk& chunk : chunks)
             std::fill(chunk.finished + chunk.begin, chunk.finished + chunk.end, std::uint8_t{0});
     }

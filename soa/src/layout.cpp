@@ -6,6 +6,7 @@
 #endif
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <utility>
 
@@ -48,7 +49,7 @@ void Layout::begin(Scene& scene, std::size_t contact_count, const FigureUse& use
     }
     masks_.copy(joint_masks_, scene.bodies());
     if (uncoloured_.size() < contact_count) uncoloured_.resize(with_room_to_grow(contact_count));
-    contacts.begin({intake.placements.data(), contact_count});
+    contacts.begin({intake.placements.data(), contact_count}, intake.patches.are_wanted());
 }
 
 void Layout::place_joints(Scene& scene)
@@ -86,7 +87,7 @@ void Layout::place_joints(Scene& scene)
         }
     });
     figures.find(candidates_, bodies.rows(BodyKind::rigid).size(), kernels_, use_.exactly, joint_placements_);
-    joints_.begin(joint_placements_);
+    joints_.begin(joint_placements_, false);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.count(chunk);
     joints_.open(kernels_);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.fill(chunk);
@@ -118,9 +119,15 @@ void Layout::colour_contacts(const BodyStore& bodies, ContactList& list)
     }
 }
 
+void Layout::count_contacts(std::int64_t chunk)
+{
+    if (intake.patches.are_wanted()) intake.mark_insides(chunk);
+    contacts.count(chunk);
+}
+
 void Layout::cut(Scene& scene, std::span<const Contact> list, bool tells_apart)
 {
-    for (auto& chunks : sweeps_) chunks.clear();
+    sweeps_.clear();
     transfers_.parts.clear();
     transfers_.tiles.clear();
     if (!figures.is_empty()) figures.find_lone_blocks(contacts.placements(), use_.in_lockstep);
@@ -215,10 +222,7 @@ void Layout::report(StepReport& report) const
         report.lane_occupancy = constraints / (block_lanes * static_cast<double>(report.blocks));
         report.bytes_per_constraint = (joints.streamed_bytes + touches.streamed_bytes) / constraints;
     }
-    report.colours = 0;
-    for (int colour = 0; colour < parallel_colours; ++colour) {
-        if (!sweeps_[static_cast<std::size_t>(colour)].empty()) ++report.colours;
-    }
+    report.colours = std::popcount(sweeps_.colours);
 }
 
 }  // namespace motley

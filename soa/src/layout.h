@@ -38,7 +38,8 @@ class Layout {
     void begin(Scene& scene, std::size_t contact_count, const FigureUse& use);
     /// ...then every contact gets a colour, in order, by one thread, without allocating...
     void colour_contacts(const BodyStore& bodies, ContactList& list);
-    /// ...then the contacts are sorted into blocks (count, open, fill)...
+    /// ...then the contacts are sorted into blocks (count_contacts, and its own open and fill)...
+    void count_contacts(std::int64_t chunk);
     BatchSet contacts{0, contact_type_count};
     /// ...and the blocks are cut into work.
     void cut(Scene& scene, std::span<const Contact> list, bool tells_apart);
@@ -47,10 +48,6 @@ class Layout {
     KernelContext context;
     void point_at(Scene& scene, const StepConstants& step);
 
-    [[nodiscard]] const std::vector<SweepChunk>& sweeps(int colour) const
-    {
-        return sweeps_[static_cast<std::size_t>(colour)];
-    }
     [[nodiscard]] const SweepLists& sweeps() const { return sweeps_; }
     [[nodiscard]] std::span<const Placement> joint_placements() const { return joint_placements_; }
     [[nodiscard]] std::span<const Placement> contact_placements() const { return contacts.placements(); }

@@ -12,7 +12,7 @@ namespace motley::testing {
 template <class Visit>
 void for_each_lane(const SweepLists& sweeps, const Visit& visit)
 {
-    for (const auto& chunks : sweeps) {
+    for (const auto& chunks : sweeps.lists) {
         for (const SweepChunk& chunk : chunks) {
             for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
                 const int count = chunk.streams.counts[block];

@@ -97,7 +97,7 @@ RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice,
         placements.push_back({a, b, static_cast<std::int32_t>(i), 0, colour});
     }
     const KernelTable& kernels = kernel_table(Isa::scalar);
-    set.begin(placements);
+    set.begin(placements, false);
     for (std::int64_t chunk = 0; chunk < set.chunk_count(); ++chunk) set.count(chunk);
     set.open(kernels);
     for (std::int64_t chunk = set.chunk_count(); chunk-- > 0;) set.fill(chunk);  // any order will do

@@ -6,29 +6,10 @@
 #include <set>
 
 #include "block_walk.h"
-#include "layout.h"
+#include "lay_out.h"
 
 namespace motley {
 namespace {
-
-/// Everything of a step up to the blocks, by one thread, as Solver::step does it.
-void lay_out(Layout& layout, Scene& scene, std::span<const Contact> contacts)
-{
-    const auto run = [](std::int64_t count, const auto& chunk) {
-        for (std::int64_t i = 0; i < count; ++i) chunk(i);
-    };
-    RC_ASSERT(layout.intake.take_in(scene, contacts, run).empty());
-    ContactCache& cache = scene.contact_cache();
-    layout.begin(scene, contacts.size(), {});
-    layout.colour_contacts(scene.bodies(), cache.staged());
-    run(cache.part_count(), [&](std::int64_t part) { cache.verify(part); });
-    RC_ASSERT(!cache.has_repeated_key());
-    for (std::int64_t chunk = 0; chunk < layout.contacts.chunk_count(); ++chunk) layout.contacts.count(chunk);
-    layout.contacts.open(layout.kernels());
-    for (std::int64_t chunk = 0; chunk < layout.contacts.chunk_count(); ++chunk) layout.contacts.fill(chunk);
-    layout.cut(scene, contacts, false);
-    cache.accept_staged();
-}
 
 /// No two constraints of one colour share a body that can move; returns how many constraints there are.
 std::size_t check_colours(const Layout& layout)
@@ -121,7 +102,7 @@ RC_GTEST_PROP(Recolouring, IsValidWhateverCameAndWentSinceTheLastStep,
                     contacts.push_back(contact);
             }
         }
-        lay_out(layout, scene, contacts);
+        testing::lay_out(layout, scene, contacts);
         RC_ASSERT(check_colours(layout) == contacts.size() + scene.joint_count());
         RC_ASSERT(check_blocks(layout) == contacts.size() + scene.joint_count());
     }

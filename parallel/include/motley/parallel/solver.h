@@ -36,7 +36,8 @@ class Solver {
     Solver& operator=(Solver&&) noexcept;
 
     /// Moves the scene on by `dt` seconds (0 to 1; 0 changes nothing), with the contacts of this step. The
-    /// list is read during the call only. Never throws: bad input gives StepStatus::refused, a message, and
+    /// list is read during the call only; best in about the order of the step before, and large ones with neighbours in
+    /// space near each other. Never throws: bad input gives StepStatus::refused, a message, and
     /// an untouched scene. Allocates nothing once the scene has stopped growing.
     StepReport step(Scene& scene, float dt, std::span<const Contact> contacts = {}) noexcept;
 
