@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "lattice_crowd.h"
 #include "mixed_scene.h"
 
 namespace {
@@ -63,6 +64,18 @@ long allocations_of_warm_steps(int threads, float tolerance = 0)
     solver.step(mixed.scene, 1.0F / 60, contacts);
     const long before = allocations;
     for (int step = 0; step < 20; ++step) solver.step(mixed.scene, 1.0F / 60, contacts);
+    return allocations - before;
+}
+
+/// The same of a crowd that is large enough for patches.
+long allocations_of_patches(int threads)
+{
+    testing::LatticeCrowd crowd;
+    const std::vector<Contact> contacts = crowd.contacts();
+    Solver solver(SolverSettings{}, {.threads = threads});
+    for (int step = 0; step < 3; ++step) solver.step(crowd.scene, 1.0F / 60, contacts);
+    const long before = allocations;
+    for (int step = 0; step < 3; ++step) solver.step(crowd.scene, 1.0F / 60, contacts);
     return allocations - before;
 }
 
@@ -145,6 +158,11 @@ TEST(Allocation, WarmFiguresAllocateNothing)
 TEST(Allocation, AWarmStepThatMeasuresAndStopsIslandsAllocatesNothing)
 {
     EXPECT_EQ(allocations_of_warm_steps(2, 1e-3F), 0);
+}
+
+TEST(Allocation, AWarmStepInPatchesAllocatesNothing)
+{
+    for (const int threads : {1, 2}) EXPECT_EQ(allocations_of_patches(threads), 0) << threads << " threads";
 }
 
 }  // namespace
