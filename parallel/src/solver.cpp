@@ -98,6 +98,7 @@ struct Solver::Impl {
     [[nodiscard]] FigureSteps figure_steps() const;
     [[nodiscard]] FigureUse use_of_figures() const;
     [[nodiscard]] float exact_rate() const;
+    [[nodiscard]] bool visits_patches_once() const;
     [[nodiscard]] bool anything_bounces(const Scene& scene) const;
     void move_bodies(Scene& scene, StepReport& report);
     void solve_substeps(Scene& scene, StepReport& report);
@@ -218,6 +219,9 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
         convergence.take_wishes(scene, layout.sweeps());
     }
     sweeper.transfer(&ConstraintKernels::prepare);
+    // Where nothing has to be known of all between them, a patch is solved, moved and relaxed at one visit.
+    const int once = visits_patches_once() ? 1 : 0;
+    if (once != 0) sweeper.list_beside_patches();
     clock.charge(Stage::prepare);
     sweeper.step_lone_figures(figure_steps());
     clock.charge(Stage::figures);
@@ -234,16 +238,25 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
         if (can_replay) layout.context.replay = Replay::last_substep;
         sweeper.solve_touched_trees(exact_rate());
         clock.charge(Stage::warm_start);
-        const int iterations = iterate(&ConstraintKernels::solve, settings.iterations);
+        const int iterations = iterate(&ConstraintKernels::solve, settings.iterations - once) + once;
+        if (once != 0) {
+            sweeper.sweep_across(&ConstraintKernels::solve);
+            sweeper.visit_patches();
+        }
         report.iterations = std::max(report.iterations, iterations);
         report.sweeps += iterations;
         if (is_last) measure_residual(report);
         clock.charge(Stage::solve);
-        sweeper.integrate(runs_on && !is_last ? &BodyKernels::integrate_on
-                                              : &BodyKernels::integrate_positions);
+        if (once != 0) {
+            sweeper.move_beside_patches();
+        } else {
+            sweeper.integrate(runs_on && !is_last ? &BodyKernels::integrate_on
+                                                  : &BodyKernels::integrate_positions);
+        }
         for (int i = 0; projects && i < settings.projections; ++i) sweeper.sweep(&ConstraintKernels::project);
         clock.charge(Stage::integrate_positions);
-        if (soft) report.sweeps += iterate(&ConstraintKernels::relax, settings.relaxations);
+        if (once != 0) sweeper.sweep_across(&ConstraintKernels::relax);
+        if (soft) report.sweeps += once + iterate(&ConstraintKernels::relax, settings.relaxations - once);
         clock.charge(Stage::relax);
     }
     if (anything_bounces(scene)) sweeper.sweep(&ConstraintKernels::restitute);
@@ -369,6 +382,13 @@ FigureUse Solver::Impl::use_of_figures() const
                           settings.drift_correction == DriftCorrection::projection;
     const bool possible = settings.method != Method::direct && !projects;
     return {possible && !tells_blocks_apart, possible && settings.exact_joints};
+}
+
+/// Measures, island by island or of all, want bodies as they are between solving and relaxing; so do trees.
+bool Solver::Impl::visits_patches_once() const
+{
+    return layout.intake.patches.are_wanted() && settings.method == Method::soft_step &&
+           settings.relaxations > 0 && !tells_blocks_apart && layout.figures.touched_trees().empty();
 }
 
 /// Soft steps take a lock's whole error away in one substep, and the speed that this took away again when they relax.

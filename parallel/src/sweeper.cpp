@@ -50,33 +50,99 @@ void Sweeper::integrate(BodyKernels::Move BodyKernels::*kernel)
     }
 }
 
-void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+void Sweeper::run_chunk(const SweepChunk& chunk, ConstraintKernels::Sweep ConstraintKernels::*kernel,
+                        int at_least) const
 {
-    const auto run_chunk = [&](const SweepChunk& chunk) {
-        const ConstraintKernels::Sweep run = chunk.kernels->*kernel;
-        if (run == nullptr) return;
-        if (at_least == every_block) {
-            run(layout_.context, chunk.streams, chunk.begin, chunk.end);
-            return;
-        }
-        const auto runs = [&](std::int32_t block) {
-            return chunk.finished[block] == 0 && (at_least == 0 || chunk.wanted[block] >= at_least);
-        };
-        for_each_run(chunk.begin, chunk.end, runs, [&](std::int32_t begin, std::int32_t end) {
-            run(layout_.context, chunk.streams, begin, end);
-        });
+    const ConstraintKernels::Sweep run = chunk.kernels->*kernel;
+    if (run == nullptr) return;
+    if (at_least == every_block) {
+        run(layout_.context, chunk.streams, chunk.begin, chunk.end);
+        return;
+    }
+    const auto runs = [&](std::int32_t block) {
+        return chunk.finished[block] == 0 && (at_least == 0 || chunk.wanted[block] >= at_least);
     };
+    for_each_run(chunk.begin, chunk.end, runs, [&](std::int32_t begin, std::int32_t end) {
+        run(layout_.context, chunk.streams, begin, end);
+    });
+}
+
+void Sweeper::sweep_across(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+{
     // The overflow first and in order, so that the colours have the last word.
     const SweepLists& sweeps = layout_.sweeps();
-    for (const SweepChunk& chunk : sweeps.of_colour(overflow_colour)) run_chunk(chunk);
+    for (const SweepChunk& chunk : sweeps.of_colour(overflow_colour)) run_chunk(chunk, kernel, at_least);
     for (int colour = 0; colour < parallel_colours; ++colour) {
         const std::span<const SweepChunk> chunks = sweeps.of_colour(colour);
-        runner_.run(static_cast<std::int64_t>(chunks.size()),
-                    [&](std::int64_t i) { run_chunk(chunks[static_cast<std::size_t>(i)]); });
+        runner_.run(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t i) {
+            run_chunk(chunks[static_cast<std::size_t>(i)], kernel, at_least);
+        });
     }
+}
+
+void Sweeper::sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+{
+    const SweepLists& sweeps = layout_.sweeps();
     runner_.run(static_cast<std::int64_t>(sweeps.patches.size()), [&](std::int64_t patch) {
-        for (const SweepChunk& chunk : sweeps.of_patch(patch)) run_chunk(chunk);
+        for (const SweepChunk& chunk : sweeps.of_patch(patch)) run_chunk(chunk, kernel, at_least);
     });
+}
+
+void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+{
+    // Relaxation goes the other way round, so that a patch that was solved last may be moved and relaxed while it is in cache.
+    const bool patches_first = kernel == &ConstraintKernels::relax;
+    if (patches_first) sweep_patches(kernel, at_least);
+    sweep_across(kernel, at_least);
+    if (!patches_first) sweep_patches(kernel, at_least);
+}
+
+void Sweeper::visit_patches()
+{
+    const SweepLists& sweeps = layout_.sweeps();
+    // What was solved a moment ago is at hand.
+    KernelContext at_hand = layout_.context;
+    at_hand.bodies_are_far = false;
+    runner_.run(static_cast<std::int64_t>(sweeps.patches.size()), [&](std::int64_t patch) {
+        for (const SweepChunk& chunk : sweeps.of_patch(patch))
+            chunk.kernels->solve(layout_.context, chunk.streams, chunk.begin, chunk.end);
+        for (int kind = 0; kind < body_kind_count; ++kind) {
+            const auto move = layout_.kernels().bodies[kind].integrate_listed;
+            if (move == nullptr) continue;
+            const std::span<const BodyRow> bodies = layout_.intake.patches.bodies_of(
+                static_cast<std::size_t>(patch), static_cast<BodyKind>(kind));
+            move(at_hand, bodies.data(), static_cast<std::int32_t>(bodies.size()));
+        }
+        for (const SweepChunk& chunk : sweeps.of_patch(patch))
+            chunk.kernels->relax(at_hand, chunk.streams, chunk.begin, chunk.end);
+    });
+}
+
+void Sweeper::list_beside_patches()
+{
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        if (layout_.kernels().bodies[kind].integrate_listed == nullptr) continue;
+        runner_.run(static_cast<std::int64_t>(layout_.rows(kind).size()),
+                    [&](std::int64_t i) { layout_.list_beside_patches(static_cast<BodyKind>(kind), i); });
+    }
+}
+
+void Sweeper::move_beside_patches()
+{
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        const BodyKernels& kernels = layout_.kernels().bodies[kind];
+        const auto& ranges = layout_.rows(kind);
+        runner_.run(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
+            const RowRange& range = ranges[static_cast<std::size_t>(i)];
+            if (kernels.integrate_listed == nullptr) {
+                kernels.integrate_positions(layout_.context, range.begin, range.end);
+                return;
+            }
+            const std::span<const BodyRow> beside = layout_.beside_patches(static_cast<BodyKind>(kind), i);
+            kernels.integrate_listed(layout_.context, beside.data(),
+                                     static_cast<std::int32_t>(beside.size()));
+        });
+    }
 }
 
 void Sweeper::step_lone_figures(const FigureSteps& steps)

@@ -25,6 +25,14 @@ class Sweeper {
     static constexpr int every_block = -1;
     /// Runs a kernel over every block; or over those that are not finished and want at least so many sweeps.
     void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least = every_block);
+    /// Runs a kernel over every block that is in no patch.
+    void sweep_across(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least = every_block);
+    /// Solves each patch, moves its bodies and relaxes it, at one visit. Between sweep_across(solve) and
+    /// move_beside_patches() with sweep_across(relax) it makes the same bits as the three stages one by one.
+    void visit_patches();
+    /// x += h v of all bodies that no patch lists, which are looked for once a step.
+    void list_beside_patches();
+    void move_beside_patches();
     /// All substeps of the figures that nothing else touches.
     void step_lone_figures(const FigureSteps& steps);
     /// What is left to do for figures that something touches: their trees, where they have any.
@@ -39,6 +47,9 @@ class Sweeper {
     Layout& layout_;
     std::vector<FigureWorkspace> workspaces_;  ///< one a worker
 
+    void run_chunk(const SweepChunk& chunk, ConstraintKernels::Sweep ConstraintKernels::*kernel,
+                   int at_least) const;
+    void sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
     template <class Work>
     void for_each_touched_tree(const Work& work);
 };

@@ -93,7 +93,7 @@ void for_each_even_piece(std::int32_t begin, std::int32_t end, std::int32_t most
 struct PatchChunks {
     std::int32_t first, last;
 };
-/// What a sweep runs over: chunks of each colour, of the overflow, and last those of the patches.
+/// What a sweep runs over: chunks of each colour, of the overflow, and those of the patches.
 struct SweepLists {
     static constexpr int patch_list = parallel_colours + 1;
     std::array<std::vector<SweepChunk>, patch_list + 1> lists;
@@ -119,12 +119,8 @@ struct SweepLists {
         lists[patch_list].push_back(chunk);
         colours |= 1U << colour;
     }
-    /// What was added to patches since there were `first_chunk` chunks is one, if it is anything.
-    void close_patch(std::int32_t first_chunk)
-    {
-        const std::int32_t last_chunk = patch_chunks();
-        if (first_chunk < last_chunk) patches.push_back({first_chunk, last_chunk});
-    }
+    /// What was added to patches since there were `first_chunk` chunks is the next one, though it be nothing.
+    void close_patch(std::int32_t first_chunk) { patches.push_back({first_chunk, patch_chunks()}); }
     [[nodiscard]] std::int32_t patch_chunks() const
     {
         return static_cast<std::int32_t>(lists[patch_list].size());

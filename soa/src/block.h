@@ -138,6 +138,8 @@ struct BodyKernels {
     Move integrate_positions = nullptr;
     Move integrate_on =
         nullptr;  ///< positions, and then the velocities of the next substep: one pass for two
+    /// Positions of `count` bodies of this kind, wherever they lie. Null for fixed bodies.
+    void (*integrate_listed)(const KernelContext&, const BodyRow* rows, std::int32_t count) = nullptr;
     /// BodyStore::commit of sixteen rows from `first` on; false, and nothing done, unless each of them is a body that
     /// can move and is finite. Null for fixed bodies.
     bool (*commit)(const BodyArrays&, std::int32_t first) = nullptr;

@@ -23,6 +23,7 @@ void enter_body(BodyKernels& kernels)
 {
     if constexpr (kind != BodyKind::fixed) {
         kernels.integrate_velocities = integrate_velocities<kind>;
+        kernels.integrate_listed = integrate_listed<kind>;
         kernels.commit = commit<kind>;
     }
     kernels.integrate_positions = integrate_positions<kind, false>;

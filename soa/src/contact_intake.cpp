@@ -153,14 +153,15 @@ void ContactIntake::trace(ContactCache& cache, std::int64_t part)
     }
 }
 
-void ContactIntake::mark_insides(std::int64_t patch)
+void ContactIntake::fill_patch(std::int64_t patch)
 {
     const auto begin = static_cast<std::size_t>(patch) * Patches::contacts_a_patch;
     const std::size_t end = std::min(begin + Patches::contacts_a_patch, count_);
+    Patches::Roll roll(patches, static_cast<std::size_t>(patch));
     for (std::size_t i = begin; i < end; ++i) {
         Placement& placement = placements[i];
-        placement.in_patch = placement.colour < overflow_colour &&
-                             patches.holds(placement.a, placement.b, static_cast<std::uint32_t>(i));
+        const bool holds_a = roll.holds(placement.a), holds_b = roll.holds(placement.b);
+        placement.in_patch = placement.colour < overflow_colour && holds_a && holds_b;
     }
 }
 

@@ -34,8 +34,8 @@ class ContactIntake {
         return {};
     }
 
-    /// When all have colours: marks those of a patch's stretch of the list that are inside it.
-    void mark_insides(std::int64_t patch);
+    /// When all have colours: marks those of a patch's stretch of the list that are inside it, and lists its bodies.
+    void fill_patch(std::int64_t patch);
 
     /// Whether one of the contacts taken in gives anything back.
     [[nodiscard]] bool bounces() const { return bounces_.load(std::memory_order_relaxed); }

@@ -61,7 +61,7 @@ inline void accelerate(const KernelContext& context, const BodyArrays& arrays, c
     accelerate(context.step, a, t, body);
 }
 
-/// Where the consecutive rows first ... first + width - 1 begin; from the count on, the null row.
+/// Where the rows of a bundle begin, consecutive or listed; from the count on, the null row.
 template <BodyKind kind>
 struct RowIndex {
     std::int32_t offsets[Lanes_width];
@@ -76,6 +76,12 @@ struct RowIndex {
         for (int lane = 0; lane < Lanes_width; ++lane)
             offsets[lane] = lane < count ? (first + lane) * offsets_a_row(kind) : 0;
     }
+    RowIndex(const BodyRow* rows, int how_many) : count(how_many)
+    {
+        for (int lane = 0; lane < Lanes_width; ++lane)
+            offsets[lane] =
+                lane < count ? static_cast<std::int32_t>(rows[lane].row()) * offsets_a_row(kind) : 0;
+    }
 };
 
 /// Calls work(where they begin) for all rows from `begin` to `end` - 1, a bundle at a time.
@@ -85,6 +91,15 @@ template <BodyKind kind, class Work>
     std::int32_t first = begin;
     for (; end - first >= Lanes_width; first += Lanes_width) work(RowIndex<kind>(first));
     if (first < end) work(RowIndex<kind>(first, end - first));
+}
+/// The same for listed rows.
+template <BodyKind kind, class Work>
+[[gnu::always_inline]] inline void for_each_rows(const BodyRow* rows, std::int32_t count, const Work& work)
+{
+    std::int32_t first = 0;
+    for (; count - first >= Lanes_width; first += Lanes_width)
+        work(RowIndex<kind>(rows + first, Lanes_width));
+    if (first < count) work(RowIndex<kind>(rows + first, count - first));
 }
 
 /// Calls change(component, of `from`) for each component of velocity.
@@ -151,25 +166,36 @@ void advance(Body<kind>& body, const Lanes& h)
 
 /// `runs_on`: and the velocities of the next substep.
 template <BodyKind kind, bool runs_on>
-void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
+[[gnu::always_inline]] inline void move_on(const KernelContext& context, const RowIndex<kind>& index)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
-    const Lanes h(context.step.substep);
-    for_each_rows<kind>(begin, end, [&](const RowIndex<kind>& index) {
-        Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
-        advance(body, h);
-        turn_inertia(arrays, index.offsets, body);
-        if constexpr (kind == BodyKind::fixed) {
-            const Quat<Lanes>& q = body.delta_rotation;
-            store_quads(arrays.delta, offset_floats, index.offsets,
-                        {body.delta.x, body.delta.y, body.delta.z, Lanes(0)}, index.count);
-            store_quads(arrays.delta + 4, offset_floats, index.offsets, {q.x, q.y, q.z, q.w}, index.count);
-        } else {
-            store_delta(arrays, index.offsets, body, index.count);
-            if constexpr (runs_on) {
-                change_velocity(context, arrays, index, body);
-                store_velocity(arrays, index.offsets, body, index.count);
-            }
+    Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
+    advance(body, Lanes(context.step.substep));
+    turn_inertia(arrays, index.offsets, body);
+    if constexpr (kind == BodyKind::fixed) {
+        const Quat<Lanes>& q = body.delta_rotation;
+        store_quads(arrays.delta, offset_floats, index.offsets,
+                    {body.delta.x, body.delta.y, body.delta.z, Lanes(0)}, index.count);
+        store_quads(arrays.delta + 4, offset_floats, index.offsets, {q.x, q.y, q.z, q.w}, index.count);
+    } else {
+        store_delta(arrays, index.offsets, body, index.count);
+        if constexpr (runs_on) {
+            change_velocity(context, arrays, index, body);
+            store_velocity(arrays, index.offsets, body, index.count);
         }
-    });
+    }
+}
+
+template <BodyKind kind, bool runs_on>
+void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
+{
+    for_each_rows<kind>(begin, end,
+                        [&](const RowIndex<kind>& index) { move_on<kind, runs_on>(context, index); });
+}
+
+template <BodyKind kind>
+void integrate_listed(const KernelContext& context, const BodyRow* rows, std::int32_t count)
+{
+    for_each_rows<kind>(rows, count,
+                        [&](const RowIndex<kind>& index) { move_on<kind, false>(context, index); });
 }

@@ -121,7 +121,7 @@ void Layout::colour_contacts(const BodyStore& bodies, ContactList& list)
 
 void Layout::count_contacts(std::int64_t chunk)
 {
-    if (intake.patches.are_wanted()) intake.mark_insides(chunk);
+    if (intake.patches.are_wanted()) intake.fill_patch(chunk);
     contacts.count(chunk);
 }
 
@@ -145,6 +145,9 @@ void Layout::list_rows(const Scene& scene)
         const bool has_lone = static_cast<BodyKind>(kind) == BodyKind::rigid && !figures.lone().empty();
         ranges.clear();
         if (size == 1) continue;  // the null row alone
+        if (intake.patches.are_wanted())
+            beside_[static_cast<std::size_t>(kind)].resize(
+                scene.bodies().rows(static_cast<BodyKind>(kind)).size());
         const auto add = [&](std::int32_t first, std::int32_t last) {
             for_each_even_piece<block_lanes>(first, last, rows_per_range,
                                              [&](std::int32_t begin, std::int32_t end) {
@@ -159,6 +162,25 @@ void Layout::list_rows(const Scene& scene)
             add(0, size);
         }
     }
+}
+
+void Layout::list_beside_patches(BodyKind kind, std::int64_t i)
+{
+    RowRange& range = rows_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
+    BodyRow* const first = beside_[static_cast<std::size_t>(kind)].data() + range.begin;
+    BodyRow* last = first;
+    for (std::int32_t row = range.begin; row < range.end; ++row) {
+        *last = BodyRow(kind, static_cast<std::uint32_t>(row));
+        last += intake.patches.lists(*last) ? 0 : 1;
+    }
+    range.beside = static_cast<std::int32_t>(last - first);
+}
+
+std::span<const BodyRow> Layout::beside_patches(BodyKind kind, std::int64_t i) const
+{
+    const RowRange& range = rows(static_cast<int>(kind))[static_cast<std::size_t>(i)];
+    return {beside_[static_cast<std::size_t>(kind)].data() + range.begin,
+            static_cast<std::size_t>(range.beside)};
 }
 
 void Layout::point_at_data(Scene& scene, std::span<const Contact> list)

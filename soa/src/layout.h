@@ -18,6 +18,7 @@ namespace motley {
 /// Rows of bodies begin ... end - 1: the unit of work of an integration.
 struct RowRange {
     std::int32_t begin, end;
+    std::int32_t beside = 0;  ///< how many of them no patch lists
 };
 
 /// How joints may be solved in this step.
@@ -58,6 +59,10 @@ class Layout {
     {
         return rows_[static_cast<std::size_t>(kind)];
     }
+    /// Finds those of range `i` of a kind that no patch lists...
+    void list_beside_patches(BodyKind kind, std::int64_t i);
+    /// ...which are then here.
+    [[nodiscard]] std::span<const BodyRow> beside_patches(BodyKind kind, std::int64_t i) const;
     [[nodiscard]] const TransferList& transfers() const { return transfers_; }
     [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
     [[nodiscard]] std::span<const ConstraintData> data() const { return data_; }
@@ -81,6 +86,7 @@ class Layout {
     FigureUse use_;
     std::vector<Figures::Candidate> candidates_;
     std::array<std::vector<RowRange>, body_kind_count> rows_;
+    std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< of each range, where the range begins
     ColourMasks joint_masks_, masks_;
     SweepLists sweeps_;
     TransferList transfers_;

@@ -44,8 +44,37 @@ struct Counts {
     std::size_t inside = 0, across = 0;
 };
 
+/// Every body that a contact touches and that can move is listed by one patch, which is that of the contacts inside it.
+void check_bodies(const Layout& layout, const Scene& scene, const std::map<Mover, std::size_t>& patch_of)
+{
+    const Patches& patches = layout.intake.patches;
+    std::map<Mover, std::size_t> listed;
+    for (std::size_t patch = 0; patch < layout.sweeps().patches.size(); ++patch) {
+        for (const BodyKind kind : {BodyKind::particle, BodyKind::planar, BodyKind::rigid}) {
+            for (const BodyRow body : patches.bodies_of(patch, kind)) {
+                EXPECT_EQ(body.kind(), kind);
+                EXPECT_TRUE(patches.lists(body));
+                EXPECT_TRUE(listed.try_emplace(Mover{kind, offset_of(body)}, patch).second);
+            }
+        }
+    }
+    for (const auto& [mover, patch] : patch_of) EXPECT_EQ(listed.at(mover), patch);
+    std::set<Mover> touched;
+    for (const Placement& placement : layout.contact_placements()) {
+        for (const BodyRow body : {placement.a, placement.b}) {
+            if (body.kind() != BodyKind::fixed) touched.insert(Mover{body.kind(), offset_of(body)});
+        }
+    }
+    EXPECT_EQ(touched.size(), listed.size());
+    for (const BodyKind kind : {BodyKind::planar, BodyKind::rigid}) {
+        for (std::uint32_t row = 1; row < scene.bodies().rows(kind).size(); ++row)
+            EXPECT_EQ(patches.lists(BodyRow(kind, row)),
+                      touched.contains(Mover{kind, offset_of(BodyRow(kind, row))}));
+    }
+}
+
 /// Every contact in one lane; no moving body twice in a chunk, which is of one colour, nor in two patches.
-Counts check(const Layout& layout, std::size_t contacts)
+Counts check(const Layout& layout, const Scene& scene, std::size_t contacts)
 {
     Counts counts;
     std::set<std::int32_t> seen;
@@ -74,6 +103,7 @@ Counts check(const Layout& layout, std::size_t contacts)
         }
     }
     EXPECT_EQ(seen.size(), contacts);
+    if (!sweeps.patches.empty()) check_bodies(layout, scene, patch_of);
     std::size_t transferred = 0;
     for (const TransferTile::Part& part : layout.transfers().parts) {
         for (std::int32_t block = part.begin; block < part.end; ++block)
@@ -90,7 +120,7 @@ TEST(Patches, HoldMostContactsOfAListInSpaceAndShareNoMovingBody)
     // Coloured anew, then with the colours of the step before.
     for (int step = 0; step < 2; ++step) {
         testing::lay_out(layout, crowd.scene, crowd.contacts());
-        const Counts counts = check(layout, crowd.pairs.size());
+        const Counts counts = check(layout, crowd.scene, crowd.pairs.size());
         EXPECT_GT(counts.inside, crowd.pairs.size() * 3 / 4);
         EXPECT_GT(counts.across, 0U);
     }
@@ -102,7 +132,24 @@ TEST(Patches, OfAListInNoOrderAreStillApart)
     crowd.shuffle();
     Layout layout(kernel_table(Isa::scalar));
     testing::lay_out(layout, crowd.scene, crowd.contacts());
-    EXPECT_GT(check(layout, crowd.pairs.size()).across, crowd.pairs.size() * 3 / 4);
+    EXPECT_GT(check(layout, crowd.scene, crowd.pairs.size()).across, crowd.pairs.size() * 3 / 4);
+}
+
+TEST(Patches, LeaveAloneWhatNoContactTouches)
+{
+    LatticeCrowd crowd;
+    Layout layout(kernel_table(Isa::scalar));
+    testing::lay_out(layout, crowd.scene, crowd.contacts());
+    // In the next list the last rows of people touch nobody.
+    crowd.pairs.resize(Patches::from_contacts + 1000);
+    testing::lay_out(layout, crowd.scene, crowd.contacts());
+    check(layout, crowd.scene, crowd.pairs.size());
+    std::size_t beside = 0;
+    for (const BodyId body : crowd.bodies) {
+        const BodyRow row = crowd.scene.bodies().row_of(body);
+        beside += row.kind() != BodyKind::fixed && !layout.intake.patches.lists(row) ? 1 : 0;
+    }
+    EXPECT_GT(beside, 1000U);
 }
 
 TEST(Patches, AreNotMadeOfSmallListsNorLeftOverFromLargeOnes)
@@ -114,7 +161,7 @@ TEST(Patches, AreNotMadeOfSmallListsNorLeftOverFromLargeOnes)
     crowd.pairs.resize(Patches::from_contacts - 1);
     testing::lay_out(layout, crowd.scene, crowd.contacts());
     EXPECT_TRUE(layout.sweeps().patches.empty());
-    EXPECT_EQ(check(layout, crowd.pairs.size()).across, crowd.pairs.size());
+    EXPECT_EQ(check(layout, crowd.scene, crowd.pairs.size()).across, crowd.pairs.size());
 }
 
 /// Claims carry the number of their list, which begins again after some thousands.
@@ -126,17 +173,21 @@ TEST(Patches, StayTheSameWhenListsAreCountedAnew)
     const auto insides = [&] {
         std::size_t inside = 0;
         patches.begin(bodies, crowd.pairs.size());
-        for (std::uint32_t pass = 0; pass < 2; ++pass) {
-            for (std::uint32_t i = 0; i < crowd.pairs.size(); ++i) {
-                const BodyRow a = bodies.row_of(crowd.bodies[static_cast<std::size_t>(crowd.pairs[i].first)]);
-                const BodyRow b =
-                    bodies.row_of(crowd.bodies[static_cast<std::size_t>(crowd.pairs[i].second)]);
-                if (pass == 0) {
-                    patches.claim(a, i);
-                    patches.claim(b, i);
-                } else {
-                    inside += patches.holds(a, b, i) ? 1 : 0;
-                }
+        const auto count = static_cast<std::uint32_t>(crowd.pairs.size());
+        const auto row_of = [&](int body) {
+            return bodies.row_of(crowd.bodies[static_cast<std::size_t>(body)]);
+        };
+        for (std::uint32_t i = 0; i < count; ++i) {
+            patches.claim(row_of(crowd.pairs[i].first), i);
+            patches.claim(row_of(crowd.pairs[i].second), i);
+        }
+        for (std::uint32_t i = 0; i < count;) {
+            const std::size_t patch = i / Patches::contacts_a_patch;
+            Patches::Roll roll(patches, patch);
+            for (; i < count && i / Patches::contacts_a_patch == patch; ++i) {
+                const bool holds_a = roll.holds(row_of(crowd.pairs[i].first));
+                const bool holds_b = roll.holds(row_of(crowd.pairs[i].second));
+                inside += holds_a && holds_b ? 1 : 0;
             }
         }
         return inside;

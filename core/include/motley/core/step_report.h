@@ -17,7 +17,7 @@ enum class Stage {
     figures,
     integrate_velocities,
     warm_start,
-    solve,
+    solve,  ///< and, of more than 65,535 contacts, what patches move and relax at the same visit
     integrate_positions,
     relax,
     restitution,
