@@ -218,7 +218,7 @@ void Figures::find_lone_blocks(std::span<const Placement> contacts, bool may_be_
     for (const Placement& contact : contacts) {
         for (const BodyRow body : {contact.a, contact.b}) {
             if (!is_rigid(body)) continue;
-            const std::int32_t block = block_of_row_[body.row()];
+            const std::int32_t block = block_of(body.row());
             if (block >= 0) alone_[static_cast<std::size_t>(block)] = 0;
         }
     }

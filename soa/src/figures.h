@@ -39,7 +39,7 @@ class Figures {
     /// Whether a rigid row belongs to a block that is alone.
     [[nodiscard]] bool is_alone(std::size_t row) const
     {
-        const std::int32_t block = block_of_row_[row];
+        const std::int32_t block = block_of(row);
         return block >= 0 && alone_[static_cast<std::size_t>(block)] != 0;
     }
     /// Joints of blocks that are alone.
@@ -52,7 +52,12 @@ class Figures {
     std::vector<std::vector<std::uint8_t*>> skipped_;  ///< of each block and joint: BatchSet::Block::skipped
     AlignedVector<std::int32_t> offsets_;              ///< of all blocks in line
     AlignedVector<float> memory_;                      ///< likewise
-    std::vector<std::int32_t> block_of_row_;
+    std::vector<std::int32_t> block_of_row_;  ///< as long as the rows were when figures were looked for
+    /// Negative for a body of no figure; those that came since have no joints.
+    [[nodiscard]] std::int32_t block_of(std::size_t row) const
+    {
+        return row < block_of_row_.size() ? block_of_row_[row] : -1;
+    }
     std::vector<std::uint8_t> alone_;
     std::vector<std::int32_t> lone_, touched_trees_;
     std::int64_t lone_joints_ = 0;
