@@ -46,8 +46,9 @@ void Layout::begin(Scene& scene, std::size_t contact_count, const FigureUse& use
         place_joints(scene);
         if (!scene.joints().version) scene.joints().version = std::make_shared<const char>('\0');
         joint_version_ = scene.joints().version;
+        cut_.reset();
     }
-    masks_.copy(joint_masks_, scene.bodies());
+    if (contact_count > 0) masks_.copy(joint_masks_, scene.bodies());
     if (uncoloured_.size() < contact_count) uncoloured_.resize(with_room_to_grow(contact_count));
     contacts.begin({intake.placements.data(), contact_count}, intake.patches.are_wanted());
 }
@@ -127,6 +128,13 @@ void Layout::count_contacts(std::int64_t chunk)
 
 void Layout::cut(Scene& scene, std::span<const Contact> list, bool tells_apart)
 {
+    point_at_data(scene, list);
+    // Joints alone, the same as in the step before, are cut already.
+    Cut wanted{{}, use_.in_lockstep, tells_apart};
+    for (int kind = 0; kind < body_kind_count; ++kind)
+        wanted.rows[static_cast<std::size_t>(kind)] = scene.bodies().rows(static_cast<BodyKind>(kind)).size();
+    if (contacts.is_empty() && cut_ == wanted) return;
+    cut_ = contacts.is_empty() ? std::optional(wanted) : std::nullopt;
     sweeps_.clear();
     transfers_.parts.clear();
     transfers_.tiles.clear();
@@ -134,7 +142,6 @@ void Layout::cut(Scene& scene, std::span<const Contact> list, bool tells_apart)
     list_rows(scene);
     joints_.cut(kernels_, tells_apart, sweeps_, transfers_);
     contacts.cut(kernels_, tells_apart, sweeps_, transfers_);
-    point_at_data(scene, list);
 }
 
 void Layout::list_rows(const Scene& scene)

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -84,6 +85,13 @@ class Layout {
     std::vector<std::uint32_t> uncoloured_;
     std::shared_ptr<const char> joint_version_;
     FigureUse use_;
+    /// What the cuts of joints depend on beside the joints, where no contact takes part.
+    struct Cut {
+        std::array<std::uint32_t, body_kind_count> rows;
+        bool in_lockstep, tells_apart;
+        friend bool operator==(const Cut&, const Cut&) = default;
+    };
+    std::optional<Cut> cut_;  ///< what the lists still are of
     std::vector<Figures::Candidate> candidates_;
     std::array<std::vector<RowRange>, body_kind_count> rows_;
     std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< of each range, where the range begins
