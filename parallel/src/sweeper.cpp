@@ -50,32 +50,41 @@ void Sweeper::integrate(BodyKernels::Move BodyKernels::*kernel)
     }
 }
 
-void Sweeper::run_chunk(const SweepChunk& chunk, ConstraintKernels::Sweep ConstraintKernels::*kernel,
-                        int at_least) const
+namespace {
+
+void run_chunk(const KernelContext& context, const SweepChunk& chunk,
+               ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
     const ConstraintKernels::Sweep run = chunk.kernels->*kernel;
     if (run == nullptr) return;
-    if (at_least == every_block) {
-        run(layout_.context, chunk.streams, chunk.begin, chunk.end);
+    if (at_least == Sweeper::every_block) {
+        run(context, chunk.streams, chunk.begin, chunk.end);
         return;
     }
     const auto runs = [&](std::int32_t block) {
         return chunk.finished[block] == 0 && (at_least == 0 || chunk.wanted[block] >= at_least);
     };
-    for_each_run(chunk.begin, chunk.end, runs, [&](std::int32_t begin, std::int32_t end) {
-        run(layout_.context, chunk.streams, begin, end);
-    });
+    for_each_run(chunk.begin, chunk.end, runs,
+                 [&](std::int32_t begin, std::int32_t end) { run(context, chunk.streams, begin, end); });
 }
+
+void run_chunks(const KernelContext& context, std::span<const SweepChunk> chunks,
+                ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+{
+    for (const SweepChunk& chunk : chunks) run_chunk(context, chunk, kernel, at_least);
+}
+
+}  // namespace
 
 void Sweeper::sweep_across(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
     // The overflow first and in order, so that the colours have the last word.
     const SweepLists& sweeps = layout_.sweeps();
-    for (const SweepChunk& chunk : sweeps.of_colour(overflow_colour)) run_chunk(chunk, kernel, at_least);
+    run_chunks(layout_.context, sweeps.of_colour(overflow_colour), kernel, at_least);
     for (int colour = 0; colour < parallel_colours; ++colour) {
         const std::span<const SweepChunk> chunks = sweeps.of_colour(colour);
         runner_.run(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t i) {
-            run_chunk(chunks[static_cast<std::size_t>(i)], kernel, at_least);
+            run_chunk(layout_.context, chunks[static_cast<std::size_t>(i)], kernel, at_least);
         });
     }
 }
@@ -84,7 +93,7 @@ void Sweeper::sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel,
 {
     const SweepLists& sweeps = layout_.sweeps();
     runner_.run(static_cast<std::int64_t>(sweeps.patches.size()), [&](std::int64_t patch) {
-        for (const SweepChunk& chunk : sweeps.of_patch(patch)) run_chunk(chunk, kernel, at_least);
+        run_chunks(layout_.context, sweeps.of_patch(patch), kernel, at_least);
     });
 }
 
@@ -104,8 +113,8 @@ void Sweeper::visit_patches()
     KernelContext at_hand = layout_.context;
     at_hand.bodies_are_far = false;
     runner_.run(static_cast<std::int64_t>(sweeps.patches.size()), [&](std::int64_t patch) {
-        for (const SweepChunk& chunk : sweeps.of_patch(patch))
-            chunk.kernels->solve(layout_.context, chunk.streams, chunk.begin, chunk.end);
+        const std::span<const SweepChunk> chunks = sweeps.of_patch(patch);
+        run_chunks(layout_.context, chunks, &ConstraintKernels::solve, every_block);
         for (int kind = 0; kind < body_kind_count; ++kind) {
             const auto move = layout_.kernels().bodies[kind].integrate_listed;
             if (move == nullptr) continue;
@@ -113,8 +122,7 @@ void Sweeper::visit_patches()
                 static_cast<std::size_t>(patch), static_cast<BodyKind>(kind));
             move(at_hand, bodies.data(), static_cast<std::int32_t>(bodies.size()));
         }
-        for (const SweepChunk& chunk : sweeps.of_patch(patch))
-            chunk.kernels->relax(at_hand, chunk.streams, chunk.begin, chunk.end);
+        run_chunks(at_hand, chunks, &ConstraintKernels::relax, every_block);
     });
 }
 

@@ -47,8 +47,6 @@ class Sweeper {
     Layout& layout_;
     std::vector<FigureWorkspace> workspaces_;  ///< one a worker
 
-    void run_chunk(const SweepChunk& chunk, ConstraintKernels::Sweep ConstraintKernels::*kernel,
-                   int at_least) const;
     void sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
     template <class Work>
     void for_each_touched_tree(const Work& work);

@@ -153,8 +153,7 @@ void Layout::list_rows(const Scene& scene)
         ranges.clear();
         if (size == 1) continue;  // the null row alone
         if (intake.patches.are_wanted())
-            beside_[static_cast<std::size_t>(kind)].resize(
-                scene.bodies().rows(static_cast<BodyKind>(kind)).size());
+            beside_[static_cast<std::size_t>(kind)].resize(static_cast<std::size_t>(size));
         const auto add = [&](std::int32_t first, std::int32_t last) {
             for_each_even_piece<block_lanes>(first, last, rows_per_range,
                                              [&](std::int32_t begin, std::int32_t end) {
