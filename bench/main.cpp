@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <map>
@@ -16,6 +17,7 @@
 #include "scale.h"
 #include "soak.h"
 #include "sweep.h"
+#include "threads.h"
 
 namespace {
 
@@ -244,6 +246,33 @@ struct SweepCommand {
     }
 };
 
+/// `motley threads`.
+struct ThreadsCommand {
+    ThreadsOptions options;
+    SolverCommand dials;
+
+    void declare(CLI::App& app)
+    {
+        dials.solver = options.solver;
+        dials.declare(app);
+        app.add_option("scenes", options.scenes, "of `motley list`; default: grid chains ragdolls crowd");
+        app.add_option("--agents", options.agents, "people or bodies; default: the scene's")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--turns", options.turns, "of each copy")
+            ->check(CLI::Range(1, 100000))
+            ->capture_default_str();
+    }
+    int operator()()
+    {
+        if (!dials.pick_isa()) return 2;
+        options.settings = dials.settings;
+        options.solver = dials.solver;
+        const std::vector<ThreadsResult> results = measure_threads(options);
+        fmt::print("{}", table_of(results, options.solver.threads));
+        return std::ranges::all_of(results, &ThreadsResult::same_bits) ? 0 : 1;
+    }
+};
+
 /// `motley soak`.
 struct SoakCommand {
     SoakOptions options;
@@ -315,6 +344,10 @@ int main(int count, char** arguments)
     scale_app->add_option("--threads", scale_options.solver.threads, "threads, the caller's counted")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
+    ThreadsCommand threads_command;
+    CLI::App* threads_app = app.add_subcommand(
+        "threads", "what threads are worth: copies of a scene, on one thread and on several, in turn");
+    threads_command.declare(*threads_app);
     CLI::App* compare_app =
         app.add_subcommand("compare", "the same, with every peer that is installed, in one run");
     compare_command.declare(*compare_app);
@@ -363,6 +396,7 @@ int main(int count, char** arguments)
             fmt::print("{}", table_of(measure_scale(scale_options)));
             return 0;
         }
+        if (*threads_app) return threads_command();
         if (*compare_app) return compare_command();
         if (*report_app) write_report(report);
         if (*demo_app) return run_demo(demo);
