@@ -84,6 +84,7 @@ class Crowd {
     [[nodiscard]] Vec2<double> nearest_point(const Wall& wall, std::size_t agent) const;
     [[nodiscard]] bool is_near(const Wall& wall, std::size_t agent) const;
     void add_pairs_across_the_seam();
+    void prefetch(Pair pair) const;
     void write_contact(Contact& contact, Pair& pair) const;
     void write_wall_contact(Contact& contact, Pair touch, BodyId ground) const;
 };

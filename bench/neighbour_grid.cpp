@@ -11,7 +11,7 @@ namespace {
 
 /// A grid never has more cells than this: a lone walker far away must not cost memory, only some tests.
 constexpr double most_cells = 1 << 24;
-constexpr std::int64_t discs_per_chunk = 8192;
+constexpr std::int64_t discs_per_chunk = 1024;
 /// Bands of rows that discs are sorted into first: few enough to write to all at once.
 constexpr std::int32_t most_bands = 128;
 

@@ -8,7 +8,7 @@
 namespace motley {
 namespace {
 
-constexpr std::size_t contacts_per_part = 4096;
+constexpr std::size_t contacts_per_part = 2048;
 /// How far a walk that has lost its way looks to either side, contacts.
 constexpr std::uint32_t sight = 1024;
 
@@ -58,11 +58,14 @@ ContactCache::Walk::~Walk()
                std::memory_order_relaxed);
 }
 
+/// The nearest first: most often a few contacts have come or gone since the part before.
 std::uint32_t ContactCache::Walk::look_around(std::uint64_t key) const
 {
-    const auto end = std::min(static_cast<std::uint32_t>(list_.count), cursor_ + sight);
-    for (std::uint32_t i = cursor_ - std::min(cursor_, sight); i < end; ++i) {
-        if (list_.entries[i].key == key) return i;
+    const std::uint32_t ahead = std::min(static_cast<std::uint32_t>(list_.count) - cursor_, sight);
+    const std::uint32_t behind = std::min(cursor_, sight);
+    for (std::uint32_t i = 0; i < sight; ++i) {
+        if (i < ahead && list_.entries[cursor_ + i].key == key) return cursor_ + i;
+        if (i < behind && list_.entries[cursor_ - 1 - i].key == key) return cursor_ - 1 - i;
     }
     return none;
 }

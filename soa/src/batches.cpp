@@ -2,6 +2,9 @@
 #include "batches.h"
 
 #include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <utility>
 
 #include "motley/core/growth.h"
 #include "patches.h"
@@ -15,8 +18,8 @@ constexpr std::int32_t blocks_per_chunk = 16;
 constexpr std::int32_t blocks_per_tile = 8;
 /// Overflow blocks that stay open to newcomers: enough to fill lanes from a few hubs, few enough to search.
 constexpr std::int32_t open_overflow_blocks = 8;
-/// Constraints a chunk when they are sorted.
-constexpr std::size_t placements_per_chunk = Patches::contacts_a_patch;
+/// Constraints a chunk when they are sorted, at least: a chunk for each of many threads even of a small crowd.
+constexpr std::size_t placements_per_chunk = 1024;
 
 template <class T>
 void grow(AlignedVector<T>& stream, std::size_t size)
@@ -70,26 +73,29 @@ bool BatchSet::Pool::holds(std::size_t block, BodyRow a, BodyRow b) const
 BatchSet::BatchSet(int first_type, int last_type)
     : first_class_(first_type * body_kind_count * body_kind_count),
       pools_(static_cast<std::size_t>((last_type - first_type) * body_kind_count * body_kind_count)),
-      totals_(keys())
+      occurs_(pools_.size())
 {
     used_.reserve(pools_.size());
 }
 
 std::span<const Placement> BatchSet::placements_of(std::int64_t chunk) const
 {
-    const std::size_t first = static_cast<std::size_t>(chunk) * placements_per_chunk;
-    return placements_.subspan(first, std::min(placements_per_chunk, placements_.size() - first));
+    const std::size_t first = static_cast<std::size_t>(chunk) * per_chunk_;
+    return placements_.subspan(first, std::min(per_chunk_, placements_.size() - first));
 }
 
 std::int64_t BatchSet::chunk_count() const
 {
-    return static_cast<std::int64_t>((placements_.size() + placements_per_chunk - 1) / placements_per_chunk);
+    return static_cast<std::int64_t>((placements_.size() + per_chunk_ - 1) / per_chunk_);
 }
 
 void BatchSet::begin(std::span<const Placement> placements, bool has_patches)
 {
     placements_ = placements;
     has_patches_ = has_patches;
+    // A chunk's tables must not cost more than the chunk.
+    per_chunk_ = has_patches ? Patches::contacts_a_patch : std::max(placements_per_chunk, keys());
+    std::fill(occurs_.begin(), occurs_.end(), std::uint8_t{0});
     const std::size_t wanted = static_cast<std::size_t>(chunk_count()) * keys();
     const auto make_room = [&](std::vector<std::int32_t>& table) {
         if (table.size() < wanted) table.resize(with_room_to_grow(wanted));
@@ -112,63 +118,77 @@ void BatchSet::count(std::int64_t chunk)
     for (const Placement& placement : placements_of(chunk)) {
         if (!placement.is_left_out()) ++(placement.in_patch ? inside : across)[key_of(placement)];
     }
+    const auto counts = [](std::span<const std::int32_t> table, std::size_t pool) {
+        const auto of_pool = table.subspan(pool * colours, colours);
+        return std::accumulate(of_pool.begin(), of_pool.end(), 0) > 0;
+    };
+    for (std::size_t p = 0; p < pools_.size(); ++p) {
+        if (counts(across, p) || (has_patches_ && counts(inside, p)))
+            std::atomic_ref(occurs_[p]).store(1, std::memory_order_relaxed);
+    }
+}
+
+/// Turns what each chunk has of a class into where its own begin; how many there are of each colour.
+std::array<std::int32_t, BatchSet::colours> BatchSet::add_up(std::size_t p)
+{
+    std::array<std::int32_t, colours> totals{};
+    for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
+        const std::span<std::int32_t> places = of_chunk(places_, chunk).subspan(p * colours, colours);
+        for (std::size_t colour = 0; colour < colours; ++colour)
+            totals[colour] += std::exchange(places[colour], totals[colour]);
+    }
+    return totals;
 }
 
 void BatchSet::open(const KernelTable& kernels)
 {
-    std::fill(totals_.begin(), totals_.end(), 0);
-    for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
-        const std::span<std::int32_t> places = of_chunk(places_, chunk);
-        for (std::size_t key = 0; key < places.size(); ++key) {
-            const std::int32_t here = places[key];
-            places[key] = totals_[key];
-            totals_[key] += here;
-        }
+    used_.clear();
+    for (std::size_t p = 0; p < pools_.size(); ++p) {
+        if (occurs_[p] != 0) used_.push_back(p);
     }
     bool has_overflow = false;
-    for (std::size_t p = 0; p < pools_.size(); ++p) {
+    for (const std::size_t p : used_) {
         Pool& pool = pools_[p];
+        const std::array<std::int32_t, colours> totals = add_up(p);
         std::int32_t blocks = 0;
         for (std::size_t colour = 0; colour < parallel_colours; ++colour) {
-            pool.constraints[colour] = totals_[p * colours + colour];
+            pool.constraints[colour] = totals[colour];
             pool.first_block[colour] = blocks;
-            blocks += (pool.constraints[colour] + block_lanes - 1) / block_lanes;
+            blocks += (totals[colour] + block_lanes - 1) / block_lanes;
         }
-        pool.overflow = totals_[p * colours + overflow_colour];
+        pool.overflow = totals[overflow_colour];
         pool.first_block[overflow_colour] = pool.first_block[colours] = blocks;
         has_overflow = has_overflow || pool.overflow > 0;
         pool.make_room(blocks);
     }
     if (has_overflow) place_overflow();
-    for (Pool& pool : pools_) pool.all_blocks = pool.first_block[colours];
-    if (has_patches_) open_patches();
-    used_.clear();
-    for (std::size_t p = 0; p < pools_.size(); ++p) {
-        if (pools_[p].all_blocks == 0) continue;
-        used_.push_back(p);
+    for (const std::size_t p : used_) {
+        Pool& pool = pools_[p];
+        pool.all_blocks = pool.first_block[colours];
+        if (has_patches_) open_patches(p);
         const ConstraintKernels& own = kernels.constraints[static_cast<std::size_t>(first_class_) + p];
-        const std::size_t lanes = static_cast<std::size_t>(pools_[p].all_blocks) * block_lanes;
-        grow(pools_[p].rows, lanes * static_cast<std::size_t>(own.row_floats));
-        grow(pools_[p].substep_rows, lanes * static_cast<std::size_t>(own.substep_floats));
-        grow(pools_[p].impulses, lanes * static_cast<std::size_t>(own.impulse_floats));
+        const std::size_t lanes = static_cast<std::size_t>(pool.all_blocks) * block_lanes;
+        grow(pool.rows, lanes * static_cast<std::size_t>(own.row_floats));
+        grow(pool.substep_rows, lanes * static_cast<std::size_t>(own.substep_floats));
+        grow(pool.impulses, lanes * static_cast<std::size_t>(own.impulse_floats));
     }
 }
 
-/// Gives each colour of each patch its blocks, patch after patch.
-void BatchSet::open_patches()
+/// Gives each colour of a class in each patch its blocks, patch after patch.
+void BatchSet::open_patches(std::size_t p)
 {
+    Pool& pool = pools_[p];
     for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
-        const std::span<std::int32_t> places = of_chunk(patch_places_, chunk);
-        const std::span<std::int32_t> first = of_chunk(patch_blocks_, chunk);
-        for (std::size_t key = 0; key < places.size(); ++key) {
-            std::int32_t& blocks = pools_[key / colours].all_blocks;
-            const std::int32_t here = places[key];
-            first[key] = blocks;
-            places[key] = blocks * block_lanes;
-            blocks += (here + block_lanes - 1) / block_lanes;
+        const std::span<std::int32_t> places = of_chunk(patch_places_, chunk).subspan(p * colours, colours);
+        const std::span<std::int32_t> first = of_chunk(patch_blocks_, chunk).subspan(p * colours, colours);
+        for (std::size_t colour = 0; colour < colours; ++colour) {
+            first[colour] = pool.all_blocks;
+            pool.all_blocks +=
+                (std::exchange(places[colour], pool.all_blocks * block_lanes) + block_lanes - 1) /
+                block_lanes;
         }
     }
-    for (Pool& pool : pools_) pool.make_room(pool.all_blocks);
+    pool.make_room(pool.all_blocks);
 }
 
 /// The overflow of a class behind its colours: first fit among the last few blocks, so that no block has a body

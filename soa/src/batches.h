@@ -213,14 +213,14 @@ class BatchSet {
     };
 
     int first_class_;
-    std::vector<Pool> pools_;  ///< by class, from first_class_ on
+    std::vector<Pool> pools_;           ///< by class, from first_class_ on
+    std::vector<std::uint8_t> occurs_;  ///< by class: 1 when a chunk has any
     std::vector<std::size_t>
         used_;  ///< those with blocks: hundreds of empty ones are not looked at each step
     std::span<const Placement> placements_;
+    std::size_t per_chunk_ = 1;
     /// For each chunk and then each class and colour: first how many, then which place of the colour comes next.
     std::vector<std::int32_t> places_;
-    std::vector<std::int32_t> totals_;  ///< of each class and colour
-
     /// Of a chunk that is a patch, for each class and colour: how many, then the next place, in lanes of the class's blocks;
     /// and which block comes first. The overflow, of which a patch has none, stands for the end of the class.
     std::vector<std::int32_t> patch_places_, patch_blocks_;
@@ -239,7 +239,8 @@ class BatchSet {
     }
     [[nodiscard]] std::span<const Placement> placements_of(std::int64_t chunk) const;
     void place_overflow();
-    void open_patches();
+    [[nodiscard]] std::array<std::int32_t, colours> add_up(std::size_t p);
+    void open_patches(std::size_t p);
     void finish_patch(std::int64_t chunk);
     void cut_patches(const KernelTable& kernels, bool tells_apart, SweepLists& sweeps,
                      TransferList& transfers);
