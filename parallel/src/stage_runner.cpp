@@ -60,10 +60,9 @@ void StageRunner::open()
 
 void StageRunner::publish(Job job, std::int64_t count)
 {
-    job_ = job;
     done_.store(0, std::memory_order_relaxed);
     ++stage_;
-    hand_out(count);
+    hand_out(job, count);
     for (int spins = 0; done_.load(std::memory_order_acquire) != count;) {
         spins = come_to_work(0, spins) ? 0 : spins + 1;
     }
@@ -71,7 +70,7 @@ void StageRunner::publish(Job job, std::int64_t count)
 }
 
 /// The caller's own share last, so that nobody waits for it to be done with the others.
-void StageRunner::hand_out(std::int64_t count)
+void StageRunner::hand_out(Job job, std::int64_t count)
 {
     double before = 1;  // the share of all workers before this one
     auto last = static_cast<std::uint64_t>(count);
@@ -82,6 +81,7 @@ void StageRunner::hand_out(std::int64_t count)
             worker == 0 ? 0
                         : std::min(last, static_cast<std::uint64_t>(
                                              std::max(0.0, before * static_cast<double>(count) + 0.5)));
+        share.job = job;
         share.word.store(ShareWord::of(stage_, first, last).word, std::memory_order_release);
         last = first;
     }
@@ -101,14 +101,15 @@ void StageRunner::learn_sizes(std::int64_t count)
 /// Claims a chunk of a share of this stage and runs it. Whoever is no owner and still `patient` leaves him the last.
 bool StageRunner::claim_and_run(int whose, int worker, std::uint64_t stage, bool patient)
 {
-    std::atomic<std::uint64_t>& word = shares_[static_cast<std::size_t>(whose)].word;
+    Share& share = shares_[static_cast<std::size_t>(whose)];
+    std::atomic<std::uint64_t>& word = share.word;
     const bool is_own = whose == worker;
     ShareWord seen{word.load(std::memory_order_acquire)};
     while (seen.stage() == stage && seen.next() + (patient ? seen.reserved() : 0) < seen.last()) {
         const std::uint64_t claimed = (seen.word + 1) | (is_own ? ShareWord::owner_came : 0);
         if (word.compare_exchange_weak(seen.word, claimed, std::memory_order_acq_rel,
                                        std::memory_order_acquire)) {
-            job_.call(job_.self, static_cast<std::int64_t>(seen.next()), worker);
+            share.job.call(share.job.self, static_cast<std::int64_t>(seen.next()), worker);
             return true;
         }
     }

@@ -78,16 +78,17 @@ class StageRunner {
             chunk(index);
         }
     }
-    /// A ShareWord. A claim that succeeds is always one of the present stage: the caller does not move on before every
-    /// claimed chunk is done.
+    /// All that a worker wants to know of a stage comes in one cache line. A claim that succeeds is always one of the present
+    /// stage: the caller does not move on before every claimed chunk is done.
     struct alignas(64) Share {
-        std::atomic<std::uint64_t> word{0};
-        std::int64_t ran = 0;  ///< chunks of this stage, of any share, by its worker
-        double size = 0;       ///< of all chunks; the caller's
+        std::atomic<std::uint64_t> word{0};  ///< a ShareWord
+        Job job;                             ///< of the stage that the word is of
+        std::int64_t ran = 0;                ///< chunks of this stage, of any share, by its worker
+        double size = 0;                     ///< of all chunks; the caller's
     };
     void open();
     void publish(Job job, std::int64_t count);
-    void hand_out(std::int64_t count);
+    void hand_out(Job job, std::int64_t count);
     void learn_sizes(std::int64_t count);
     bool claim_and_run(int whose, int worker, std::uint64_t stage, bool patient);
     bool help_others(int worker, std::uint64_t stage, bool patient);
@@ -96,7 +97,6 @@ class StageRunner {
 
     Executor* executor_;
     bool open_ = false;
-    Job job_;
     int workers_;
     std::uint32_t stage_ = 0;
     std::unique_ptr<Share[]> shares_;
