@@ -106,13 +106,52 @@ void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_
     if (!patches_first) sweep_patches(kernel, at_least);
 }
 
+namespace {
+
+/// What sweeps of a patch stream, asked for block by block, in their order.
+class StreamsAhead {
+  public:
+    explicit StreamsAhead(std::span<const SweepChunk> chunks) : chunks_(chunks)
+    {
+        if (!chunks_.empty()) block_ = chunks_.front().begin;
+    }
+    void ask_for(std::int32_t blocks)
+    {
+        for (; blocks > 0 && !chunks_.empty(); --blocks) {
+            const SweepChunk& chunk = chunks_.front();
+            ask(chunk.streams.bodies, 1);
+            ask(chunk.streams.rows, block_lanes * chunk.kernels->row_floats);
+            ask(chunk.streams.impulses, block_lanes * chunk.kernels->impulse_floats);
+            if (++block_ < chunk.end) continue;
+            chunks_ = chunks_.subspan(1);
+            if (!chunks_.empty()) block_ = chunks_.front().begin;
+        }
+    }
+
+  private:
+    std::span<const SweepChunk> chunks_;  ///< that are not asked for yet
+    std::int32_t block_ = 0;              ///< of the first of them
+
+    template <class T>
+    void ask(const T* stream, std::int64_t a_block) const
+    {
+        constexpr int second_level = 2;
+        const char* const first = reinterpret_cast<const char*>(stream + block_ * a_block);
+        for (std::int64_t byte = 0; byte < a_block * static_cast<std::int64_t>(sizeof(T)); byte += 64)
+            __builtin_prefetch(first + byte, 0, second_level);
+    }
+};
+
+}  // namespace
+
 void Sweeper::visit_patches()
 {
     const SweepLists& sweeps = layout_.sweeps();
     // What was solved a moment ago is at hand.
     KernelContext at_hand = layout_.context;
     at_hand.bodies_are_far = false;
-    runner_.run(static_cast<std::int64_t>(sweeps.patches.size()), [&](std::int64_t patch) {
+    const auto last = static_cast<std::int64_t>(sweeps.patches.size()) - 1;
+    runner_.run(last + 1, [&](std::int64_t patch) {
         const std::span<const SweepChunk> chunks = sweeps.of_patch(patch);
         run_chunks(layout_.context, chunks, &ConstraintKernels::solve, every_block);
         for (int kind = 0; kind < body_kind_count; ++kind) {
@@ -122,7 +161,16 @@ void Sweeper::visit_patches()
                 static_cast<std::size_t>(patch), static_cast<BodyKind>(kind));
             move(at_hand, bodies.data(), static_cast<std::int32_t>(bodies.size()));
         }
-        run_chunks(at_hand, chunks, &ConstraintKernels::relax, every_block);
+        // Relaxing leaves the memory idle: time to ask for what whoever does this patch will most likely do next.
+        constexpr std::int32_t blocks_at_a_time = 8;
+        StreamsAhead ahead(patch < last ? sweeps.of_patch(patch + 1) : std::span<const SweepChunk>());
+        for (const SweepChunk& chunk : chunks) {
+            for_each_piece(chunk.begin, chunk.end, blocks_at_a_time,
+                           [&](std::int32_t begin, std::int32_t end) {
+                               ahead.ask_for(end - begin);
+                               chunk.kernels->relax(at_hand, chunk.streams, begin, end);
+                           });
+        }
     });
 }
 
