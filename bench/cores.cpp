@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <limits>
 #include <vector>
 
+#include "clock.h"
+
 namespace motley::bench {
 namespace {
-
-double now()
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Multiplies and adds for about half a millisecond, with chains enough to keep every port of a core busy.
 void keep_busy()

@@ -3,12 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <map>
 #include <stdexcept>
 
 #include "anchors.h"
+#include "clock.h"
 #include "demo.h"
 #include "extremes.h"
 #include "page.h"
@@ -290,10 +290,10 @@ struct SoakCommand {
     }
     int operator()() const
     {
-        const auto began = std::chrono::steady_clock::now();
+        const double began = now();
         const SoakResult result = soak(options);
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
-        fmt::print("{}", table_of(result, took.count()));
+        const double took = now() - began;
+        fmt::print("{}", table_of(result, took));
         return result.failure.empty() ? 0 : 1;
     }
 };

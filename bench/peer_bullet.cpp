@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 
+#include "clock.h"
 #include "engine.h"
 #include "peers.h"
 
@@ -32,9 +32,9 @@ class TimedWorld final : public btDiscreteDynamicsWorld {
   protected:
     void solveConstraints(btContactSolverInfo& info) override
     {
-        const auto began = std::chrono::steady_clock::now();
+        const double began = now();
         btDiscreteDynamicsWorld::solveConstraints(info);
-        solver_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        solver_seconds += now() - began;
     }
 };
 

@@ -1,12 +1,12 @@
 #include "roofline.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <map>
 #include <stdexcept>
 
+#include "clock.h"
 #include "median.h"
 #include "motley/core/aligned_vector.h"
 #include "motley/core/lane_body.h"
@@ -14,11 +14,6 @@
 
 namespace motley::bench {
 namespace {
-
-double now()
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // ---- operations of a kernel, counted by running its maths on a number that counts -------------------------------
 

@@ -5,22 +5,17 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
 
+#include "clock.h"
 #include "frames.h"
 #include "median.h"
 #include "trajectories.h"
 
 namespace motley::bench {
 namespace {
-
-double now()
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// A bar on a terminal; elsewhere a line each quarter.
 class Progress {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <deque>
@@ -13,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "clock.h"
 #include "crowd.h"
 #include "host.h"
 #include "motley/core/snapshot.h"
@@ -308,10 +308,7 @@ class Town {
 class Progress {
   public:
     explicit Progress(const SoakOptions& options) : options_(options) {}
-    [[nodiscard]] double seconds() const
-    {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-    }
+    [[nodiscard]] double seconds() const { return now() - began_; }
     [[nodiscard]] double share(std::int64_t steps) const
     {
         return options_.steps > 0 ? static_cast<double>(steps) / static_cast<double>(options_.steps)
@@ -320,7 +317,7 @@ class Progress {
 
   private:
     const SoakOptions& options_;
-    std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+    double began_ = now();
 };
 
 }  // namespace

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <stdexcept>
 
+#include "clock.h"
 #include "engine.h"
 #include "host.h"
 #include "median.h"
@@ -22,11 +22,6 @@ namespace {
 constexpr double came_apart = std::numeric_limits<double>::infinity();
 /// Steps between two looks at the joints of a rig.
 constexpr int steps_a_look = 10;
-
-double now()
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// What one run of one point gave.
 struct Run {

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <stdexcept>
 
 #include "bench_scene.h"
+#include "clock.h"
 #include "cores.h"
 #include "host.h"
 #include "median.h"
@@ -22,11 +22,6 @@ constexpr int steps_a_turn = 8;
 constexpr double whole_cores = 0.8;
 /// s: a line takes 30 to 60 ns within a cache that cores share, and 150 and more between two.
 constexpr double near_hand_over = 100e-9;
-
-double now()
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// A scene with a solver of its own.
 class Copy {

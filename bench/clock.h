@@ -1,0 +1,14 @@
+// The one clock of every measurement here: steady, whatever the machine's time of day does.
+#pragma once
+
+#include <chrono>
+
+namespace motley::bench {
+
+/// Seconds since some moment in the past.
+inline double now()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace motley::bench
