@@ -7,6 +7,7 @@ namespace motley {
 namespace {
 
 using Arch = xsimd::neon64;
+#include "exact_neon.h"
 #include "lanes.h"
 #include "quads_neon.h"
 

@@ -6,6 +6,18 @@
 // internal linkage, so code compiled for a wide instruction set cannot be picked by the linker for another.
 // No include guard and no includes: the including file sets Arch first.
 
+// Rounded to nearest: what does not do that has its own (exact_neon.h).
+template <class Batch>
+[[gnu::always_inline]] inline Batch quotient(const Batch& x, const Batch& y)
+{
+    return x / y;
+}
+template <class Batch>
+[[gnu::always_inline]] inline Batch root(const Batch& x)
+{
+    return xsimd::sqrt(x);
+}
+
 class Mask {
   public:
     explicit Mask(xsimd::batch_bool<float, Arch> m) : bits(m) {}
@@ -29,7 +41,7 @@ class Lanes {
     friend Lanes operator+(const Lanes& x, const Lanes& y) { return Lanes(x.v + y.v); }
     friend Lanes operator-(const Lanes& x, const Lanes& y) { return Lanes(x.v - y.v); }
     friend Lanes operator*(const Lanes& x, const Lanes& y) { return Lanes(x.v * y.v); }
-    friend Lanes operator/(const Lanes& x, const Lanes& y) { return Lanes(x.v / y.v); }
+    friend Lanes operator/(const Lanes& x, const Lanes& y) { return Lanes(quotient(x.v, y.v)); }
     friend Lanes operator-(const Lanes& x) { return Lanes(x.v ^ xsimd::batch<float, Arch>(-0.0F)); }
     friend Mask operator<(const Lanes& x, const Lanes& y) { return Mask(x.v < y.v); }
     friend Mask operator>(const Lanes& x, const Lanes& y) { return Mask(x.v > y.v); }
@@ -37,7 +49,7 @@ class Lanes {
     {
         return Lanes(xsimd::select(mask.bits, if_true.v, if_false.v));
     }
-    friend Lanes square_root(const Lanes& x) { return Lanes(xsimd::sqrt(x.v)); }
+    friend Lanes square_root(const Lanes& x) { return Lanes(root(x.v)); }
 
     xsimd::batch<float, Arch> v;
 };
