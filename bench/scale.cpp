@@ -34,10 +34,11 @@ ScaleResult::Size measure_once(std::int64_t people, const ScaleOptions& options)
     size.solver_seconds = result.median_solver_seconds;
     const auto stage = [&](Stage s) { return result.times.stages[static_cast<std::size_t>(s)]; };
     const SolverSettings& settings = run.settings;
-    size.sweep_seconds = (stage(Stage::solve) + stage(Stage::relax)) /
-                         (static_cast<double>(result.times.steps * settings.substeps *
-                                              (settings.iterations + settings.relaxations)) *
-                          result.constraints);
+    const double sweeps = stage(Stage::solve) + stage(Stage::relax);
+    size.sweep_seconds = sweeps / (static_cast<double>(result.times.steps * settings.substeps *
+                                                       (settings.iterations + settings.relaxations)) *
+                                   result.constraints);
+    size.sweep_share = sweeps / result.times.solver;
     size.sweep_bytes_per_second = (result.last.bytes_per_constraint + body_bytes) / size.sweep_seconds;
     size.triad_bytes_per_second = memory_triad(options.solver.threads);
     return size;
@@ -63,8 +64,8 @@ ScaleResult measure_scale(const ScaleOptions& options)
         ScaleResult::Size size = rounds.front();
         for (double ScaleResult::Size::*figure :
              {&ScaleResult::Size::step_seconds, &ScaleResult::Size::solver_seconds,
-              &ScaleResult::Size::sweep_seconds, &ScaleResult::Size::sweep_bytes_per_second,
-              &ScaleResult::Size::triad_bytes_per_second}) {
+              &ScaleResult::Size::sweep_seconds, &ScaleResult::Size::sweep_share,
+              &ScaleResult::Size::sweep_bytes_per_second, &ScaleResult::Size::triad_bytes_per_second}) {
             std::vector<double> values;
             for (const ScaleResult::Size& one : rounds) values.push_back(one.*figure);
             size.*figure = median(values);
@@ -80,18 +81,18 @@ std::string table_of(const ScaleResult& result)
     std::string text = fmt::format(
         "crowd at 5 per m2, {}, {} thread{}, host load {:.2f}; sweeps: rows, impulses and bodies, beside a "
         "triad over\narrays far larger than the caches\n"
-        "{:>9} {:>10} {:>10} {:>15} {:>12} {:>13} {:>12} {:>11} {:>9}\n",
+        "{:>9} {:>10} {:>10} {:>15} {:>12} {:>13} {:>12} {:>10} {:>11} {:>9}\n",
         result.isa, result.threads, result.threads == 1 ? "" : "s", result.host_load, "people", "contacts",
-        "ms a step", "M agent-steps/s", "solver alone", "ns a contact", "and a sweep", "GB/s swept",
-        "of triad");
+        "ms a step", "M agent-steps/s", "solver alone", "ns a contact", "and a sweep", "of solver",
+        "GB/s swept", "of triad");
     for (const ScaleResult::Size& size : result.sizes) {
         const auto people = static_cast<double>(size.people);
-        text += fmt::format("{:9} {:10.0f} {:10.2f} {:15.2f} {:12.2f} {:13.1f} {:12.2f} {:11.1f} {:8.0f}%\n",
-                            size.people, size.contacts, size.step_seconds * 1e3,
-                            people / size.step_seconds * 1e-6, people / size.solver_seconds * 1e-6,
-                            size.solver_seconds / size.contacts * 1e9, size.sweep_seconds * 1e9,
-                            size.sweep_bytes_per_second * 1e-9,
-                            100 * size.sweep_bytes_per_second / size.triad_bytes_per_second);
+        text += fmt::format(
+            "{:9} {:10.0f} {:10.2f} {:15.2f} {:12.2f} {:13.1f} {:12.2f} {:9.0f}% {:11.1f} {:8.0f}%\n",
+            size.people, size.contacts, size.step_seconds * 1e3, people / size.step_seconds * 1e-6,
+            people / size.solver_seconds * 1e-6, size.solver_seconds / size.contacts * 1e9,
+            size.sweep_seconds * 1e9, 100 * size.sweep_share, size.sweep_bytes_per_second * 1e-9,
+            100 * size.sweep_bytes_per_second / size.triad_bytes_per_second);
     }
     return text;
 }

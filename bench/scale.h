@@ -23,6 +23,7 @@ struct ScaleResult {
         double step_seconds = 0;  ///< search and steering included; these are medians of the rounds
         double solver_seconds = 0;
         double sweep_seconds = 0;           ///< of solve and relax, a contact and sweep
+        double sweep_share = 0;             ///< of the solver's time that solve and relax take
         double sweep_bytes_per_second = 0;  ///< rows, impulses and bodies, as often as a sweep asks for them
         double triad_bytes_per_second = 0;  ///< measured beside each run, on as many threads
     };
