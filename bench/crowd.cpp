@@ -21,6 +21,7 @@ void Crowd::add(Scene& scene, Agent agent, Vec2<double> position)
     agent.body = scene.add_body(body);
     agents.push_back(agent);
     bodies_.push_back(agent.body);
+    radii_.push_back(agent.radius);
     serial_.push_back(next_serial_++);
 }
 
@@ -29,9 +30,11 @@ void Crowd::remove(Scene& scene, std::size_t index)
     scene.remove_body(agents[index].body);
     agents[index] = agents.back();
     bodies_[index] = bodies_.back();
+    radii_[index] = radii_.back();
     serial_[index] = serial_.back();
     agents.pop_back();
     bodies_.pop_back();
+    radii_.pop_back();
     serial_.pop_back();
 }
 
@@ -72,12 +75,6 @@ void Crowd::steer(Scene& scene, Executor& executor)
 
 std::span<const Contact> Crowd::find_contacts(const Scene& scene, Executor& executor)
 {
-    radii_.resize(agents.size());
-    parallel_for(executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk,
-                 [&](std::int64_t begin, std::int64_t end) {
-                     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-                         radii_[i] = agents[i].radius;
-                 });
     grid_.sort(positions, radii_, contact_margin, executor);
 
     // Pairs first, a list a chunk; then every chunk knows where its contacts go and writes them there.

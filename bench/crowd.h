@@ -14,7 +14,7 @@ namespace motley::bench {
 /// One person: a disc with a goal.
 struct Agent {
     BodyId body{};
-    float radius = 0.2F;          ///< m
+    float radius = 0.2F;          ///< m; as when added
     float mass = 80;              ///< kg
     float desired_speed = 1.34F;  ///< m/s
     Vec2<double> goal{};          ///< m
@@ -64,6 +64,7 @@ class Crowd {
 
   private:
     AlignedVector<BodyId> bodies_;
+    AlignedVector<float> radii_;  ///< of the agents, in line
     AlignedVector<Vec3<float>> forces_;
     NeighbourGrid grid_;
     AlignedVector<Contact> contacts_;  // the first contact_count_ of them
@@ -79,7 +80,6 @@ class Crowd {
         std::size_t first_contact = 0;
     };
     std::vector<Findings> findings_;
-    AlignedVector<float> radii_;  ///< of the agents, in line
 
     [[nodiscard]] Vec2<double> nearest_point(const Wall& wall, std::size_t agent) const;
     [[nodiscard]] bool is_near(const Wall& wall, std::size_t agent) const;
