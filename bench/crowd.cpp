@@ -196,7 +196,7 @@ Vec2<double> Crowd::nearest_point(const Wall& wall, std::size_t agent) const
 
 bool Crowd::is_near(const Wall& wall, std::size_t agent) const
 {
-    const double near = static_cast<double>(agents[agent].radius + contact_margin);
+    const double near = static_cast<double>(radii_[agent] + contact_margin);
     const Vec3<double>& p = positions[agent];
     // Most people are far from most walls: four comparisons spare them the division.
     if (p.x < std::min(wall.from.x, wall.to.x) - near || p.x > std::max(wall.from.x, wall.to.x) + near ||
@@ -221,7 +221,7 @@ void Crowd::write_wall_contact(Contact& contact, Pair touch, BodyId ground) cons
     contact.key =
         std::uint64_t{1} << 63 | std::uint64_t{serial_[a]} << 16 | static_cast<std::uint64_t>(touch.b);
     contact.normal = distance > 1e-9F ? Vec3<float>{dx / distance, dy / distance, 0} : Vec3<float>{1, 0, 0};
-    contact.separation = distance - agents[a].radius;
+    contact.separation = distance - radii_[a];
     // The ground stands at the origin and never turns: its arm is the point.
     contact.arm_a = {static_cast<float>(point.x), static_cast<float>(point.y), 0};
     contact.arm_b = -distance * contact.normal;

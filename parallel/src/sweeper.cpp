@@ -111,32 +111,33 @@ namespace {
 /// What sweeps of a patch stream, asked for block by block, in their order.
 class StreamsAhead {
   public:
-    explicit StreamsAhead(std::span<const SweepChunk> chunks) : chunks_(chunks)
-    {
-        if (!chunks_.empty()) block_ = chunks_.front().begin;
-    }
+    explicit StreamsAhead(std::span<const SweepChunk> chunks) : chunks_(chunks) {}
     void ask_for(std::int32_t blocks)
     {
         for (; blocks > 0 && !chunks_.empty(); --blocks) {
             const SweepChunk& chunk = chunks_.front();
-            ask(chunk.streams.bodies, 1);
-            ask(chunk.streams.rows, block_lanes * chunk.kernels->row_floats);
-            ask(chunk.streams.impulses, block_lanes * chunk.kernels->impulse_floats);
-            if (++block_ < chunk.end) continue;
-            chunks_ = chunks_.subspan(1);
-            if (!chunks_.empty()) block_ = chunks_.front().begin;
+            const std::int32_t block = chunk.begin + asked_;
+            ask(chunk.streams.bodies, block, 1);
+            ask(chunk.streams.rows, block, block_lanes * chunk.kernels->row_floats);
+            ask(chunk.streams.impulses, block, block_lanes * chunk.kernels->impulse_floats);
+            if (block + 1 < chunk.end) {
+                ++asked_;
+            } else {
+                chunks_ = chunks_.subspan(1);
+                asked_ = 0;
+            }
         }
     }
 
   private:
     std::span<const SweepChunk> chunks_;  ///< that are not asked for yet
-    std::int32_t block_ = 0;              ///< of the first of them
+    std::int32_t asked_ = 0;              ///< blocks of the first of them that are
 
     template <class T>
-    void ask(const T* stream, std::int64_t a_block) const
+    static void ask(const T* stream, std::int64_t block, std::int64_t a_block)
     {
         constexpr int second_level = 2;
-        const char* const first = reinterpret_cast<const char*>(stream + block_ * a_block);
+        const char* const first = reinterpret_cast<const char*>(stream + block * a_block);
         for (std::int64_t byte = 0; byte < a_block * static_cast<std::int64_t>(sizeof(T)); byte += 64)
             __builtin_prefetch(first + byte, 0, second_level);
     }
@@ -150,8 +151,8 @@ void Sweeper::visit_patches()
     // What was solved a moment ago is at hand.
     KernelContext at_hand = layout_.context;
     at_hand.bodies_are_far = false;
-    const auto last = static_cast<std::int64_t>(sweeps.patches.size()) - 1;
-    runner_.run(last + 1, [&](std::int64_t patch) {
+    const auto count = static_cast<std::int64_t>(sweeps.patches.size());
+    runner_.run(count, [&](std::int64_t patch) {
         const std::span<const SweepChunk> chunks = sweeps.of_patch(patch);
         run_chunks(layout_.context, chunks, &ConstraintKernels::solve, every_block);
         for (int kind = 0; kind < body_kind_count; ++kind) {
@@ -163,7 +164,7 @@ void Sweeper::visit_patches()
         }
         // Relaxing leaves the memory idle: time to ask for what whoever does this patch will most likely do next.
         constexpr std::int32_t blocks_at_a_time = 8;
-        StreamsAhead ahead(patch < last ? sweeps.of_patch(patch + 1) : std::span<const SweepChunk>());
+        StreamsAhead ahead(patch + 1 < count ? sweeps.of_patch(patch + 1) : std::span<const SweepChunk>());
         for (const SweepChunk& chunk : chunks) {
             for_each_piece(chunk.begin, chunk.end, blocks_at_a_time,
                            [&](std::int32_t begin, std::int32_t end) {
