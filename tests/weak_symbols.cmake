@@ -3,9 +3,6 @@
 # instruction set's own type cannot be asked for elsewhere.
 string(REPLACE "," ";" objects "${OBJECTS}")
 foreach(object ${objects})
-    if(NOT object MATCHES "kernels_avx")
-        continue()
-    endif()
     execute_process(COMMAND nm -C --defined-only ${object} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
     string(REPLACE "\n" ";" symbols "${symbols}")
     foreach(symbol ${symbols})

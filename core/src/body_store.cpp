@@ -64,8 +64,8 @@ std::uint32_t BodyStore::take_row(BodyKind kind)
         r.acceleration.resize(floats);
         r.pose.resize(row + 1);
         if (kind == BodyKind::rigid || kind == BodyKind::fixed) r.orientation.resize(row + 1, {0, 0, 0, 1});
+        if (quads_of(kind) == 2) r.world_inverse_inertia.resize(std::size_t{8} * (row + 1));
         if (kind == BodyKind::rigid) {
-            r.world_inverse_inertia.resize(std::size_t{8} * (row + 1));
             r.start_inverse_inertia.resize(std::size_t{8} * (row + 1));
             r.inertia.resize(row + 1);
             r.inverse_inertia.resize(row + 1);

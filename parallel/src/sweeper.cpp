@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "measured_sweep.h"
+
 namespace motley {
 namespace {
 
@@ -52,26 +54,32 @@ void Sweeper::integrate(BodyKernels::Move BodyKernels::*kernel)
 
 namespace {
 
-void run_chunk(const KernelContext& context, const SweepChunk& chunk,
+void run_chunk(const KernelContext& context, const KernelTable& kernels, const SweepChunk& chunk,
                ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
-    const ConstraintKernels::Sweep run = chunk.kernels->*kernel;
-    if (run == nullptr) return;
+    const ConstraintKernels::Sweep sweep = chunk.kernels->*kernel;
+    if (sweep == nullptr) return;
+    const auto run = [&](std::int32_t begin, std::int32_t end) {
+        if (context.measure == Measure::nothing) {
+            sweep(context, chunk.streams, begin, end);
+        } else {
+            measured_sweep(context, kernels, chunk.kernels->impulse_floats, chunk.streams, sweep, begin, end);
+        }
+    };
     if (at_least == Sweeper::every_block) {
-        run(context, chunk.streams, chunk.begin, chunk.end);
+        run(chunk.begin, chunk.end);
         return;
     }
     const auto runs = [&](std::int32_t block) {
         return chunk.finished[block] == 0 && (at_least == 0 || chunk.wanted[block] >= at_least);
     };
-    for_each_run(chunk.begin, chunk.end, runs,
-                 [&](std::int32_t begin, std::int32_t end) { run(context, chunk.streams, begin, end); });
+    for_each_run(chunk.begin, chunk.end, runs, run);
 }
 
-void run_chunks(const KernelContext& context, std::span<const SweepChunk> chunks,
+void run_chunks(const KernelContext& context, const KernelTable& kernels, std::span<const SweepChunk> chunks,
                 ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
-    for (const SweepChunk& chunk : chunks) run_chunk(context, chunk, kernel, at_least);
+    for (const SweepChunk& chunk : chunks) run_chunk(context, kernels, chunk, kernel, at_least);
 }
 
 }  // namespace
@@ -80,11 +88,12 @@ void Sweeper::sweep_across(ConstraintKernels::Sweep ConstraintKernels::*kernel, 
 {
     // The overflow first and in order, so that the colours have the last word.
     const SweepLists& sweeps = layout_.sweeps();
-    run_chunks(layout_.context, sweeps.of_colour(overflow_colour), kernel, at_least);
+    run_chunks(layout_.context, layout_.kernels(), sweeps.of_colour(overflow_colour), kernel, at_least);
     for (int colour = 0; colour < parallel_colours; ++colour) {
         const std::span<const SweepChunk> chunks = sweeps.of_colour(colour);
         runner_.run(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t i) {
-            run_chunk(layout_.context, chunks[static_cast<std::size_t>(i)], kernel, at_least);
+            run_chunk(layout_.context, layout_.kernels(), chunks[static_cast<std::size_t>(i)], kernel,
+                      at_least);
         });
     }
 }
@@ -93,7 +102,7 @@ void Sweeper::sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel,
 {
     const SweepLists& sweeps = layout_.sweeps();
     runner_.run(static_cast<std::int64_t>(sweeps.patches.size()), [&](std::int64_t patch) {
-        run_chunks(layout_.context, sweeps.of_patch(patch), kernel, at_least);
+        run_chunks(layout_.context, layout_.kernels(), sweeps.of_patch(patch), kernel, at_least);
     });
 }
 
@@ -154,7 +163,7 @@ void Sweeper::visit_patches()
     const auto count = static_cast<std::int64_t>(sweeps.patches.size());
     runner_.run(count, [&](std::int64_t patch) {
         const std::span<const SweepChunk> chunks = sweeps.of_patch(patch);
-        run_chunks(layout_.context, chunks, &ConstraintKernels::solve, every_block);
+        run_chunks(layout_.context, layout_.kernels(), chunks, &ConstraintKernels::solve, every_block);
         for (int kind = 0; kind < body_kind_count; ++kind) {
             const auto move = layout_.kernels().bodies[kind].integrate_listed;
             if (move == nullptr) continue;

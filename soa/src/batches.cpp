@@ -263,20 +263,25 @@ void BatchSet::finish_patch(std::int64_t chunk)
 
 BatchSet::Block BatchSet::block(int constraint_class, int colour, std::int32_t nth)
 {
-    Pool& pool = pools_[static_cast<std::size_t>(constraint_class - first_class_)];
+    const auto p = static_cast<std::size_t>(constraint_class - first_class_);
+    Pool& pool = pools_[p];
     const std::int32_t index = pool.first_block[static_cast<std::size_t>(colour)] + nth;
-    return {pool.streams(false), index, &pool.skipped[static_cast<std::size_t>(index)]};
+    return {streams(p, false), index, &pool.skipped[static_cast<std::size_t>(index)]};
 }
 
-BlockStreams BatchSet::Pool::streams(bool tells_apart)
+BlockStreams BatchSet::streams(std::size_t p, bool tells_apart)
 {
-    return {bodies.data(),
-            counts.data(),
-            who.data(),
-            rows.data(),
-            substep_rows.data(),
-            impulses.data(),
-            tells_apart ? residuals.data() : nullptr};
+    Pool& pool = pools_[p];
+    const int constraint_class = first_class_ + static_cast<int>(p);
+    return {kind_a_of(constraint_class),
+            kind_b_of(constraint_class),
+            pool.bodies.data(),
+            pool.counts.data(),
+            pool.who.data(),
+            pool.rows.data(),
+            pool.substep_rows.data(),
+            pool.impulses.data(),
+            tells_apart ? pool.residuals.data() : nullptr};
 }
 
 SweepChunk BatchSet::sweep_chunk(const KernelTable& table, std::size_t p, std::int32_t begin,
@@ -285,7 +290,7 @@ SweepChunk BatchSet::sweep_chunk(const KernelTable& table, std::size_t p, std::i
     Pool& pool = pools_[p];
     const int constraint_class = first_class_ + static_cast<int>(p);
     return {&table.constraints[constraint_class],
-            pool.streams(tells_apart),
+            streams(p, tells_apart),
             begin,
             end,
             constraint_class / (body_kind_count * body_kind_count),
@@ -300,7 +305,7 @@ TransferTile::Part BatchSet::transfer_part(const KernelTable& table, std::size_t
                                            std::int32_t end)
 {
     const int constraint_class = first_class_ + static_cast<int>(p);
-    return {&table.constraints[constraint_class], pools_[p].streams(false),
+    return {&table.constraints[constraint_class], streams(p, false),
             constraint_class / (body_kind_count * body_kind_count), begin, end};
 }
 

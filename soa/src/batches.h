@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "block.h"
 #include "colouring.h"
+#include "kernel_table.h"
 #include "motley/core/aligned_vector.h"
 
 namespace motley {
@@ -199,7 +199,6 @@ class BatchSet {
         {
             return skipped[static_cast<std::size_t>(block)];
         }
-        [[nodiscard]] BlockStreams streams(bool tells_apart);
         void make_room(std::int32_t blocks);
         void set_lane(std::size_t block, int lane, const Placement& placement)
         {
@@ -244,6 +243,7 @@ class BatchSet {
     void finish_patch(std::int64_t chunk);
     void cut_patches(const KernelTable& kernels, bool tells_apart, SweepLists& sweeps,
                      TransferList& transfers);
+    [[nodiscard]] BlockStreams streams(std::size_t pool, bool tells_apart);
     [[nodiscard]] SweepChunk sweep_chunk(const KernelTable& kernels, std::size_t pool, std::int32_t begin,
                                          std::int32_t end, bool tells_apart);
     [[nodiscard]] TransferTile::Part transfer_part(const KernelTable& kernels, std::size_t pool,

@@ -8,7 +8,6 @@
 #include <cstdint>
 
 #include "motley/core/body_store.h"
-#include "motley/core/constraint_types.h"
 #include "motley/core/joint_pose.h"
 #include "motley/core/step_constants.h"
 #include "motley/soa/isa.h"
@@ -16,6 +15,10 @@
 namespace motley {
 
 inline constexpr int block_lanes = 16;
+/// The most that a type may have in its Impulse.
+inline constexpr int most_impulse_floats = 32;
+/// The most that a body has in lanes.
+inline constexpr int most_body_floats = 20;
 
 /// Blocks say where a body's row begins, in pairs of floats: eight bytes are the most that an address of x86 counts in by
 /// itself, and kernels that move bodies in and out of lanes would multiply for every row they touch.
@@ -43,6 +46,7 @@ struct alignas(64) BlockConstraints {
 /// Everything that a kernel reads and writes of one type and pair: blocks, and their streams of floats.
 /// Stream s of block k starts at s + k * floats * 16; a field of a row is sixteen floats in line.
 struct BlockStreams {
+    BodyKind kind_a{}, kind_b{};  ///< of the bodies
     const BlockBodies* bodies = nullptr;
     const std::uint8_t* counts = nullptr;           ///< lanes of each block that are not padding
     const BlockConstraints* constraints = nullptr;  ///< read by prepare and store alone
@@ -76,9 +80,10 @@ struct BodyArrays {
     BodyPose* pose = nullptr;
     Quat<PoseReal>* orientation = nullptr;
     std::int32_t size = 0;
+    bool can_move = false;  ///< else lanes read these rows and never write them
 };
 
-/// Whether a sweep of solve or relax notes each constraint's LaneResidual.
+/// Whether sweeps of solve and relax note each constraint's LaneResidual.
 enum class Measure {
     nothing,
     while_solving,    ///< what the sweep found to do
@@ -143,6 +148,13 @@ struct BodyKernels {
     /// BodyStore::commit of sixteen rows from `first` on; false, and nothing done, unless each of them is a body that
     /// can move and is finite. Null for fixed bodies.
     bool (*commit)(const BodyArrays&, std::int32_t first) = nullptr;
+    /// Of sixteen bodies: as they are, into most_body_floats fields of sixteen floats; the energy of what has changed of their
+    /// velocities since, J, and 1/m; and the velocities of the first `count` back, null for fixed bodies.
+    void (*keep)(const BodyArrays&, const std::int32_t* offsets, float* kept) = nullptr;
+    void (*find_change)(const BodyArrays&, const std::int32_t* offsets, const float* kept, float* energy,
+                        float* inverse_mass) = nullptr;
+    void (*bring_back_velocities)(const BodyArrays&, const std::int32_t* offsets, const float* kept,
+                                  int count) = nullptr;
 };
 
 struct FigureBlock;
@@ -173,16 +185,5 @@ constexpr BodyKind kind_b_of(int constraint_class)
 {
     return static_cast<BodyKind>(constraint_class % body_kind_count);
 }
-inline constexpr int class_count = constraint_type_count * body_kind_count * body_kind_count;
-
-/// Every kernel of one instruction set.
-struct KernelTable {
-    ConstraintKernels constraints[class_count];
-    BodyKernels bodies[body_kind_count];
-    FigureKernels figures;
-};
-
-/// The table compiled for an instruction set; only for those of available_isas().
-const KernelTable& kernel_table(Isa isa);
 
 }  // namespace motley

@@ -4,21 +4,11 @@
 #include <cstdlib>
 #include <string>
 
-#include "block.h"
+#include "kernel_entries.h"
+#include "kernel_table.h"
 #include "motley/core/invalid_input.h"
 
 namespace motley {
-
-void enter_kernels_scalar(KernelTable& table);
-void enter_body_kernels_scalar(KernelTable& table);
-void enter_kernels_sse2(KernelTable& table);
-void enter_body_kernels_sse2(KernelTable& table);
-void enter_kernels_avx2(KernelTable& table);
-void enter_body_kernels_avx2(KernelTable& table);
-void enter_kernels_avx512(KernelTable& table);
-void enter_body_kernels_avx512(KernelTable& table);
-void enter_kernels_neon(KernelTable& table);
-void enter_body_kernels_neon(KernelTable& table);
 
 namespace {
 
@@ -111,14 +101,28 @@ Isa default_isa()
 
 namespace {
 
-/// Made when first asked for.
-template <void (*enter)(KernelTable&), void (*enter_bodies)(KernelTable&)>
+template <Isa isa, class... Lists>
+void enter_constraints(KernelTable& table, TypeList<Lists...>)
+{
+    ConstraintKernels* next = table.constraints;
+    const auto enter = [&]<class Types>(Types) {
+        enter_constraint_kernels<isa, KernelShare::swept, Types>(next);
+        enter_constraint_kernels<isa, KernelShare::rare, Types>(next);
+        next += class_of(Types::size, BodyKind{}, BodyKind{});
+    };
+    (enter(Lists{}), ...);
+}
+
+/// Made when first asked for. Classes that a wide instruction set leaves out run in scalar lanes.
+template <Isa isa>
 const KernelTable& table_of()
 {
     static const KernelTable table = [] {
         KernelTable entered;
-        enter(entered);
-        enter_bodies(entered);
+        if constexpr (isa != Isa::scalar) entered = table_of<Isa::scalar>();
+        enter_constraints<isa>(entered, ConstraintLists{});
+        enter_body_kernels<isa>(entered.bodies, entered.figures);
+        enter_tree_kernels<isa>(entered.figures);
         return entered;
     }();
     return table;
@@ -131,22 +135,22 @@ const KernelTable& kernel_table(Isa isa)
     switch (isa) {
 #ifdef MOTLEY_SSE2
         case Isa::sse2:
-            return table_of<enter_kernels_sse2, enter_body_kernels_sse2>();
+            return table_of<Isa::sse2>();
 #endif
 #ifdef MOTLEY_AVX2
         case Isa::avx2:
-            return table_of<enter_kernels_avx2, enter_body_kernels_avx2>();
+            return table_of<Isa::avx2>();
 #endif
 #ifdef MOTLEY_AVX512
         case Isa::avx512:
-            return table_of<enter_kernels_avx512, enter_body_kernels_avx512>();
+            return table_of<Isa::avx512>();
 #endif
 #ifdef MOTLEY_NEON
         case Isa::neon:
-            return table_of<enter_kernels_neon, enter_body_kernels_neon>();
+            return table_of<Isa::neon>();
 #endif
         default:
-            return table_of<enter_kernels_scalar, enter_body_kernels_scalar>();
+            return table_of<Isa::scalar>();
     }
 }
 

@@ -59,30 +59,36 @@ using Body = LaneBody<Lanes, kind>;
     return {{v[0], v[1], v[2]}, {w[0], w[1], w[2]}, {d[0], d[1], d[2]}, {q[0], q[1], q[2], q[3]}};
 }
 
-[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* offsets,
+[[gnu::always_inline]] inline void store_velocity(float* rows, const std::int32_t* offsets,
                                                   const Body<BodyKind::particle>& body, int count)
 {
-    store_quads(arrays.velocity, offset_floats, offsets,
+    store_quads(rows, offset_floats, offsets,
                 {body.linear.x, body.linear.y, body.linear.z, body.inverse_mass}, count);
 }
-[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* offsets,
+[[gnu::always_inline]] inline void store_velocity(float* rows, const std::int32_t* offsets,
                                                   const Body<BodyKind::planar>& body, int count)
 {
-    store_quads(arrays.velocity, offset_floats, offsets,
+    store_quads(rows, offset_floats, offsets,
                 {body.linear.x, body.linear.y, body.yaw_rate, body.inverse_mass}, count);
 }
-[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* offsets,
+[[gnu::always_inline]] inline void store_velocity(float* rows, const std::int32_t* offsets,
                                                   const Body<BodyKind::rigid>& body, int count)
 {
-    store_quads(arrays.velocity, offset_floats, offsets,
+    store_quads(rows, offset_floats, offsets,
                 {body.linear.x, body.linear.y, body.linear.z, body.inverse_mass}, count);
-    store_quads(arrays.velocity + 4, offset_floats, offsets,
-                {body.angular.x, body.angular.y, body.angular.z, Lanes(0)}, count);
+    store_quads(rows + 4, offset_floats, offsets, {body.angular.x, body.angular.y, body.angular.z, Lanes(0)},
+                count);
 }
 /// What cannot be moved is read by lanes and never written.
-[[gnu::always_inline]] inline void store_velocity(const BodyArrays&, const std::int32_t*,
-                                                  const Body<BodyKind::fixed>&, int)
+[[gnu::always_inline]] inline void store_velocity(float*, const std::int32_t*, const Body<BodyKind::fixed>&,
+                                                  int)
 {
+}
+template <class Body>
+[[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* offsets,
+                                                  const Body& body, int count)
+{
+    store_velocity(arrays.velocity, offsets, body, count);
 }
 
 /// A turned body has turned inertia.
@@ -130,9 +136,6 @@ template <BodyKind kind>
     store_row(body.linear, lanes);
     store_row(body.angular, lanes + 4 * block_lanes);
 }
-/// What cannot be moved is never written.
-[[gnu::always_inline]] inline void store_copy_velocity(const Body<BodyKind::fixed>&, float*) {}
-
 /// Asks for the rows of a whole block, with or without its displacements. Fixed bodies are few and stay in cache.
 template <BodyKind kind, bool delta>
 [[gnu::always_inline]] inline void prefetch_bodies(const BodyArrays& arrays, const std::int32_t* offsets)

@@ -33,19 +33,14 @@ void for_each_closure_row(const FigureBlock& figure, int lane, const Work& work)
 }
 
 /// linear . v + lever . w of one end.
-inline Lanes end_speed(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, const float* body, bool moves)
+inline Lanes end_speed(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, const float* body)
 {
-    if (moves) {
-        const Mover m = load_row<Mover>(body);
-        return dot(linear, m.linear) + dot(lever, m.angular);
-    }
-    const Standing s = load_row<Standing>(body);
-    return dot(linear, s.linear) + dot(lever, s.angular);
+    const Mover m = load_row<Mover>(body);
+    return dot(linear, m.linear) + dot(lever, m.angular);
 }
 inline Lanes speed_along(const ClosureRow& c)
 {
-    return end_speed(c.row.linear, c.row.lever_b, c.b, c.b_moves) -
-           end_speed(c.row.linear, c.row.lever_a, c.a, c.a_moves);
+    return end_speed(c.row.linear, c.row.lever_b, c.b) - end_speed(c.row.linear, c.row.lever_a, c.a);
 }
 /// v += M^-1 J^T lambda, and what that is of J M^-1 J^T.
 inline Lanes push_end(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, float* body, bool moves,
@@ -92,10 +87,8 @@ inline void factor_closures(const FigureBlock& figure, int lane)
         sweep_tree(figure, 0, TreeSweep::answers, lane);
         for_each_closure_row(figure, lane, [&](const ClosureRow& seen, int row) {
             if (row < column) return;
-            const Lanes of_a =
-                seen.a_moves ? end_speed(seen.row.linear, seen.row.lever_a, seen.a, true) : Lanes(0);
-            const Lanes of_b =
-                seen.b_moves ? end_speed(seen.row.linear, seen.row.lever_b, seen.b, true) : Lanes(0);
+            const Lanes of_a = seen.a_moves ? end_speed(seen.row.linear, seen.row.lever_a, seen.a) : Lanes(0);
+            const Lanes of_b = seen.b_moves ? end_speed(seen.row.linear, seen.row.lever_b, seen.b) : Lanes(0);
             store_lanes(of_b - of_a, at(row, column));
         });
     });

@@ -2,29 +2,24 @@
 // namespace, after kernel_bodies.h.
 
 using Mover = Body<BodyKind::rigid>;
-using Standing = Body<BodyKind::fixed>;
 
-/// Calls work(body's kind as a type, its lanes, its rows, how many lanes are not padding) for each body and bundle.
+/// Calls work(body's kind, its lanes, its rows, how many lanes are not padding) for each body and bundle. A fixed body has the
+/// lanes of a rigid one, without inverse mass.
 template <class Work>
 void for_each_copy(const FigureBlock& figure, const Work& work)
 {
     for (std::size_t i = 0; i < figure.shape->bodies.size(); ++i) {
         float* body = figure.body(static_cast<int>(i));
         const std::int32_t* offsets = figure.offsets + i * block_lanes;
-        for (int lane = 0; lane < figure.count; lane += Lanes_width) {
-            if (figure.shape->bodies[i] == BodyKind::rigid) {
-                work(static_cast<Mover*>(nullptr), body + lane, offsets + lane, figure.count - lane);
-            } else {
-                work(static_cast<Standing*>(nullptr), body + lane, offsets + lane, figure.count - lane);
-            }
-        }
+        for (int lane = 0; lane < figure.count; lane += Lanes_width)
+            work(figure.shape->bodies[i], body + lane, offsets + lane, figure.count - lane);
     }
 }
 template <class Work>
 void for_each_moving_copy(const FigureBlock& figure, const Work& work)
 {
-    for_each_copy(figure, [&](auto* kind, float* body, const std::int32_t* offsets, int count) {
-        if constexpr (std::is_same_v<decltype(kind), Mover*>) work(body, offsets, count);
+    for_each_copy(figure, [&](BodyKind kind, float* body, const std::int32_t* offsets, int count) {
+        if (kind == BodyKind::rigid) work(body, offsets, count);
     });
 }
 
@@ -36,21 +31,18 @@ inline void load_field_quads(const float* fields, Lanes (&out)[4])
 
 inline void load_copies(const KernelContext& context, const FigureBlock& figure)
 {
-    for_each_copy(figure, [&](auto* kind, float* body, const std::int32_t* offsets, int) {
-        const BodyArrays& arrays =
-            context.bodies[static_cast<int>(std::remove_pointer_t<decltype(kind)>::kind)];
-        const auto loaded = load_body(arrays, offsets, kind);
+    for_each_copy(figure, [&](BodyKind kind, float* body, const std::int32_t* offsets, int) {
+        const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
+        const Mover loaded = load_body(arrays, offsets, static_cast<Mover*>(nullptr));
         store_row(loaded, body);
-        if constexpr (std::is_same_v<decltype(kind), Mover*>) {
-            Lanes a[4], t[4];
-            load_quads(arrays.acceleration, offset_floats, offsets, a);
-            load_quads(arrays.acceleration + 4, offset_floats, offsets, t);
-            float* acceleration = body + CopyBody::acceleration * block_lanes;
-            store_row(Vec3<Lanes>{a[0], a[1], a[2]}, acceleration);
-            store_row(Vec3<Lanes>{t[0], t[1], t[2]}, acceleration + 3 * block_lanes);
-            // Asked for by those alone who are taken in as a step begins: nothing has turned yet.
-            store_row(loaded.inverse_inertia, body + CopyBody::start_inertia * block_lanes);
-        }
+        Lanes a[4], t[4];
+        load_quads(arrays.acceleration, offset_floats, offsets, a);
+        load_quads(arrays.acceleration + 4, offset_floats, offsets, t);
+        float* acceleration = body + CopyBody::acceleration * block_lanes;
+        store_row(Vec3<Lanes>{a[0], a[1], a[2]}, acceleration);
+        store_row(Vec3<Lanes>{t[0], t[1], t[2]}, acceleration + 3 * block_lanes);
+        // Figures are loaded when a step begins: nothing has turned yet.
+        store_row(loaded.inverse_inertia, body + CopyBody::start_inertia * block_lanes);
     });
 }
 
@@ -99,15 +91,12 @@ inline void integrate_copy_velocities(const KernelContext& context, const Figure
 inline void integrate_copy_positions(const KernelContext& context, const FigureBlock& figure)
 {
     const Lanes h(context.step.substep);
-    for_each_copy(figure, [&](auto* kind, float* lanes, const std::int32_t*, int) {
-        using Kind = std::remove_pointer_t<decltype(kind)>;
-        auto body = load_row<Kind>(lanes);
+    for_each_copy(figure, [&](BodyKind, float* lanes, const std::int32_t*, int) {
+        auto body = load_row<Mover>(lanes);
         advance(body, h);
-        if constexpr (std::is_same_v<Kind, Mover>) {
-            // A turned body has turned inertia.
-            body.inverse_inertia = rotate_tensor(
-                body.delta_rotation, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes));
-        }
+        // A turned body has turned inertia.
+        body.inverse_inertia = rotate_tensor(
+            body.delta_rotation, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes));
         store_row(body, lanes);
     });
 }

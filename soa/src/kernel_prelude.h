@@ -1,12 +1,17 @@
-// What kernels_*.cpp need from outside, before they open their anonymous namespaces.
+// What files of kernels need from outside, before they open their anonymous namespaces.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
 
-#include "block.h"
-#include "motley/core/constraint_types.h"
+#ifndef MOTLEY_SCALAR_LANES
+#include <xsimd/xsimd.hpp>
+#endif
+
+#include "kernel_entries.h"
+#include "motley/core/equality_row.h"
 #include "motley/core/joint_pose.h"
 #include "motley/core/lane_body.h"
 #include "motley/core/lane_residual.h"

@@ -1,5 +1,7 @@
 // Rows in and out of lanes. Included inside an anonymous namespace, after Lanes.
 
+inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float));
+
 template <class... Numbers>
 void unused(const Numbers&...)
 {

@@ -184,11 +184,8 @@ void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, 
     const Mover body = load_row<Mover>(figure.body(node.body) + lane);
     Row6 child, parent;
     put(body.linear, body.angular, child);
-    if (node.parent_node >= 0) {
+    if (node.parent_node >= 0 || sweep == TreeSweep::solves) {
         const Mover on = load_row<Mover>(figure.body(node.parent) + lane);
-        put(on.linear, on.angular, parent);
-    } else if (sweep == TreeSweep::solves) {
-        const Standing on = load_row<Standing>(figure.body(node.parent) + lane);
         put(on.linear, on.angular, parent);
     } else {
         unrolled<6>([&](auto c) { parent[c] = Lanes(0); });

@@ -1,53 +1,82 @@
-// The kernels of constraints, compiled once an instruction set. The including file sets the namespace and Lanes up;
-// see kernels_avx2.cpp. No include guard: included once by each.
-
-inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float));
+// The kernels of constraint types for every pair of body kinds. Included inside an anonymous namespace, after Lanes.
 
 #include "kernel_rows.h"
 
 #include "kernel_bodies.h"
 
+#include "kernel_bundle.h"
+
 #include "kernel_constraints.h"
 
+/// Whether there is such a pair at all: two bodies that cannot move need no constraint, a particle has no axes to lock, and
+/// the scene refuses both.
 template <class Type, BodyKind a, BodyKind b>
-void enter_pair(KernelTable& table, int type)
+constexpr bool occurs()
 {
-    // Two bodies that cannot move need no constraint, a particle has no axes to lock, and the scene refuses both.
     constexpr bool moves = a != BodyKind::fixed || b != BodyKind::fixed;
     constexpr bool has_particle = a == BodyKind::particle || b == BodyKind::particle;
-    if constexpr (moves && !(has_particle && requires { Type::needs_bodies_that_turn; })) {
-        Kernels<Type, a, b>::enter(table.constraints[class_of(type, a, b)]);
+    return moves && !(has_particle && requires { Type::needs_bodies_that_turn; });
+}
+/// Moving bodies of two models.
+constexpr bool is_mixed(BodyKind a, BodyKind b)
+{
+    return a != b && a != BodyKind::fixed && b != BodyKind::fixed;
+}
+/// Joints between moving bodies of two models are few in any scene: one copy of them, of one lane, serves every instruction
+/// set, with the same bits. See kernel_table().
+template <class Type, BodyKind a, BodyKind b>
+constexpr bool is_left_to_scalar()
+{
+    return Lanes_width > 1 && is_mixed(a, b) && requires
+    {
+        typename Type::Definition;
+    };
+}
+
+/// Of a joint that does not ask which of its bodies are fixed: such a body is a rigid one without inverse mass.
+template <class Type, BodyKind kind, BodyKind partner>
+constexpr BodyKind computed_as()
+{
+    constexpr bool joins_rigid = kind == BodyKind::fixed && partner == BodyKind::rigid;
+    return joins_rigid && requires
+    {
+        typename Type::Definition;
+    }
+    &&!Type::has_restitution ? BodyKind::rigid : kind;
+}
+
+template <KernelShare share, class Type, BodyKind a, BodyKind b>
+void enter_pair(ConstraintKernels* pairs)
+{
+    if constexpr (occurs<Type, a, b>() && !is_left_to_scalar<Type, a, b>()) {
+        using Computed = Kernels<Type, computed_as<Type, a, b>(), computed_as<Type, b, a>()>;
+        ConstraintKernels& kernels = pairs[class_of(0, a, b)];
+        if constexpr (share == KernelShare::rare) Computed::enter_rare(kernels);
+        if constexpr ((share == KernelShare::rare) == is_mixed(a, b)) Computed::enter_swept(kernels);
     }
 }
 
-template <class Type, BodyKind a>
-void enter_partners(KernelTable& table, int type)
+template <KernelShare share, class Type, BodyKind a>
+void enter_partners(ConstraintKernels* pairs)
 {
-    enter_pair<Type, a, BodyKind::particle>(table, type);
-    enter_pair<Type, a, BodyKind::planar>(table, type);
-    enter_pair<Type, a, BodyKind::rigid>(table, type);
-    enter_pair<Type, a, BodyKind::fixed>(table, type);
+    enter_pair<share, Type, a, BodyKind::particle>(pairs);
+    enter_pair<share, Type, a, BodyKind::planar>(pairs);
+    enter_pair<share, Type, a, BodyKind::rigid>(pairs);
+    enter_pair<share, Type, a, BodyKind::fixed>(pairs);
 }
 
-template <class Type>
-void enter_type(KernelTable& table, int type)
+template <KernelShare share, class Type>
+void enter_type(ConstraintKernels* pairs)
 {
-    enter_partners<Type, BodyKind::particle>(table, type);
-    enter_partners<Type, BodyKind::planar>(table, type);
-    enter_partners<Type, BodyKind::rigid>(table, type);
-    enter_partners<Type, BodyKind::fixed>(table, type);
+    enter_partners<share, Type, BodyKind::particle>(pairs);
+    enter_partners<share, Type, BodyKind::planar>(pairs);
+    enter_partners<share, Type, BodyKind::rigid>(pairs);
+    enter_partners<share, Type, BodyKind::fixed>(pairs);
 }
 
-template <class... Types>
-void enter_types(KernelTable& table, int first, TypeList<Types...>)
+template <KernelShare share, class... Types>
+void enter_types(ConstraintKernels* pairs, TypeList<Types...>)
 {
-    (enter_type<Types>(table, first++), ...);
-}
-
-/// Fills a table that was made elsewhere: the constructor of a table made here would be a weak function compiled for
-/// this instruction set.
-inline void enter_kernels(KernelTable& table)
-{
-    enter_types(table, 0, ContactTypes{});
-    enter_types(table, contact_type_count, JointTypes{});
+    int type = 0;
+    (enter_type<share, Types>(pairs + class_of(type++, BodyKind{}, BodyKind{})), ...);
 }

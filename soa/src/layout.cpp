@@ -232,7 +232,8 @@ void Layout::point_at(Scene& scene, const StepConstants& step)
                                 rows.inverse_inertia.data(),
                                 rows.pose.data(),
                                 rows.orientation.data(),
-                                static_cast<std::int32_t>(rows.size())};
+                                static_cast<std::int32_t>(rows.size()),
+                                static_cast<BodyKind>(kind) != BodyKind::fixed};
     }
     context.bodies_are_far = swept > second_level_cache();
 }

@@ -30,21 +30,34 @@
     out[3].v = r3;
 }
 
+/// The first `count` lanes of a bundle with padding: rows 0 to 3 and, in the upper halves, 4 to 7. Once a colour at most.
+[[gnu::noinline, gnu::cold]] inline void store_some_quads(float* rows, std::int64_t stride,
+                                                          const std::int32_t* index, const __m256* turned,
+                                                          int count)
+{
+    alignas(32) float row[8];
+    for (int lane = 0; lane < count; ++lane) {
+        _mm256_store_ps(row, turned[lane % 4]);
+        _mm_storeu_ps(rows + stride * index[lane], _mm_load_ps(row + lane / 4 * 4));
+    }
+}
+
 [[gnu::always_inline]] inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index,
                                                const Lanes (&in)[4], int count)
 {
-    __m256 r[4] = {in[0].v, in[1].v, in[2].v, in[3].v};
-    turn(r[0], r[1], r[2], r[3]);
-    if (count >= 8) {
-        for (int lane = 0; lane < 4; ++lane) {
-            _mm_storeu_ps(rows + stride * index[lane], _mm256_castps256_ps128(r[lane]));
-            _mm_storeu_ps(rows + stride * index[lane + 4], _mm256_extractf128_ps(r[lane], 1));
-        }
+    __m256 r0 = in[0].v, r1 = in[1].v, r2 = in[2].v, r3 = in[3].v;
+    turn(r0, r1, r2, r3);
+    if (count < 8) [[unlikely]] {
+        const __m256 turned[4] = {r0, r1, r2, r3};
+        store_some_quads(rows, stride, index, turned, count);
         return;
     }
-    for (int lane = 0; lane < 4; ++lane) {
-        if (lane < count) _mm_storeu_ps(rows + stride * index[lane], _mm256_castps256_ps128(r[lane]));
-        if (lane + 4 < count)
-            _mm_storeu_ps(rows + stride * index[lane + 4], _mm256_extractf128_ps(r[lane], 1));
-    }
+    const auto store_pair = [&](int lane, const __m256& r) {
+        _mm_storeu_ps(rows + stride * index[lane], _mm256_castps256_ps128(r));
+        _mm_storeu_ps(rows + stride * index[lane + 4], _mm256_extractf128_ps(r, 1));
+    };
+    store_pair(0, r0);
+    store_pair(1, r1);
+    store_pair(2, r2);
+    store_pair(3, r3);
 }

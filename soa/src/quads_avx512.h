@@ -31,23 +31,36 @@
     out[3].v = r3;
 }
 
+/// The first `count` lanes of a bundle with padding. Once a colour at most.
+[[gnu::noinline, gnu::cold]] inline void store_some_quads(float* rows, std::int64_t stride,
+                                                          const std::int32_t* index, const __m512* turned,
+                                                          int count)
+{
+    alignas(64) float row[16];
+    for (int lane = 0; lane < count; ++lane) {
+        _mm512_store_ps(row, turned[lane % 4]);
+        _mm_storeu_ps(rows + stride * index[lane], _mm_load_ps(row + lane / 4 * 4));
+    }
+}
+
 [[gnu::always_inline]] inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index,
                                                const Lanes (&in)[4], int count)
 {
-    __m512 r[4] = {in[0].v, in[1].v, in[2].v, in[3].v};
-    turn(r[0], r[1], r[2], r[3]);
-    if (count >= 16) {
-        for (int lane = 0; lane < 4; ++lane) {
-            _mm_storeu_ps(rows + stride * index[lane], _mm512_castps512_ps128(r[lane]));
-            _mm_storeu_ps(rows + stride * index[lane + 4], _mm512_extractf32x4_ps(r[lane], 1));
-            _mm_storeu_ps(rows + stride * index[lane + 8], _mm512_extractf32x4_ps(r[lane], 2));
-            _mm_storeu_ps(rows + stride * index[lane + 12], _mm512_extractf32x4_ps(r[lane], 3));
-        }
+    __m512 r0 = in[0].v, r1 = in[1].v, r2 = in[2].v, r3 = in[3].v;
+    turn(r0, r1, r2, r3);
+    if (count < 16) [[unlikely]] {
+        const __m512 turned[4] = {r0, r1, r2, r3};
+        store_some_quads(rows, stride, index, turned, count);
         return;
     }
-    alignas(64) float spill[4][16];
-    for (int i = 0; i < 4; ++i) _mm512_store_ps(spill[i], r[i]);
-    for (int lane = 0; lane < count; ++lane) {
-        _mm_storeu_ps(rows + stride * index[lane], _mm_load_ps(&spill[lane % 4][lane / 4 * 4]));
-    }
+    const auto store_four = [&](int lane, const __m512& r) {
+        _mm_storeu_ps(rows + stride * index[lane], _mm512_castps512_ps128(r));
+        _mm_storeu_ps(rows + stride * index[lane + 4], _mm512_extractf32x4_ps(r, 1));
+        _mm_storeu_ps(rows + stride * index[lane + 8], _mm512_extractf32x4_ps(r, 2));
+        _mm_storeu_ps(rows + stride * index[lane + 12], _mm512_extractf32x4_ps(r, 3));
+    };
+    store_four(0, r0);
+    store_four(1, r1);
+    store_four(2, r2);
+    store_four(3, r3);
 }

@@ -21,11 +21,26 @@
     out[3].v = r3;
 }
 
+/// The first `count` lanes of a bundle with padding. Once a colour at most.
+[[gnu::noinline, gnu::cold]] inline void store_some_quads(float* rows, std::int64_t stride,
+                                                          const std::int32_t* index,
+                                                          const float32x4_t* turned, int count)
+{
+    for (int lane = 0; lane < count; ++lane) vst1q_f32(rows + stride * index[lane], turned[lane]);
+}
+
 [[gnu::always_inline]] inline void store_quads(float* rows, std::int64_t stride, const std::int32_t* index,
                                                const Lanes (&in)[4], int count)
 {
-    float32x4_t r[4] = {in[0].v, in[1].v, in[2].v, in[3].v};
-    turn(r[0], r[1], r[2], r[3]);
-    for (int lane = 0; lane < (count < 4 ? count : 4); ++lane)
-        vst1q_f32(rows + stride * index[lane], r[lane]);
+    float32x4_t r0 = in[0].v, r1 = in[1].v, r2 = in[2].v, r3 = in[3].v;
+    turn(r0, r1, r2, r3);
+    if (count < 4) [[unlikely]] {
+        const float32x4_t turned[4] = {r0, r1, r2, r3};
+        store_some_quads(rows, stride, index, turned, count);
+        return;
+    }
+    vst1q_f32(rows + stride * index[0], r0);
+    vst1q_f32(rows + stride * index[1], r1);
+    vst1q_f32(rows + stride * index[2], r2);
+    vst1q_f32(rows + stride * index[3], r3);
 }

@@ -13,6 +13,7 @@
 #include "motley/core/joint_pose.h"
 #include "motley/core/joint_report.h"
 #include "motley/core/limit.h"
+#include "motley/core/type_list.h"
 
 namespace motley {
 
@@ -133,5 +134,8 @@ struct LevelRod {
         substep.error = row.start_error + b.delta.y - a.delta.y;
     }
 };
+
+/// The constraint types of this header.
+using LevelRodTypes = TypeList<LevelRod>;
 
 }  // namespace motley

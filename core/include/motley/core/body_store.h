@@ -5,7 +5,7 @@
 //   particle  vx vy vz 1/m                 dx dy dz  -                      ax ay az  -
 //   planar    vx vy w  1/m                 dx dy yaw 1/I                    ax ay alpha -
 //   rigid     vx vy vz 1/m | wx wy wz -    dx dy dz  - | qx qy qz qw        ax ay az - | tx ty tz -  (torque)
-//   fixed     as rigid with 1/m = 0        as rigid                         unused
+//   fixed     as rigid with 1/m = 0        as rigid                         zero
 //
 // Positions stay in double (or, if the build says so, in float); the lanes only ever see differences and the deltas of
 // one step.
@@ -60,7 +60,7 @@ struct BodyRows {
     AlignedVector<float> unpushed;  ///< as velocity: what it was in this substep before any constraint pushed
     AlignedVector<BodyPose> pose;
     AlignedVector<Quat<PoseReal>> orientation;   ///< rigid and fixed only
-    AlignedVector<float> world_inverse_inertia;  ///< rigid only, two quads: xx xy xz yy | yz zz - -
+    AlignedVector<float> world_inverse_inertia;  ///< rigid, and zero for fixed: xx xy xz yy | yz zz - -
     AlignedVector<float> start_inverse_inertia;  ///< the same when the step began
     AlignedVector<Sym3<float>> inertia;          ///< rigid only, body frame
     AlignedVector<Sym3<float>> inverse_inertia;  ///< rigid only, body frame

@@ -1,5 +1,5 @@
-// The one list of constraint types. Storage, batches, kernel tables and typed tests follow from it: to add a joint, write
-// its header as joint_type.h says and put its name into JointTypes.
+// The one list of constraint types. Storage, batches, kernels and typed tests follow from it: to add a joint, write its
+// header x.h as joint_type.h says, with the list XTypes of its types at its end, and put that name into JointTypes.
 #pragma once
 
 #include "motley/core/constraints/ball_socket.h"
@@ -15,27 +15,17 @@
 
 namespace motley {
 
-template <class... Types>
-struct TypeList {
-    static constexpr int size = sizeof...(Types);
-};
+/// The lists of the headers above, which are what the build compiles kernels by: contacts first, then joints.
+using ConstraintLists = TypeList<ContactTypes, BallSocketTypes, DistanceTypes, FrameJointTypes, DriveTypes,
+                                 SwingLimitTypes, ServoTypes, TransmissionTypes, PulleyTypes, ManifoldTypes>;
 
-/// In the order of Touch.
-using ContactTypes = TypeList<SmoothContact, RoughContact, BouncingContact>;
-template <class Definition>
-struct FrameJointOf;
-template <LinearLock linear, AngularLock angular>
-struct FrameJointOf<FrameJointDefinition<linear, angular>> {
-    using type = FrameJoint<linear, angular>;
+template <class Lists>
+struct JointTypesOf;
+template <class Contacts, class... Joints>
+struct JointTypesOf<TypeList<Contacts, Joints...>> {
+    using type = Joined<Joints...>;
 };
-
-using JointTypes =
-    TypeList<BallSocket, Distance, FrameJointOf<FixedDefinition>::type, FrameJointOf<HingeDefinition>::type,
-             FrameJointOf<SliderDefinition>::type, FrameJointOf<PointOnPlaneDefinition>::type,
-             FrameJointOf<PointOnLineDefinition>::type, FrameJointOf<RotationLockDefinition>::type,
-             FrameJointOf<ParallelAxesDefinition>::type, FrameJointOf<PerpendicularAxesDefinition>::type,
-             Drive<DriveAxis::slide>, Drive<DriveAxis::twist>, SwingLimit, PointServo, AngularServo, Gear,
-             RackAndPinion, Pulley, Manifold>;
+using JointTypes = JointTypesOf<ConstraintLists>::type;
 
 /// Types of constraint in all: contacts first, then joints, each at its place in the lists.
 inline constexpr int contact_type_count = ContactTypes::size;

@@ -64,12 +64,12 @@ Real inverse_mass_of(const LaneBody<Real, kind>& body)
     }
 }
 
-template <class Real, BodyKind kind_a, BodyKind kind_b>
-LaneResidual<Real> residual_of(const LaneBody<Real, kind_a>& a_before, const LaneBody<Real, kind_a>& a,
-                               const LaneBody<Real, kind_b>& b_before, const LaneBody<Real, kind_b>& b)
+/// Of the energy that both bodies' velocities change by, and 1/m_a + 1/m_b.
+template <class Real>
+LaneResidual<Real> residual_of(const Real& energy_of_changes, const Real& inverse_masses)
 {
-    const Real energy = maximum(energy_of_change(a_before, a) + energy_of_change(b_before, b), Real(0));
-    return {energy, square_root(energy * (inverse_mass_of<Real>(a) + inverse_mass_of<Real>(b)))};
+    const Real energy = maximum(energy_of_changes, Real(0));
+    return {energy, square_root(energy * inverse_masses)};
 }
 
 }  // namespace motley

@@ -14,6 +14,7 @@
 #include "motley/core/joint_pose.h"
 #include "motley/core/joint_report.h"
 #include "motley/core/step_constants.h"
+#include "motley/core/type_list.h"
 
 namespace motley {
 
@@ -146,5 +147,8 @@ struct BallSocket {
                 JointState::active};
     }
 };
+
+/// The constraint types of this header.
+using BallSocketTypes = TypeList<BallSocket>;
 
 }  // namespace motley

@@ -14,6 +14,7 @@
 #include "motley/core/limit.h"
 #include "motley/core/restitution.h"
 #include "motley/core/step_constants.h"
+#include "motley/core/type_list.h"
 
 namespace motley {
 
@@ -363,5 +364,8 @@ struct ContactKind {
 using SmoothContact = ContactKind<Touch::smooth>;
 using RoughContact = ContactKind<Touch::rough>;
 using BouncingContact = ContactKind<Touch::bouncing>;
+
+/// The constraint types of this header, in the order of Touch.
+using ContactTypes = TypeList<SmoothContact, RoughContact, BouncingContact>;
 
 }  // namespace motley

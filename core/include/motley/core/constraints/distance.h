@@ -16,6 +16,7 @@
 #include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
 #include "motley/core/limit.h"
+#include "motley/core/type_list.h"
 
 namespace motley {
 
@@ -208,5 +209,8 @@ struct Distance {
         return select(distinct, length, Real(0));
     }
 };
+
+/// The constraint types of this header.
+using DistanceTypes = TypeList<Distance>;
 
 }  // namespace motley

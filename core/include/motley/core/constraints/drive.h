@@ -18,6 +18,7 @@
 #include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
 #include "motley/core/limit.h"
+#include "motley/core/type_list.h"
 #include "motley/core/wrench.h"
 
 namespace motley {
@@ -286,5 +287,8 @@ struct Drive {
         }
     }
 };
+
+/// The constraint types of this header.
+using DriveTypes = TypeList<Drive<DriveAxis::slide>, Drive<DriveAxis::twist>>;
 
 }  // namespace motley

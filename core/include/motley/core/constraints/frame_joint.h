@@ -20,6 +20,7 @@
 #include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
 #include "motley/core/small_system.h"
+#include "motley/core/type_list.h"
 #include "motley/core/wrench.h"
 
 namespace motley {
@@ -349,5 +350,18 @@ struct FrameJoint {
         apply(b, linear, angular_b);
     }
 };
+
+template <class Definition>
+struct FrameJointOf;
+template <LinearLock linear, AngularLock angular>
+struct FrameJointOf<FrameJointDefinition<linear, angular>> {
+    using type = FrameJoint<linear, angular>;
+};
+/// The constraint types of this header.
+using FrameJointTypes =
+    TypeList<FrameJointOf<FixedDefinition>::type, FrameJointOf<HingeDefinition>::type,
+             FrameJointOf<SliderDefinition>::type, FrameJointOf<PointOnPlaneDefinition>::type,
+             FrameJointOf<PointOnLineDefinition>::type, FrameJointOf<RotationLockDefinition>::type,
+             FrameJointOf<ParallelAxesDefinition>::type, FrameJointOf<PerpendicularAxesDefinition>::type>;
 
 }  // namespace motley

@@ -20,6 +20,7 @@
 #include "motley/core/joint_report.h"
 #include "motley/core/limit.h"
 #include "motley/core/restitution.h"
+#include "motley/core/type_list.h"
 #include "motley/core/wrench.h"
 
 namespace motley {
@@ -392,5 +393,8 @@ struct Manifold {
         impulse.rolling = rolling;
     }
 };
+
+/// The constraint types of this header.
+using ManifoldTypes = TypeList<Manifold>;
 
 }  // namespace motley

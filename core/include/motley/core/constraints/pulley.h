@@ -14,6 +14,7 @@
 #include "motley/core/joint_pose.h"
 #include "motley/core/joint_report.h"
 #include "motley/core/limit.h"
+#include "motley/core/type_list.h"
 
 namespace motley {
 
@@ -188,5 +189,8 @@ struct Pulley {
         substep.mass = inverse_or_zero(k);
     }
 };
+
+/// The constraint types of this header.
+using PulleyTypes = TypeList<Pulley>;
 
 }  // namespace motley

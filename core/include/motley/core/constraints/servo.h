@@ -17,6 +17,7 @@
 #include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
 #include "motley/core/small_system.h"
+#include "motley/core/type_list.h"
 #include "motley/core/wrench.h"
 
 namespace motley {
@@ -308,5 +309,8 @@ struct AngularServo {
         apply_turn(b, turn);
     }
 };
+
+/// The constraint types of this header.
+using ServoTypes = TypeList<PointServo, AngularServo>;
 
 }  // namespace motley

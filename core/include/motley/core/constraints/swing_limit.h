@@ -12,6 +12,7 @@
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_report.h"
 #include "motley/core/limit.h"
+#include "motley/core/type_list.h"
 #include "motley/core/wrench.h"
 
 namespace motley {
@@ -154,5 +155,8 @@ struct SwingLimit {
         apply_turn(b, -(lambda * substep.normal));
     }
 };
+
+/// The constraint types of this header.
+using SwingLimitTypes = TypeList<SwingLimit>;
 
 }  // namespace motley

@@ -14,6 +14,9 @@
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_checks.h"
 #include "motley/core/joint_report.h"
+#include "motley/core/limit.h"
+#include "motley/core/step_constants.h"
+#include "motley/core/type_list.h"
 #include "motley/core/wrench.h"
 
 namespace motley {
@@ -199,5 +202,8 @@ struct Transmission {
 
 using Gear = Transmission<GearDefinition>;
 using RackAndPinion = Transmission<RackAndPinionDefinition>;
+
+/// The constraint types of this header.
+using TransmissionTypes = TypeList<Gear, RackAndPinion>;
 
 }  // namespace motley

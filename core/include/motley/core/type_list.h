@@ -1,0 +1,25 @@
+// A list of types, for what is made once for each type of a list.
+#pragma once
+
+namespace motley {
+
+template <class... Types>
+struct TypeList {
+    static constexpr int size = sizeof...(Types);
+};
+
+/// The types of several lists, one list behind the other.
+template <class... Lists>
+struct JoinedLists;
+template <class... Types>
+struct JoinedLists<TypeList<Types...>> {
+    using type = TypeList<Types...>;
+};
+template <class... First, class... Second, class... Rest>
+struct JoinedLists<TypeList<First...>, TypeList<Second...>, Rest...> {
+    using type = typename JoinedLists<TypeList<First..., Second...>, Rest...>::type;
+};
+template <class... Lists>
+using Joined = typename JoinedLists<Lists...>::type;
+
+}  // namespace motley

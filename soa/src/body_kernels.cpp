@@ -1,0 +1,54 @@
+// What moves bodies, by row and as copies of figures, and measures what sweeps do to them, for one instruction set: see constraint_kernels.cpp.
+#include "figure.h"
+#include "kernel_prelude.h"
+
+namespace motley {
+namespace {
+
+#include MOTLEY_LANES
+#include "kernel_rows.h"
+
+#include "kernel_bodies.h"
+
+#include "kernel_integration.h"
+
+#include "kernel_commit.h"
+
+#include "kernel_copies.h"
+
+#include "kernel_measure.h"
+
+template <BodyKind kind>
+void enter_body(BodyKernels& kernels)
+{
+    if constexpr (kind != BodyKind::fixed) {
+        kernels.integrate_velocities = integrate_velocities<kind>;
+        kernels.integrate_listed = integrate_listed<kind>;
+        kernels.commit = commit<kind>;
+        kernels.bring_back_velocities = bring_back_velocities<kind>;
+    }
+    kernels.integrate_positions = integrate_positions<kind, false>;
+    kernels.integrate_on = integrate_positions<kind, true>;
+    kernels.keep = keep_bodies<kind>;
+    kernels.find_change = find_change<kind>;
+    static_assert(fields_of<Body<kind>> <= most_body_floats);
+}
+
+}  // namespace
+
+template <>
+void enter_body_kernels<Isa::MOTLEY_ISA>(BodyKernels* kinds, FigureKernels& figures)
+{
+    enter_body<BodyKind::particle>(kinds[static_cast<int>(BodyKind::particle)]);
+    enter_body<BodyKind::planar>(kinds[static_cast<int>(BodyKind::planar)]);
+    enter_body<BodyKind::rigid>(kinds[static_cast<int>(BodyKind::rigid)]);
+    enter_body<BodyKind::fixed>(kinds[static_cast<int>(BodyKind::fixed)]);
+    figures.load = load_copies;
+    figures.store = store_copies;
+    figures.load_velocities = load_copy_velocities;
+    figures.store_velocities = store_copy_velocities;
+    figures.integrate_velocities = integrate_copy_velocities;
+    figures.integrate_positions = integrate_copy_positions;
+}
+
+}  // namespace motley

@@ -1,0 +1,208 @@
+// A bundle of constraints in a kernel: where its lanes lie, and what brings tables, poses and bodies into lanes and back.
+// Nothing here depends on the type of the constraint. What is outside the sweeps, or rare
+// within them, is a function of its own and not inlined: there is one copy for all types. Included inside an anonymous
+// namespace, after kernel_bodies.h.
+
+/// Where the velocities of a side go, by offsets of sixteen lanes: their rows, or nowhere. A joint's kernel for rigid bodies
+/// serves fixed ones too, whose rows have its shape and no inverse mass; those are many constraints' at once, and so never
+/// written. No branch: compilers move arithmetic behind it, and what it reads into memory, a fifth of a sweep.
+struct VelocitiesOut {
+    float* rows;
+    const std::int32_t* offsets;
+};
+/// Rows that nobody reads, one after another.
+struct Nowhere {
+    alignas(64) float row[8];
+    static constexpr std::int32_t offsets[block_lanes] = {};
+};
+
+/// One bundle of a block: its bodies, and where its lanes lie in the streams.
+template <BodyKind kind_a, BodyKind kind_b>
+struct ConstraintBundle {
+    const BodyArrays& arrays_a;
+    const BodyArrays& arrays_b;
+    const std::int32_t* offsets_a;
+    const std::int32_t* offsets_b;
+    const std::int32_t* constraint;
+    float* row;
+    float* substep;
+    float* impulse;
+    int count;  ///< lanes of this bundle that are not padding
+    int lane;   ///< of the block, where it begins
+    [[nodiscard]] Body<kind_a> load_a() const
+    {
+        return load_body(arrays_a, offsets_a, static_cast<Body<kind_a>*>(nullptr));
+    }
+    [[nodiscard]] Body<kind_b> load_b() const
+    {
+        return load_body(arrays_b, offsets_b, static_cast<Body<kind_b>*>(nullptr));
+    }
+    VelocitiesOut out_a, out_b;
+    void store_velocities(const Body<kind_a>& a, const Body<kind_b>& b) const
+    {
+        // One branch for all: behind the call for a bundle with padding nothing is left to be kept.
+        if (count >= Lanes_width) [[likely]] {
+            store_velocity(out_a.rows, out_a.offsets, a, Lanes_width);
+            store_velocity(out_b.rows, out_b.offsets, b, Lanes_width);
+        } else {
+            store_velocity(out_a.rows, out_a.offsets, a, count);
+            store_velocity(out_b.rows, out_b.offsets, b, count);
+        }
+    }
+};
+
+// ---- tables, an entry a lane ---------------------------------------------------------------------------------
+
+/// Quads q of the entries of a table, as fields of Lanes_width floats in line.
+[[gnu::noinline]] inline void gather_quads(const float* table, std::int64_t stride, const std::int32_t* index,
+                                           int quads, float* fields)
+{
+    for (int q = 0; q < quads; ++q) {
+        Lanes quad[4];
+        load_quads(table + 4 * q, stride, index, quad);
+        for (int i = 0; i < 4; ++i) store_lanes(quad[i], fields + (4 * q + i) * Lanes_width);
+    }
+}
+/// The way back. Impulses that are not finite are forgotten: a contained body must not poison the step that revives it.
+[[gnu::noinline]] inline void scatter_finite_quads(const float* fields, int quads, float* table,
+                                                   std::int64_t stride, const std::int32_t* index, int count)
+{
+    for (int q = 0; q < quads; ++q) {
+        Lanes quad[4];
+        for (int i = 0; i < 4; ++i) {
+            const Lanes value = load_lanes(fields + (4 * q + i) * Lanes_width);
+            quad[i] = select(absolute(value) < Lanes(1e30F), value, Lanes(0));
+        }
+        store_quads(table + 4 * q, stride, index, quad, count);
+    }
+}
+
+/// Room for a struct of lanes as whole quads.
+template <class Struct>
+struct QuadBuffer {
+    static constexpr int quads = (fields_of<Struct> + 3) / 4;
+    alignas(64) float fields[4 * quads * Lanes_width];
+};
+/// Entries of a table of structs, turned into a struct of lanes.
+template <class Struct>
+Struct gather_struct(const float* table, std::int64_t stride, const std::int32_t* index)
+{
+    QuadBuffer<Struct> buffer;
+    gather_quads(table, stride, index, buffer.quads, buffer.fields);
+    Struct result;
+    Lanes* fields = reinterpret_cast<Lanes*>(&result);
+    for (int i = 0; i < fields_of<Struct>; ++i) fields[i] = load_lanes(buffer.fields + i * Lanes_width);
+    return result;
+}
+template <class Struct>
+void scatter_finite(const Struct& value, float* table, std::int64_t stride, const std::int32_t* index,
+                    int count)
+{
+    QuadBuffer<Struct> buffer;
+    const Lanes* fields = reinterpret_cast<const Lanes*>(&value);
+    for (int i = 0; i < 4 * buffer.quads; ++i) {
+        store_lanes(i < fields_of<Struct> ? fields[i] : Lanes(0), buffer.fields + i * Lanes_width);
+    }
+    scatter_finite_quads(buffer.fields, buffer.quads, table, stride, index, count);
+}
+
+// ---- where bodies are when a step begins: subtracted as they are kept, and narrowed, a body at a time -------
+
+/// x - point, narrowed a lane at a time.
+template <BodyKind kind, class Point>
+Vec3<Lanes> from_points(const BodyArrays& arrays, const std::int32_t* offsets, const Point& point_of)
+{
+    alignas(64) float x[Lanes_width], y[Lanes_width], z[Lanes_width];
+    for (int lane = 0; lane < Lanes_width; ++lane) {
+        const Vec3<PoseReal>& at = arrays.pose[offsets[lane] / offsets_a_row(kind)].position;
+        const Vec3<double>& point = point_of(lane);
+        x[lane] = static_cast<float>(static_cast<double>(at.x) - point.x);
+        y[lane] = static_cast<float>(static_cast<double>(at.y) - point.y);
+        z[lane] = static_cast<float>(static_cast<double>(at.z) - point.z);
+    }
+    return {load_lanes(x), load_lanes(y), load_lanes(z)};
+}
+
+/// Four numbers of a pose in line, in one register where there is one so wide.
+using PoseQuad [[gnu::vector_size(4 * sizeof(PoseReal)), gnu::aligned(sizeof(PoseReal)), gnu::may_alias]] =
+    PoseReal;
+using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
+
+inline const PoseQuad& quad_at(const PoseReal& first)
+{
+    return *reinterpret_cast<const PoseQuad*>(&first);
+}
+
+/// quad_of(lane) of every lane, narrowed: out[i] holds number i of each.
+template <class QuadOf>
+[[gnu::always_inline]] inline void narrow_quads(const QuadOf& quad_of, Lanes (&out)[4])
+{
+    alignas(64) float narrow[Lanes_width][4];
+    std::int32_t index[Lanes_width];
+    for (int lane = 0; lane < Lanes_width; ++lane) {
+        *reinterpret_cast<FloatQuad*>(narrow[lane]) = __builtin_convertvector(quad_of(lane), FloatQuad);
+        index[lane] = lane;
+    }
+    load_quads(narrow[0], 4, index, out);
+}
+
+template <BodyKind kind_a, BodyKind kind_b>
+[[gnu::noinline]] Vec3<Lanes> between_bodies(const BodyArrays& a, const std::int32_t* offsets_a,
+                                             const BodyArrays& b, const std::int32_t* offsets_b)
+{
+    static_assert(sizeof(BodyPose) == sizeof(PoseQuad));
+    Lanes between[4];
+    narrow_quads(
+        [&](int lane) {
+            return quad_at(b.pose[offsets_b[lane] / offsets_a_row(kind_b)].position.x) -
+                   quad_at(a.pose[offsets_a[lane] / offsets_a_row(kind_a)].position.x);
+        },
+        between);
+    return {between[0], between[1], between[2]};
+}
+
+template <BodyKind kind>
+[[gnu::noinline]] Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays,
+                                                            const std::int32_t* offsets)
+{
+    if constexpr (kind == BodyKind::particle) {
+        return {};
+    } else if constexpr (kind == BodyKind::planar) {
+        alignas(64) float yaw[Lanes_width];
+        for (int lane = 0; lane < Lanes_width; ++lane) {
+            const auto angle = static_cast<double>(arrays.pose[offsets[lane] / offsets_a_row(kind)].yaw);
+            const double turns = angle * 0.15915494309189535;
+            const auto whole =
+                static_cast<double>(static_cast<long long>(turns < 0 ? turns - 0.5 : turns + 0.5));
+            yaw[lane] = static_cast<float>(angle - whole * 6.283185307179586);
+        }
+        return {load_lanes(yaw)};
+    } else {
+        static_assert(sizeof(Quat<PoseReal>) == sizeof(PoseQuad));
+        Lanes q[4];
+        narrow_quads(
+            [&](int lane) { return quad_at(arrays.orientation[offsets[lane] / offsets_a_row(kind)].x); }, q);
+        return {{q[0], q[1], q[2], q[3]}};
+    }
+}
+
+// ---- what is rare in a sweep -----------------------------------------------------------------------------------
+
+/// Asks for the bodies of a block, which lie anywhere. Its streams lie in line: the hardware sees to them.
+template <BodyKind kind_a, BodyKind kind_b, bool delta>
+[[gnu::noinline]] void prefetch_bodies_of(const BodyArrays& a, const BodyArrays& b, const BlockBodies& bodies)
+{
+    prefetch_bodies<kind_a, delta>(a, bodies.a);
+    prefetch_bodies<kind_b, delta>(b, bodies.b);
+}
+
+/// What a position solve did to a body: its displacement, and its inertia turned along.
+template <BodyKind kind>
+[[gnu::noinline]] void store_displaced(const BodyArrays& arrays, const std::int32_t* offsets,
+                                       const Body<kind>& displaced, int count)
+{
+    if (!arrays.can_move) return;
+    Body<kind> body = displaced;
+    turn_inertia(arrays, offsets, body);
+    store_delta(arrays, offsets, body, count);
+}

@@ -1,0 +1,21 @@
+// Every kernel of one instruction set.
+#pragma once
+
+#include "block.h"
+#include "motley/core/constraint_types.h"
+
+namespace motley {
+
+inline constexpr int class_count = constraint_type_count * body_kind_count * body_kind_count;
+
+/// By class_of, by kind of body, and of figures.
+struct KernelTable {
+    ConstraintKernels constraints[class_count];
+    BodyKernels bodies[body_kind_count];
+    FigureKernels figures;
+};
+
+/// The table compiled for an instruction set; only for those of available_isas().
+const KernelTable& kernel_table(Isa isa);
+
+}  // namespace motley
