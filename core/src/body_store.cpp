@@ -42,7 +42,7 @@ BodyStore::BodyStore()
     live_.push_back(0);
     models_.push_back(BodyModel::rigid);
     motions_.push_back(BodyMotion::static_body);
-    joint_counts.push_back(0);
+    first_ends.push_back(0);
     contained.push_back(0);
     inverse_masses.push_back(0);
     inverse_inertias.push_back(0);
@@ -94,7 +94,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
         live_.push_back(1);
         models_.push_back(d.model);
         motions_.push_back(d.motion);
-        joint_counts.push_back(0);
+        first_ends.push_back(0);
         contained.push_back(0);
         inverse_masses.push_back(0);
         inverse_inertias.push_back(0);
@@ -105,7 +105,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
         slots_[slot].row = BodyRow(kind, row);
         models_[slot] = d.model;
         motions_[slot] = d.motion;
-        joint_counts[slot] = 0;
+        first_ends[slot] = 0;
         contained[slot] = 0;
     }
 
@@ -193,6 +193,37 @@ void BodyStore::revive(BodyId body)
     if (where.kind() == BodyKind::planar)
         r.delta[std::size_t{4} * where.row() + 3] = inverse_inertias[body.slot];
     if (where.kind() == BodyKind::rigid) refresh_world_inertia(where.row());
+}
+
+void BodyStore::derive()
+{
+    contained_count = static_cast<std::size_t>(std::count(contained.begin(), contained.end(), 1));
+    for (int k = 0; k < body_kind_count; ++k) {
+        const auto kind = static_cast<BodyKind>(k);
+        BodyRows& r = rows(kind);
+        const auto quads = static_cast<std::size_t>(quads_of(kind));
+        r.delta.assign(r.velocity.size(), 0);
+        r.unpushed.assign(r.velocity.size(), 0);
+        if (kind == BodyKind::rigid) {
+            r.world_inverse_inertia.assign(r.velocity.size(), 0);
+            r.start_inverse_inertia.assign(r.velocity.size(), 0);
+            r.inverse_inertia.assign(r.size(), {});
+        }
+        for (std::uint32_t row = 0; row < r.size(); ++row) {
+            const std::uint32_t slot = r.slot[row];
+            const bool moves = slot != 0 && contained[slot] == 0;
+            float* velocity = &r.velocity[4 * quads * row];
+            float* delta = &r.delta[4 * quads * row];
+            if (!moves) std::fill_n(velocity, 4 * quads, 0.0F);
+            if (slot == 0) std::fill_n(&r.acceleration[4 * quads * row], 4 * quads, 0.0F);
+            if (quads == 2) delta[7] = 1;
+            if (kind == BodyKind::rigid && slot != 0) r.inverse_inertia[row] = inverse_of(r.inertia[row]);
+            if (!moves) continue;
+            velocity[3] = inverse_masses[slot];
+            if (kind == BodyKind::planar) delta[3] = inverse_inertias[slot];
+            if (kind == BodyKind::rigid) refresh_world_inertia(row);
+        }
+    }
 }
 
 int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, std::uint32_t& contained_slot)

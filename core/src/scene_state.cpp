@@ -58,13 +58,11 @@ void Scene::set_pose(BodyId body, const Vec3<double>& position, const Quat<doubl
         if (where.kind() == BodyKind::rigid && bodies_.contained[body.slot] == 0)
             bodies_.refresh_world_inertia(where.row());
     }
-    if (bodies_.joint_counts[body.slot] == 0) return;
     // A teleport makes the cached impulses meaningless.
-    joints_.for_each([&](auto& store, int) {
-        for (std::size_t i = 0; i < store.size(); ++i) {
-            if (store.definitions[i].body_a == body || store.definitions[i].body_b == body)
-                store.forget_impulse(i);
-        }
+    joints_.for_each_on(bodies_.first_ends[body.slot], [&](const JointStores::Slot& joint) {
+        joints_.for_each([&](auto& store, int type) {
+            if (type == joint.type) store.forget_impulse(joint.index);
+        });
     });
 }
 

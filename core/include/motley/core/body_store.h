@@ -98,8 +98,8 @@ class BodyStore {
 
     [[nodiscard]] BodyMotion motion(BodyId body) const { return motions_[body.slot]; }
     [[nodiscard]] BodyModel model(BodyId body) const { return models_[body.slot]; }
-    /// Joints on each slot; lets a removal skip the search for joints.
-    std::vector<std::uint32_t> joint_counts;
+    /// Of each slot the first joint on it, as JointStores::ends counts; 0 when there is none.
+    std::vector<std::uint32_t> first_ends;
     /// Frozen by a step because its state was not finite: what pushes it is left out.
     std::vector<std::uint8_t> contained;
     std::size_t contained_count = 0;
@@ -117,6 +117,8 @@ class BodyStore {
     int commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, std::uint32_t& contained_slot);
     /// Gives a contained body its mass back.
     void revive(BodyId body);
+    /// Fills in what follows from the rest and is in no file: displacements, inertias, what is counted.
+    void derive();
     /// World inverse inertia of a rigid row from its orientation, now and for the start of the next step.
     void refresh_world_inertia(std::uint32_t row);
 

@@ -148,6 +148,9 @@ class Scene {
     [[noreturn]] static void refuse_dead(BodyId body, const char* what);
     void require_alive(std::span<const BodyId> bodies, const char* what) const;
     JointBodies check_joint_bodies(BodyId a, BodyId b) const;
+    static void check_break_limit(const BreakLimit& limit);
+    static void check_wish(const char* field, int at_least);
+    void check_island_wish(const IslandIterations& asked) const;
     ConstraintId take_joint_slot(int type, std::size_t index);
     std::size_t index_of_joint(ConstraintId joint, int type) const;
     void remove_joints_of(std::span<const BodyId> bodies);
@@ -163,10 +166,12 @@ ConstraintId Scene::add_joint(const Definition& definition)
     auto& store = std::get<static_cast<std::size_t>(type)>(joints_.stores);
     using Type = typename std::remove_cvref_t<decltype(store)>::Type;
     Type::validate(definition, check_joint_bodies(definition.body_a, definition.body_b));
+    joints_.make_room();
+    store.make_room();
     const ConstraintId id = take_joint_slot(type, store.size());
     store.push_back(definition, id.slot);
-    ++bodies_.joint_counts[definition.body_a.slot];
-    ++bodies_.joint_counts[definition.body_b.slot];
+    joints_.link(2 * id.slot, bodies_.first_ends[definition.body_a.slot]);
+    joints_.link(2 * id.slot + 1, bodies_.first_ends[definition.body_b.slot]);
     joints_.version.reset();
     return id;
 }
