@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motley/core/growth.h"
+
 namespace motley {
 namespace {
 
@@ -50,6 +52,61 @@ BodyStore::BodyStore()
         take_row(static_cast<BodyKind>(kind));  // the null bodies
 }
 
+namespace {
+
+BodyKind kind_of(const BodyDefinition& d)
+{
+    return d.motion == BodyMotion::dynamic_body ? static_cast<BodyKind>(d.model) : BodyKind::fixed;
+}
+
+std::size_t more_than(std::size_t wanted, const std::vector<std::uint32_t>& free)
+{
+    return wanted > free.size() ? wanted - free.size() : 0;
+}
+
+}  // namespace
+
+void BodyStore::make_room(std::span<const BodyDefinition> definitions)
+{
+    std::array<std::size_t, body_kind_count> wanted{};
+    for (const BodyDefinition& d : definitions) ++wanted[static_cast<std::size_t>(kind_of(d))];
+    for (int k = 0; k < body_kind_count; ++k) {
+        const auto kind = static_cast<BodyKind>(k);
+        BodyRows& r = rows(kind);
+        const std::size_t more = more_than(wanted[static_cast<std::size_t>(k)], r.free_rows);
+        if (more == 0) continue;
+        for (AlignedVector<float>* values : {&r.velocity, &r.delta, &r.unpushed, &r.acceleration})
+            make_room_for(*values, more * 4 * static_cast<std::size_t>(quads_of(kind)));
+        make_room_for(r.pose, more);
+        make_room_for(r.slot, more);
+        if (quads_of(kind) == 2) make_room_for(r.orientation, more);
+        if (kind != BodyKind::rigid) continue;
+        make_room_for(r.world_inverse_inertia, 8 * more);
+        make_room_for(r.start_inverse_inertia, 8 * more);
+        make_room_for(r.inertia, more);
+        make_room_for(r.inverse_inertia, more);
+    }
+    const std::size_t more = more_than(definitions.size(), free_slots_);
+    if (more == 0) return;
+    make_room_for(slots_, more);
+    make_room_for(live_, more);
+    make_room_for(models_, more);
+    make_room_for(motions_, more);
+    make_room_for(first_ends, more);
+    make_room_for(contained, more);
+    make_room_for(inverse_masses, more);
+    make_room_for(inverse_inertias, more);
+}
+
+void BodyStore::make_room_to_remove(std::span<const BodyId> bodies)
+{
+    std::array<std::size_t, body_kind_count> going{};
+    for (const BodyId body : bodies) ++going[static_cast<std::size_t>(row_of(body).kind())];
+    for (std::size_t kind = 0; kind < body_kind_count; ++kind)
+        make_room_for(rows_[kind].free_rows, going[kind]);
+    make_room_for(free_slots_, bodies.size());
+}
+
 std::uint32_t BodyStore::take_row(BodyKind kind)
 {
     BodyRows& r = rows(kind);
@@ -84,7 +141,7 @@ std::uint32_t BodyStore::take_row(BodyKind kind)
 BodyId BodyStore::add(const BodyDefinition& d)
 {
     const bool dynamic = d.motion == BodyMotion::dynamic_body;
-    const BodyKind kind = dynamic ? static_cast<BodyKind>(d.model) : BodyKind::fixed;
+    const BodyKind kind = kind_of(d);
     const std::uint32_t row = take_row(kind);
 
     std::uint32_t slot;

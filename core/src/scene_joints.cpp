@@ -159,7 +159,12 @@ void Scene::set_island_iterations(BodyId body, int at_least)
     if (at_least > 0) island_iterations_.push_back({body, at_least});
 }
 
-void Scene::find_break_events()
+void Scene::make_room_for_break_events()
+{
+    break_events_.reserve(joints_.watched.size());
+}
+
+void Scene::find_break_events() noexcept
 {
     break_events_.clear();
     std::erase_if(joints_.watched, [&](ConstraintId joint) {
@@ -169,7 +174,6 @@ void Scene::find_break_events()
         slot.watched = asks ? 1 : 0;
         return !asks;
     });
-    break_events_.reserve(joints_.watched.size());
     for (const ConstraintId joint : joints_.watched) {
         const BreakLimit& limit = joints_.slots[joint.slot].break_limit;
         const JointReport report = joint_report(joint);

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "motley/core/aligned_vector.h"
@@ -74,8 +75,12 @@ class BodyStore {
   public:
     BodyStore();
 
+    /// Room for these; then add() cannot fail.
+    void make_room(std::span<const BodyDefinition> definitions);
     /// Adds a checked definition.
     BodyId add(const BodyDefinition& definition);
+    /// Room to remember what these leave free; then remove() cannot fail.
+    void make_room_to_remove(std::span<const BodyId> bodies);
     /// Frees the slot and row of a live body.
     void remove(BodyId body);
     /// Gives every body a new row, in the order of a curve that fills space, and closes the gaps of free ones.

@@ -7,6 +7,7 @@
 
 #include "motley/core/body.h"
 #include "motley/core/body_store.h"
+#include "motley/core/busy_flag.h"
 #include "motley/core/constraint_types.h"
 #include "motley/core/contact_cache.h"
 #include "motley/core/ids.h"
@@ -126,8 +127,12 @@ class Scene {
     [[nodiscard]] JointStores& joints() { return joints_; }
     [[nodiscard]] ContactCache& contact_cache() { return contacts_; }
     [[nodiscard]] const ContactCache& contact_cache() const { return contacts_; }
+    /// Room for a break event of each watched joint; then looking for them allocates nothing.
+    void make_room_for_break_events();
     /// Looks for joints that bore more than their limit, once a step is done.
-    void find_break_events();
+    void find_break_events() noexcept;
+    /// Taken by a step for as long as it lasts.
+    [[nodiscard]] BusyFlag& busy() { return busy_; }
     /// Seconds of the last substep: turns impulses into forces. 0 before the first step.
     float last_substep = 0;
 
@@ -140,6 +145,7 @@ class Scene {
     std::vector<IslandIterations> island_iterations_;  ///< of bodies alive
     BodyId ground_{};
     std::size_t body_count_ = 0;
+    BusyFlag busy_;
 
     void require_alive(BodyId body, const char* what) const
     {
