@@ -44,9 +44,11 @@ class Scene {
     [[nodiscard]] BodyState state(BodyId body) const;
     /// Teleports a body. Velocities are kept. Joints on it start cold in the next step.
     void set_pose(BodyId body, const Vec3<double>& position, const Quat<double>& orientation, double yaw);
-    /// Sets one body's velocity. Refused for static bodies and for components that the model does not have.
+    /// Sets one body's velocity. Refused for static bodies and for components that the model does not have. Of no effect on
+    /// a contained body, which stays where it is: revive() says how it moves.
     void set_velocity(BodyId body, const Vec3<float>& linear, const Vec3<float>& angular);
-    /// A force (N) and torque (N m), world, that act in every step until changed. Dynamic bodies only.
+    /// A force (N) and torque (N m), world, that act in every step until changed; on a contained body once it is revived.
+    /// Dynamic bodies only.
     void set_force(BodyId body, const Vec3<float>& force, const Vec3<float>& torque);
     /// Thaws a body that a step contained: the host says where it is and how it moves.
     void revive(BodyId body, const Vec3<double>& position, const Vec3<float>& linear);
