@@ -68,7 +68,8 @@ template <class Real, BodyKind kind_a, BodyKind kind_b>
 LaneResidual<Real> residual_of(const LaneBody<Real, kind_a>& a_before, const LaneBody<Real, kind_a>& a,
                                const LaneBody<Real, kind_b>& b_before, const LaneBody<Real, kind_b>& b)
 {
-    const Real energy = maximum(energy_of_change(a_before, a) + energy_of_change(b_before, b), Real(0));
+    // Rounding may leave it below zero. In this order what is not a number stays that, and is never taken for solved.
+    const Real energy = maximum(Real(0), energy_of_change(a_before, a) + energy_of_change(b_before, b));
     return {energy, square_root(energy * (inverse_mass_of<Real>(a) + inverse_mass_of<Real>(b)))};
 }
 

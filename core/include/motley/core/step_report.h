@@ -35,9 +35,9 @@ enum class StepStatus {
 
 /// The errors of a scene's positions, in double from the definitions, not from what the solver believes.
 struct SceneErrors {
-    double joint_separation_rms = 0;  ///< m, over all joints
+    double joint_separation_rms = 0;  ///< m, over all joints but servos, which pull and hold nothing
     double joint_separation_max = 0;
-    double joint_angle_rms = 0;  ///< rad, over all joints
+    double joint_angle_rms = 0;  ///< rad, over the same
     double joint_angle_max = 0;
     double kinetic_energy = 0;       ///< J
     double momentum[3] = {0, 0, 0};  ///< kg m/s
