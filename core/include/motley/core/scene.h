@@ -19,7 +19,14 @@
 namespace motley {
 
 /// Holds everything that decides what the next step computes. Every call that is refused throws
-/// InvalidInput and changes nothing. Not thread-safe; one scene, one thread, or many scenes, many threads.
+/// InvalidInput and changes nothing; so does one for which memory runs out, which throws std::bad_alloc. A scene that was
+/// moved from, or whose assignment ran out of memory, may be assigned to and destroyed, and nothing else.
+///
+/// Threads. Different scenes know nothing of each other. Of one scene,
+/// - calls that are const may run beside each other;
+/// - set_velocity, set_velocities, set_force and set_forces may run beside each other, and beside const calls about one or
+///   some bodies, as long as no body that one of them names is named by another: they touch those bodies' rows alone;
+/// - every other call, and a step, must be alone. A second step at the same time is refused; nothing else is found out.
 class Scene {
   public:
     Scene();
