@@ -34,8 +34,8 @@ struct SceneError {
     double value;
 };
 
-/// A line of the table at the end: what, and its value with its unit.
-using Figure = std::pair<std::string, std::string>;
+/// A line of the table at the end: what, with its unit in brackets, and its value.
+using Figure = std::pair<std::string, double>;
 
 class BenchScene {
   public:

@@ -67,6 +67,7 @@ void Crowd::steer(Scene& scene, Executor& executor)
                 forces_[i] = {gain * (speed * dx - velocities[i].x), gain * (speed * dy - velocities[i].y),
                               0};
             }
+            // No two chunks name the same body, and nobody else calls: see Scene.
             const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
             scene.set_forces(std::span<const BodyId>(bodies_).subspan(first, count),
                              std::span<const Vec3<float>>(forces_).subspan(first, count));

@@ -44,9 +44,9 @@ std::string table_of(const RunResult& r)
     line("whole step, median", fmt::format("{:.3f} ms", r.median_step_seconds * 1e3));
     line("constraints (mean)", fmt::format("{:.0f}", r.constraints));
     line("ns per constraint and sweep", fmt::format("{:.2f}", nanoseconds_per_visit(r)));
-    line("colours / overflow", fmt::format("{} / {}", r.last.colours, r.last.overflow));
-    line("lane occupancy", fmt::format("{:.1f} %", 100 * r.last.lane_occupancy));
-    line("bytes per constraint and sweep", fmt::format("{:.1f}", r.last.bytes_per_constraint));
+    line("colours / overflow (most)", fmt::format("{} / {}", r.colours, r.overflow));
+    line("lane occupancy", fmt::format("{:.1f} %", 100 * r.lane_occupancy));
+    line("bytes per constraint and sweep", fmt::format("{:.1f}", r.bytes_per_constraint));
     const double steps = static_cast<double>(std::max<std::int64_t>(1, r.times.steps));
     text += "  ms per step\n";
     line("  steering (host)", fmt::format("{:9.4f}", r.times.steering / steps * 1e3));
@@ -72,7 +72,7 @@ std::string table_of(const RunResult& r)
              fmt::format("{:.3g} / {:.3g} m/s rms / max, a step", r.direct_rms, r.direct_max));
     }
     line("bodies contained", fmt::format("{}", r.contained));
-    for (const Figure& figure : r.figures) line(figure.first, figure.second);
+    for (const auto& [name, value] : r.figures) line(name, fmt::format("{:.4g}", value));
     line("state hash", fmt::format("{:016x}", r.state_hash));
     return text;
 }
@@ -91,10 +91,10 @@ std::string json_of(const RunResult& r)
     json["median_step_ms"] = r.median_step_seconds * 1e3;
     json["constraints"] = r.constraints;
     json["ns_per_constraint_and_sweep"] = nanoseconds_per_visit(r);
-    json["colours"] = r.last.colours;
-    json["overflow"] = r.last.overflow;
-    json["lane_occupancy"] = r.last.lane_occupancy;
-    json["bytes_per_constraint"] = r.last.bytes_per_constraint;
+    json["colours"] = r.colours;
+    json["overflow"] = r.overflow;
+    json["lane_occupancy"] = r.lane_occupancy;
+    json["bytes_per_constraint"] = r.bytes_per_constraint;
     json["seconds"]["steering"] = r.times.steering;
     json["seconds"]["neighbour search"] = r.times.search;
     for (int s = 0; s < stage_count; ++s)
@@ -106,7 +106,7 @@ std::string json_of(const RunResult& r)
     json["residual_approach_speed_rms"] = r.residual;
     if (r.direct_rms >= 0) json["off_direct_m_per_s"] = {{"rms", r.direct_rms}, {"max", r.direct_max}};
     json["bodies_contained"] = r.contained;
-    for (const Figure& figure : r.figures) json["figures"][figure.first] = figure.second;
+    for (const auto& [name, value] : r.figures) json["figures"][name] = value;
     json["state_hash"] = fmt::format("{:016x}", r.state_hash);
     json["host_load"] = host_load();
     return json.dump(2) + "\n";

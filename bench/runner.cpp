@@ -17,6 +17,8 @@
 namespace motley::bench {
 namespace {
 
+constexpr double lanes_of_a_block = 16;
+
 /// A bar on a terminal; elsewhere a line each quarter.
 class Progress {
   public:
@@ -158,6 +160,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));
     Progress progress(outputs.progress, entry.name, steps);
     std::vector<double> step_seconds, solver_seconds;
+    double blocks = 0;
     for (std::int64_t step = 0; step < steps; ++step) {
         const double time = static_cast<double>(step) * static_cast<double>(options.dt);
         const double began = now();
@@ -188,6 +191,10 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         for (std::size_t s = 0; s < stage_count; ++s) times.stages[s] += result.last.seconds[s];
         const auto constraints = static_cast<double>(result.last.contacts + result.last.joints);
         result.constraints += constraints;
+        blocks += static_cast<double>(result.last.blocks);
+        result.bytes_per_constraint += result.last.bytes_per_constraint * constraints;
+        result.colours = std::max(result.colours, result.last.colours);
+        result.overflow = std::max(result.overflow, result.last.overflow);
         times.constraint_sweeps += constraints * static_cast<double>(result.last.sweeps);
         result.bodies += static_cast<double>(scene->scene.body_count());
         result.contained += result.last.bodies_contained;
@@ -205,6 +212,10 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     if (trajectories) trajectories->close();
     const auto count = static_cast<double>(std::max<std::int64_t>(1, result.steps));
     result.bodies /= count;
+    if (result.constraints > 0) {
+        result.lane_occupancy = result.constraints / (lanes_of_a_block * blocks);
+        result.bytes_per_constraint /= result.constraints;
+    }
     result.constraints /= count;
     result.median_step_seconds = median(step_seconds);
     result.median_solver_seconds = median(solver_seconds);
@@ -214,8 +225,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     direct.report(result);
     result.error = scene->error();
     result.figures = scene->figures();
-    if (result.error)
-        result.figures.emplace_back(result.error->name, fmt::format("{:.4g}", result.error->value));
+    if (result.error) result.figures.emplace_back(result.error->name, result.error->value);
     return result;
 }
 

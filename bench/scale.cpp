@@ -39,7 +39,7 @@ ScaleResult::Size measure_once(std::int64_t people, const ScaleOptions& options)
                                                        (settings.iterations + settings.relaxations)) *
                                    result.constraints);
     size.sweep_share = sweeps / result.times.solver;
-    size.sweep_bytes_per_second = (result.last.bytes_per_constraint + body_bytes) / size.sweep_seconds;
+    size.sweep_bytes_per_second = (result.bytes_per_constraint + body_bytes) / size.sweep_seconds;
     size.triad_bytes_per_second = memory_triad(options.solver.threads);
     return size;
 }

@@ -211,6 +211,16 @@ struct JointCases<DriveDefinition<axis>> {
     {
         return drive.spring_hertz == 0 && drive.motor_speed == 0;
     }
+    /// A twist is none where the axes point opposite ways: the drive is meant beside a joint that keeps them together, and
+    /// near there it throws free bodies about.
+    static bool is_regular(const Definition& drive, const BodyState& a, const BodyState& b)
+    {
+        if (axis == DriveAxis::slide) return true;
+        const auto axis_of = [](const BodyState& body, const JointFrame& frame) {
+            return rotate(body.orientation * unit(convert<double>(frame.rotation)), Vec3<double>{1, 0, 0});
+        };
+        return dot(axis_of(a, drive.frame_a), axis_of(b, drive.frame_b)) > -0.8;
+    }
     static std::vector<Definition> of(const JointPlace& at)
     {
         Definition limits{.body_a = at.a, .body_b = at.b};

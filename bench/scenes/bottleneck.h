@@ -79,11 +79,11 @@ class Bottleneck final : public CrowdScene {
 
     [[nodiscard]] std::vector<Figure> figures() const override
     {
-        const double span = last_ - first_;
-        return {{"people through the door", fmt::format("{} of {}", passed_, arrivals_.size())},
-                {"flow", passed_ > 1 ? fmt::format("{:.2f} persons/s (measured: {:.2f})",
-                                                   (passed_ - 1) / span, measured_flow)
-                                     : std::string("none yet")}};
+        std::vector<Figure> figures{{"people through the door", passed_},
+                                    {"people of the experiment", static_cast<double>(arrivals_.size())}};
+        if (passed_ > 1) figures.emplace_back("flow (persons/s)", (passed_ - 1) / (last_ - first_));
+        figures.emplace_back("flow of the experiment (persons/s)", measured_flow);
+        return figures;
     }
 
   private:

@@ -34,7 +34,7 @@ class RigScene final : public BenchScene {
     {
         if (!rig_.truth) return {};
         read_poses();
-        return {{entry_.error_name, fmt::format("{:.3g} at the end", rig_.truth(poses_, time_ + 1.0 / 60))}};
+        return {{std::string("at the end: ") + entry_.error_name, rig_.truth(poses_, time_ + 1.0 / 60)}};
     }
 
   private:

@@ -225,8 +225,7 @@ class ElasticPulse final : public Pulse {
             const float v = scene.state(bodies_[static_cast<std::size_t>(i)]).linear_velocity.x;
             energy += static_cast<double>(v * v);
         }
-        return {
-            {"kinetic energy kept", fmt::format("{:.4f} %", 100 * energy / (shape_.speed * shape_.speed))}};
+        return {{"kinetic energy kept (%)", 100 * energy / (shape_.speed * shape_.speed)}};
     }
 };
 

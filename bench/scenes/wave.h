@@ -60,11 +60,11 @@ class Wave final : public CrowdScene {
             reached = std::max(reached, start_[i]);
         }
         const double given = pushed_ * push / static_cast<double>(people.agents[0].mass) / 2;
-        return {{"momentum, off what was given",
-                 fmt::format("{:.2e} along, {:.2e} across", along / pushed_ - 1, across / pushed_)},
-                {"kinetic energy left", fmt::format("{:.2f} %", 100 * energy / given)},
-                {"people moved by 1 mm", fmt::format("{}", moved)},
-                {"depth that the wave has reached", fmt::format("{:.2f} m", reached)}};
+        return {{"momentum along, off what was given (share)", along / pushed_ - 1},
+                {"momentum across (share)", across / pushed_},
+                {"kinetic energy left (%)", 100 * energy / given},
+                {"people moved by 1 mm", static_cast<double>(moved)},
+                {"depth that the wave has reached (m)", reached}};
     }
 
   private:

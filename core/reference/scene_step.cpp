@@ -103,15 +103,21 @@ double step_directly(Scene& scene, float dt, const SolverSettings& settings,
         }
     });
     std::vector<ContactPoint> points;
-    for (const Contact& contact : contacts) {
-        if (is_left_out(contact.body_a, contact.body_b)) continue;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const Contact& contact = contacts[i];
+        if (scene.contact_cache().staged().colours[i] == no_colour) continue;  // left out by the layout
         points.push_back({index_of_slot[contact.body_a.slot], index_of_slot[contact.body_b.slot], contact});
     }
 
     const double violation = world.step_directly(static_cast<double>(dt), settings, points);
 
+    // Everything that asks for memory comes before anything is written.
+    std::vector<std::vector<double>> memories;
+    for (const Joint& joint : world.joints)
+        memories.push_back(joint.model->memory(joint.impulses, joint.travelled));
+
     for (std::size_t i = 0; i < ids.size(); ++i) write_back(scene, ids[i], world.bodies[i]);
-    std::size_t next = 0;
+    auto next = memories.begin();
     scene.joints().for_each([&](auto& store, int) {
         using Store = std::remove_cvref_t<decltype(store)>;
         constexpr std::size_t stride = quad_floats<typename Store::Memory>;
@@ -120,8 +126,7 @@ double step_directly(Scene& scene, float dt, const SolverSettings& settings,
                 store.forget_impulse(i);
                 continue;
             }
-            const Joint& joint = world.joints[next++];
-            const std::vector<double> memory = joint.model->memory(joint.impulses, joint.travelled);
+            const std::vector<double>& memory = *next++;
             for (std::size_t k = 0; k < std::min(memory.size(), stride); ++k) {
                 const auto value = static_cast<float>(memory[k]);
                 store.memory[i * stride + k] = std::isfinite(value) ? value : 0;

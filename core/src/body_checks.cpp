@@ -12,31 +12,9 @@ namespace {
 constexpr float largest_speed = 1e9F;
 constexpr double largest_position = 1e12;
 
-/// Principal moments are the eigenvalues; a real body's obey A + B >= C, that is 2 |m| <= trace in every
-/// direction. Checked through tr(m)/2 I - m being positive semi-definite, which needs no eigenvalues.
-void check_inertia(const Sym3<float>& inertia)
+void check_moment(const char* field, float moment)
 {
-    const double xx = inertia.xx, xy = inertia.xy, xz = inertia.xz, yy = inertia.yy, yz = inertia.yz,
-                 zz = inertia.zz;
-    const double sum = xx + xy + xz + yy + yz + zz;
-    if (!std::isfinite(sum)) refuse("BodyDefinition.inertia", sum, "finite components (kg m2)");
-    check("BodyDefinition.inertia.xx", xx, 1e-20, 1e20, "1e-20 to 1e20 (kg m2)");
-    check("BodyDefinition.inertia.yy", yy, 1e-20, 1e20, "1e-20 to 1e20 (kg m2)");
-    check("BodyDefinition.inertia.zz", zz, 1e-20, 1e20, "1e-20 to 1e20 (kg m2)");
-    const double trace = xx + yy + zz;
-    const double minor = xx * yy - xy * xy;
-    const double full = determinant(Sym3<double>{xx, xy, xz, yy, yz, zz});
-    if (!(minor > 0) || !(full > 0)) {
-        refuse("BodyDefinition.inertia", full, "a positive definite tensor (determinant above 0)");
-    }
-    const double half = trace / 2 * (1 + 1e-5);  // a thin rod sits on the edge; leave room for float rounding
-    const Sym3<double> rest{half - xx, -xy, -xz, half - yy, -yz, half - zz};
-    const double scale = trace * trace * trace;
-    const double edge = -1e-12;
-    if (rest.xx < edge * trace || rest.yy < edge * trace || rest.zz < edge * trace ||
-        rest.xx * rest.yy - rest.xy * rest.xy < edge * trace * trace || determinant(rest) < edge * scale) {
-        refuse("BodyDefinition.inertia", trace, "moments that obey the triangle inequality A + B >= C");
-    }
+    if (!(moment >= least_moment && moment <= most_moment)) refuse(field, moment, "1e-20 to 1e20 (kg m2)");
 }
 
 }  // namespace
@@ -90,6 +68,33 @@ void check_velocity_of(BodyModel model, BodyMotion motion, const Vec3<float>* li
     }
 }
 
+/// Principal moments are the eigenvalues; a real body's obey A + B >= C, that is 2 |m| <= trace in every
+/// direction. Checked through tr(m)/2 I - m being positive semi-definite, which needs no eigenvalues.
+void check_inertia(const Sym3<float>& inertia)
+{
+    const double xx = inertia.xx, xy = inertia.xy, xz = inertia.xz, yy = inertia.yy, yz = inertia.yz,
+                 zz = inertia.zz;
+    const double sum = xx + xy + xz + yy + yz + zz;
+    if (!std::isfinite(sum)) refuse("BodyDefinition.inertia", sum, "finite components (kg m2)");
+    check_moment("BodyDefinition.inertia.xx", inertia.xx);
+    check_moment("BodyDefinition.inertia.yy", inertia.yy);
+    check_moment("BodyDefinition.inertia.zz", inertia.zz);
+    const double trace = xx + yy + zz;
+    const double minor = xx * yy - xy * xy;
+    const double full = determinant(Sym3<double>{xx, xy, xz, yy, yz, zz});
+    if (!(minor > 0) || !(full > 0)) {
+        refuse("BodyDefinition.inertia", full, "a positive definite tensor (determinant above 0)");
+    }
+    const double half = trace / 2 * (1 + 1e-5);  // a thin rod sits on the edge; leave room for float rounding
+    const Sym3<double> rest{half - xx, -xy, -xz, half - yy, -yz, half - zz};
+    const double scale = trace * trace * trace;
+    const double edge = -1e-12;
+    if (rest.xx < edge * trace || rest.yy < edge * trace || rest.zz < edge * trace ||
+        rest.xx * rest.yy - rest.xy * rest.xy < edge * trace * trace || determinant(rest) < edge * scale) {
+        refuse("BodyDefinition.inertia", trace, "moments that obey the triangle inequality A + B >= C");
+    }
+}
+
 void check_definition(const BodyDefinition& d)
 {
     if (d.model > BodyModel::rigid) {
@@ -110,10 +115,8 @@ void check_definition(const BodyDefinition& d)
     }
     check_velocity_of(d.model, d.motion, &d.linear_velocity, &d.angular_velocity);
     if (fixed) return;
-    check("BodyDefinition.mass", d.mass, 1e-10, 1e10, "1e-10 to 1e10 (kg)");
-    if (d.model == BodyModel::planar) {
-        check("BodyDefinition.inertia.zz", d.inertia.zz, 1e-20, 1e20, "1e-20 to 1e20 (kg m2)");
-    }
+    check("BodyDefinition.mass", d.mass, lightest_body, heaviest_body, "1e-10 to 1e10 (kg)");
+    if (d.model == BodyModel::planar) check_moment("BodyDefinition.inertia.zz", d.inertia.zz);
     if (d.model == BodyModel::rigid) check_inertia(d.inertia);
 }
 

@@ -1,5 +1,6 @@
 // Rows in the order of a curve that fills space, so that what a constraint ties together is in few cache lines.
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 #include <vector>
@@ -41,16 +42,17 @@ class ZOrder {
     Vec3<PoseReal> low_{1e30F, 1e30F, 1e30F}, high_{-1e30F, -1e30F, -1e30F};
 };
 
-/// Entry i, of `size` values, becomes what entry order[i] was.
+/// What entry i, of `size` values, becomes: what entry order[i] was.
 template <class T, class Allocator>
-void reorder(std::vector<T, Allocator>& values, std::span<const std::uint32_t> order, std::size_t size)
+std::vector<T, Allocator> reordered(const std::vector<T, Allocator>& values,
+                                    std::span<const std::uint32_t> order, std::size_t size)
 {
-    if (values.empty()) return;
+    if (values.empty()) return {};
     std::vector<T, Allocator> moved(order.size() * size);
     for (std::size_t i = 0; i < order.size(); ++i)
         std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(order[i] * size), size,
                     moved.begin() + static_cast<std::ptrdiff_t>(i * size));
-    values = std::move(moved);
+    return moved;
 }
 
 /// The rows of bodies, along the curve, behind the null row.
@@ -74,22 +76,31 @@ std::vector<std::uint32_t> order_of(const BodyRows& rows)
 
 void BodyStore::renumber()
 {
+    // All of it beside what is there, which holds until memory for everything is found.
+    std::array<BodyRows, body_kind_count> renumbered;
     for (int k = 0; k < body_kind_count; ++k) {
         const auto kind = static_cast<BodyKind>(k);
-        BodyRows& r = rows(kind);
+        const BodyRows& r = rows(kind);
+        BodyRows& to = renumbered[static_cast<std::size_t>(k)];
         const std::vector<std::uint32_t> order = order_of(r);
         const std::size_t floats = std::size_t{4} * static_cast<std::size_t>(quads_of(kind));
-        for (AlignedVector<float>* values : {&r.velocity, &r.delta, &r.acceleration, &r.unpushed})
-            reorder(*values, order, floats);
-        reorder(r.world_inverse_inertia, order, 8);
-        reorder(r.start_inverse_inertia, order, 8);
-        reorder(r.pose, order, 1);
-        reorder(r.orientation, order, 1);
-        reorder(r.inertia, order, 1);
-        reorder(r.inverse_inertia, order, 1);
-        reorder(r.slot, order, 1);
-        r.free_rows.clear();
-        for (std::uint32_t row = 1; row < r.size(); ++row) slots_[r.slot[row]].row = BodyRow(kind, row);
+        to.velocity = reordered(r.velocity, order, floats);
+        to.delta = reordered(r.delta, order, floats);
+        to.acceleration = reordered(r.acceleration, order, floats);
+        to.unpushed = reordered(r.unpushed, order, floats);
+        to.world_inverse_inertia = reordered(r.world_inverse_inertia, order, 8);
+        to.start_inverse_inertia = reordered(r.start_inverse_inertia, order, 8);
+        to.pose = reordered(r.pose, order, 1);
+        to.orientation = reordered(r.orientation, order, 1);
+        to.inertia = reordered(r.inertia, order, 1);
+        to.inverse_inertia = reordered(r.inverse_inertia, order, 1);
+        to.slot = reordered(r.slot, order, 1);
+    }
+    rows_ = std::move(renumbered);
+    for (int k = 0; k < body_kind_count; ++k) {
+        const BodyRows& r = rows_[static_cast<std::size_t>(k)];
+        for (std::uint32_t row = 1; row < r.size(); ++row)
+            slots_[r.slot[row]].row = BodyRow(static_cast<BodyKind>(k), row);
     }
 }
 

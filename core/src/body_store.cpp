@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motley/core/growth.h"
+
 namespace motley {
 namespace {
 
@@ -42,12 +44,69 @@ BodyStore::BodyStore()
     live_.push_back(0);
     models_.push_back(BodyModel::rigid);
     motions_.push_back(BodyMotion::static_body);
-    joint_counts.push_back(0);
+    first_ends.push_back(0);
     contained.push_back(0);
     inverse_masses.push_back(0);
     inverse_inertias.push_back(0);
     for (int kind = 0; kind < body_kind_count; ++kind)
         take_row(static_cast<BodyKind>(kind));  // the null bodies
+}
+
+namespace {
+
+BodyKind kind_of(const BodyDefinition& d)
+{
+    return d.motion == BodyMotion::dynamic_body ? static_cast<BodyKind>(d.model) : BodyKind::fixed;
+}
+
+std::size_t more_than(std::size_t wanted, const std::vector<std::uint32_t>& free)
+{
+    return wanted > free.size() ? wanted - free.size() : 0;
+}
+
+}  // namespace
+
+void BodyStore::make_room(std::span<const BodyDefinition> definitions)
+{
+    std::array<std::size_t, body_kind_count> wanted{};
+    for (const BodyDefinition& d : definitions) ++wanted[static_cast<std::size_t>(kind_of(d))];
+    for (int k = 0; k < body_kind_count; ++k) {
+        const auto kind = static_cast<BodyKind>(k);
+        BodyRows& r = rows(kind);
+        const std::size_t more = more_than(wanted[static_cast<std::size_t>(k)], r.free_rows);
+        if (more == 0) continue;
+        for (AlignedVector<float>* values : {&r.velocity, &r.delta, &r.unpushed, &r.acceleration})
+            make_room_for(*values, more * 4 * static_cast<std::size_t>(quads_of(kind)));
+        make_room_for(r.pose, more);
+        make_room_for(r.slot, more);
+        if (quads_of(kind) == 2) {
+            make_room_for(r.orientation, more);
+            make_room_for(r.world_inverse_inertia, 8 * more);
+        }
+        if (kind != BodyKind::rigid) continue;
+        make_room_for(r.start_inverse_inertia, 8 * more);
+        make_room_for(r.inertia, more);
+        make_room_for(r.inverse_inertia, more);
+    }
+    const std::size_t more = more_than(definitions.size(), free_slots_);
+    if (more == 0) return;
+    make_room_for(slots_, more);
+    make_room_for(live_, more);
+    make_room_for(models_, more);
+    make_room_for(motions_, more);
+    make_room_for(first_ends, more);
+    make_room_for(contained, more);
+    make_room_for(inverse_masses, more);
+    make_room_for(inverse_inertias, more);
+}
+
+void BodyStore::make_room_to_remove(std::span<const BodyId> bodies)
+{
+    std::array<std::size_t, body_kind_count> going{};
+    for (const BodyId body : bodies) ++going[static_cast<std::size_t>(row_of(body).kind())];
+    for (std::size_t kind = 0; kind < body_kind_count; ++kind)
+        make_room_for(rows_[kind].free_rows, going[kind]);
+    make_room_for(free_slots_, bodies.size());
 }
 
 std::uint32_t BodyStore::take_row(BodyKind kind)
@@ -84,7 +143,7 @@ std::uint32_t BodyStore::take_row(BodyKind kind)
 BodyId BodyStore::add(const BodyDefinition& d)
 {
     const bool dynamic = d.motion == BodyMotion::dynamic_body;
-    const BodyKind kind = dynamic ? static_cast<BodyKind>(d.model) : BodyKind::fixed;
+    const BodyKind kind = kind_of(d);
     const std::uint32_t row = take_row(kind);
 
     std::uint32_t slot;
@@ -94,7 +153,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
         live_.push_back(1);
         models_.push_back(d.model);
         motions_.push_back(d.motion);
-        joint_counts.push_back(0);
+        first_ends.push_back(0);
         contained.push_back(0);
         inverse_masses.push_back(0);
         inverse_inertias.push_back(0);
@@ -105,7 +164,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
         slots_[slot].row = BodyRow(kind, row);
         models_[slot] = d.model;
         motions_[slot] = d.motion;
-        joint_counts[slot] = 0;
+        first_ends[slot] = 0;
         contained[slot] = 0;
     }
 
@@ -193,6 +252,37 @@ void BodyStore::revive(BodyId body)
     if (where.kind() == BodyKind::planar)
         r.delta[std::size_t{4} * where.row() + 3] = inverse_inertias[body.slot];
     if (where.kind() == BodyKind::rigid) refresh_world_inertia(where.row());
+}
+
+void BodyStore::derive()
+{
+    contained_count = static_cast<std::size_t>(std::count(contained.begin(), contained.end(), 1));
+    for (int k = 0; k < body_kind_count; ++k) {
+        const auto kind = static_cast<BodyKind>(k);
+        BodyRows& r = rows(kind);
+        const auto quads = static_cast<std::size_t>(quads_of(kind));
+        r.delta.assign(r.velocity.size(), 0);
+        r.unpushed.assign(r.velocity.size(), 0);
+        if (quads == 2) r.world_inverse_inertia.assign(r.velocity.size(), 0);
+        if (kind == BodyKind::rigid) {
+            r.start_inverse_inertia.assign(r.velocity.size(), 0);
+            r.inverse_inertia.assign(r.size(), {});
+        }
+        for (std::uint32_t row = 0; row < r.size(); ++row) {
+            const std::uint32_t slot = r.slot[row];
+            const bool moves = slot != 0 && contained[slot] == 0;
+            float* velocity = &r.velocity[4 * quads * row];
+            float* delta = &r.delta[4 * quads * row];
+            if (!moves) std::fill_n(velocity, 4 * quads, 0.0F);
+            if (slot == 0) std::fill_n(&r.acceleration[4 * quads * row], 4 * quads, 0.0F);
+            if (quads == 2) delta[7] = 1;
+            if (kind == BodyKind::rigid && slot != 0) r.inverse_inertia[row] = inverse_of(r.inertia[row]);
+            if (!moves) continue;
+            velocity[3] = inverse_masses[slot];
+            if (kind == BodyKind::planar) delta[3] = inverse_inertias[slot];
+            if (kind == BodyKind::rigid) refresh_world_inertia(row);
+        }
+    }
 }
 
 int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, std::uint32_t& contained_slot)

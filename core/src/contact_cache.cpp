@@ -17,20 +17,22 @@ constexpr std::uint32_t sight = 1024;
 void ContactCache::begin(std::size_t count)
 {
     ContactList& list = staged();
+    // Room to grow into, so that a crowd that keeps pressing together does not allocate at each new contact. Each list by its
+    // own length: memory may have run out between two of them in an earlier step.
+    const auto grow = [](auto& values, std::size_t size) {
+        if (values.size() < size) values.resize(size);
+    };
+    if (list.entries.size() < count) list.entries.resize(std::max<std::size_t>(64, with_room_to_grow(count)));
+    const std::size_t room = list.entries.size();
+    grow(list.colours, room);
+    grow(list.impulses, room + 1);
+    const std::size_t most = std::max(lists_[0].entries.size(), lists_[1].entries.size());
+    parts_.reserve(most / contacts_per_part + 1);
+    grow(claimed_, most);
+    grow(missed_, most);
+    grow(lost_, most);
+    table_.reserve(2 * most, most);  // all gone and as many come
     list.count = count;
-    if (list.entries.size() < count) {
-        // Room to grow into, so that a crowd that keeps pressing together does not allocate at each new contact.
-        const std::size_t room = std::max<std::size_t>(64, with_room_to_grow(count));
-        list.entries.resize(room);
-        list.colours.resize(room);
-        list.impulses.resize(room + 1);
-        const std::size_t most = std::max(lists_[0].entries.size(), lists_[1].entries.size());
-        parts_.reserve(most / contacts_per_part + 1);
-        claimed_.resize(most);
-        missed_.resize(most);
-        lost_.resize(most);
-        table_.reserve(2 * most, most);  // all gone and as many come
-    }
     parts_.resize(std::max(count, current().count) / contacts_per_part + 1);
     std::fill_n(claimed_.begin(), current().count, std::uint8_t{0});
     looks_up_ = repeated_ = false;

@@ -15,9 +15,9 @@ Scene::Scene()
 
 BodyId Scene::add_body(const BodyDefinition& definition)
 {
-    check_definition(definition);
-    ++body_count_;
-    return bodies_.add(definition);
+    BodyId id;
+    add_bodies({&definition, 1}, {&id, 1});
+    return id;
 }
 
 void Scene::add_bodies(std::span<const BodyDefinition> definitions, std::span<BodyId> ids)
@@ -26,6 +26,7 @@ void Scene::add_bodies(std::span<const BodyDefinition> definitions, std::span<Bo
         refuse("add_bodies.ids.size()", static_cast<double>(ids.size()), "the size of definitions");
     }
     for (const BodyDefinition& definition : definitions) check_definition(definition);
+    bodies_.make_room(definitions);
     for (std::size_t i = 0; i < definitions.size(); ++i) ids[i] = bodies_.add(definitions[i]);
     body_count_ += definitions.size();
 }
@@ -51,6 +52,7 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
     for (const BodyId body : bodies) bodies_.contained[body.slot] &= static_cast<std::uint8_t>(~mark);
     if (twice) refuse("remove_bodies.bodies", "a list with a body named twice", "each body once");
 
+    bodies_.make_room_to_remove(bodies);
     remove_joints_of(bodies);
     for (const BodyId body : bodies) bodies_.remove(body);
     std::erase_if(island_iterations_, [&](const IslandIterations& asked) { return !is_alive(asked.body); });

@@ -1,7 +1,10 @@
 // Whether what was read is a scene: a checksum tells of accidents, this of everything else.
 #include "scene_archive.h"
 
+#include <cmath>
 #include <string>
+
+#include "motley/core/body_checks.h"
 
 namespace motley {
 namespace {
@@ -11,82 +14,201 @@ void demand(bool holds, const char* what)
     if (!holds) throw std::runtime_error(std::string("is no scene: ") + what);
 }
 
+/// Handles or rows that may be given out again: each that is not taken, once.
+template <class IsTaken>
+void check_free_list(const std::vector<std::uint32_t>& free, std::size_t size, const IsTaken& is_taken,
+                     const char* what)
+{
+    std::vector<std::uint8_t> listed(size, 0);
+    for (const std::uint32_t one : free) {
+        demand(one > 0 && one < size && !is_taken(one) && listed[one] == 0, what);
+        listed[one] = 1;
+    }
+}
+
+template <class Real>
+bool are_finite(std::initializer_list<Real> values)
+{
+    for (const Real value : values) {
+        if (!std::isfinite(value)) return false;
+    }
+    return true;
+}
+
+/// Rounding leaves a length of 1 within a few units of the last place, of floats too.
+bool is_unit(const Quat<PoseReal>& q)
+{
+    const double length2 = static_cast<double>(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    return std::abs(length2 - 1) < 1e-4;
+}
+
+void check_lengths(const BodyRows& rows, BodyKind kind)
+{
+    const std::size_t size = rows.slot.size(), floats = size * 4 * static_cast<std::size_t>(quads_of(kind));
+    const bool rigid = kind == BodyKind::rigid, turns = rigid || kind == BodyKind::fixed;
+    demand(size > 0 && rows.slot[0] == 0 && rows.velocity.size() == floats &&
+               rows.acceleration.size() == floats && rows.pose.size() == size &&
+               rows.orientation.size() == (turns ? size : 0) && rows.inertia.size() == (rigid ? size : 0),
+           "its rows of bodies differ in length");
+}
+
+/// Where a live body is and how it moves. Steps may drive it further than the door would let it be put.
+void check_state(const BodyRows& rows, BodyKind kind, std::uint32_t row, BodyModel model, BodyMotion motion)
+{
+    const BodyPose& pose = rows.pose[row];
+    demand(are_finite({pose.position.x, pose.position.y, pose.position.z, pose.yaw}),
+           "a body that is nowhere");
+    const bool turns = quads_of(kind) == 2;
+    if (turns) demand(is_unit(rows.orientation[row]), "an orientation that is none");
+    const float* v = &rows.velocity[std::size_t{4} * static_cast<std::size_t>(quads_of(kind)) * row];
+    const Vec3<float> linear{v[0], v[1], v[2]},
+        angular = turns ? Vec3<float>{v[4], v[5], v[6]} : Vec3<float>{};
+    demand(is_finite(linear) && is_finite(angular), "a speed that is none");
+    if (motion != BodyMotion::dynamic_body) check_velocity_of(model, motion, &linear, &angular);
+}
+
 }  // namespace
 
-void SceneArchive::check(const Scene& scene)
+void SceneArchive::check_bodies(const Scene& scene)
 {
     const BodyStore& bodies = scene.bodies_;
     const std::size_t slots = bodies.slots_.size();
     demand(slots > 0 && bodies.live_.size() == slots && bodies.models_.size() == slots &&
-               bodies.motions_.size() == slots && bodies.joint_counts.size() == slots &&
-               bodies.contained.size() == slots && bodies.inverse_masses.size() == slots &&
-               bodies.inverse_inertias.size() == slots,
+               bodies.motions_.size() == slots && bodies.contained.size() == slots &&
+               bodies.inverse_masses.size() == slots && bodies.inverse_inertias.size() == slots,
            "its tables of bodies differ in length");
-    for (int kind = 0; kind < body_kind_count; ++kind) {
-        const BodyRows& rows = bodies.rows(static_cast<BodyKind>(kind));
-        const std::size_t size = rows.slot.size();
-        const std::size_t floats = size * 4 * static_cast<std::size_t>(quads_of(static_cast<BodyKind>(kind)));
-        const bool rigid = static_cast<BodyKind>(kind) == BodyKind::rigid;
-        const bool turns = rigid || static_cast<BodyKind>(kind) == BodyKind::fixed;
-        demand(size > 0 && rows.slot[0] == 0 && rows.velocity.size() == floats &&
-                   rows.delta.size() == floats && rows.acceleration.size() == floats &&
-                   rows.unpushed.size() == floats && rows.pose.size() == size &&
-                   rows.orientation.size() == (turns ? size : 0) &&
-                   rows.world_inverse_inertia.size() == (rigid ? 8 * size : 0) &&
-                   rows.start_inverse_inertia.size() == (rigid ? 8 * size : 0) &&
-                   rows.inertia.size() == (rigid ? size : 0) &&
-                   rows.inverse_inertia.size() == (rigid ? size : 0),
-               "its rows of bodies differ in length");
-        for (const std::uint32_t slot : rows.slot) {
-            demand(slot == 0 || (slot < slots && bodies.live_[slot] != 0), "a row of no body");
+    demand(bodies.live_[0] == 0 && bodies.contained[0] == 0, "a body of the null handle");
+    for (int k = 0; k < body_kind_count; ++k) {
+        const auto kind = static_cast<BodyKind>(k);
+        const BodyRows& rows = bodies.rows(kind);
+        check_lengths(rows, kind);
+        for (std::uint32_t row = 0; row < rows.slot.size(); ++row) {
+            const std::uint32_t slot = rows.slot[row];
+            demand(slot == 0 || (slot < slots && bodies.live_[slot] != 0 &&
+                                 bodies.slots_[slot].row.bits == BodyRow(kind, row).bits),
+                   "a row of no body");
         }
-        for (const std::uint32_t row : rows.free_rows)
-            demand(row < size && rows.slot[row] == 0, "a free row that is taken");
+        check_free_list(
+            rows.free_rows, rows.slot.size(), [&](std::uint32_t row) { return rows.slot[row] != 0; },
+            "a free row that is taken");
     }
     std::size_t alive = 0;
     for (std::uint32_t slot = 1; slot < slots; ++slot) {
-        demand(static_cast<int>(bodies.models_[slot]) <= static_cast<int>(BodyModel::rigid) &&
-                   static_cast<int>(bodies.motions_[slot]) <= static_cast<int>(BodyMotion::static_body),
-               "a body of no model");
+        const BodyModel model = bodies.models_[slot];
+        const BodyMotion motion = bodies.motions_[slot];
+        demand(bodies.live_[slot] <= 1 && bodies.slots_[slot].generation != 0, "a handle of no body");
+        demand(model <= BodyModel::rigid && motion <= BodyMotion::static_body, "a body of no model");
+        const bool dynamic = motion == BodyMotion::dynamic_body;
+        demand(bodies.contained[slot] <= (bodies.live_[slot] != 0 && dynamic ? 1 : 0),
+               "a frozen body that cannot move");
         if (bodies.live_[slot] == 0) continue;
         ++alive;
         const BodyRow where = bodies.slots_[slot].row;
+        const BodyKind kind = dynamic ? static_cast<BodyKind>(model) : BodyKind::fixed;
         const BodyRows& rows = bodies.rows(where.kind());
-        demand(where.row() < rows.slot.size() && rows.slot[where.row()] == slot, "a body without a row");
+        demand(where.kind() == kind && where.row() < rows.slot.size() && rows.slot[where.row()] == slot,
+               "a body without a row");
+        const float mass = bodies.inverse_masses[slot], moment = bodies.inverse_inertias[slot];
+        demand(dynamic ? mass >= 1 / heaviest_body && mass <= 1 / lightest_body : mass == 0,
+               "a mass that no body has");
+        if (kind == BodyKind::planar)
+            demand(moment >= 1 / most_moment && moment <= 1 / least_moment,
+                   "a moment of inertia that no body has");
+        if (kind == BodyKind::rigid) check_inertia(rows.inertia[where.row()]);
+        check_state(rows, kind, where.row(), model, motion);
     }
-    for (const std::uint32_t slot : bodies.free_slots_)
-        demand(slot > 0 && slot < slots && bodies.live_[slot] == 0, "a free handle that is taken");
-    demand(bodies.is_alive(scene.ground_) && alive == scene.body_count_ + 1, "bodies that are not counted");
-    for (const Scene::IslandIterations& asked : scene.island_iterations_)
-        demand(bodies.is_alive(asked.body), "a wish of a body that is gone");
+    check_free_list(
+        bodies.free_slots_, slots, [&](std::uint32_t slot) { return bodies.live_[slot] != 0; },
+        "a free handle that is taken");
+    demand(alive == scene.body_count_ + 1, "bodies that are not counted");
+    demand(bodies.is_alive(scene.ground_) && bodies.motion(scene.ground_) == BodyMotion::static_body,
+           "no ground to stand on");
+    const Vec3<double> origin = scene.state(scene.ground_).position;
+    demand(dot(origin, origin) == 0, "a ground that is not at the origin");
+}
 
+void SceneArchive::check_joints(const Scene& scene)
+{
+    const BodyStore& bodies = scene.bodies_;
     const JointStores& joints = scene.joints_;
-    const auto is_colour = [](std::uint8_t colour) { return colour <= 30 || colour == no_colour; };
+    demand(!joints.slots.empty() && joints.slots[0].live == 0, "a joint of the null handle");
+    std::vector<std::uint32_t> colours(bodies.slots_.size(), 0);  // a bit for each that touches a body
+    std::size_t count = 0;
     joints.for_each([&](const auto& store, int type) {
         using Store = std::remove_cvref_t<decltype(store)>;
         const std::size_t size = store.definitions.size();
-        demand(store.parameters.size() == size * quad_floats<typename Store::Parameters> &&
-                   store.memory.size() == size * quad_floats<typename Store::Memory> &&
-                   store.world_points.size() == (Store::has_world_points ? size : 0) &&
+        count += size;
+        demand(store.memory.size() == size * quad_floats<typename Store::Memory> &&
                    store.colours.size() == size && store.slots.size() == size,
                "its lists of joints differ in length");
         for (std::size_t i = 0; i < size; ++i) {
-            demand(
-                bodies.is_alive(store.definitions[i].body_a) && bodies.is_alive(store.definitions[i].body_b),
-                "a joint of a body that is gone");
-            demand(is_colour(store.colours[i]), "a joint of no colour");
+            const auto& definition = store.definitions[i];
+            Store::Type::validate(definition, scene.check_joint_bodies(definition.body_a, definition.body_b));
             const std::uint32_t slot = store.slots[i];
-            demand(slot > 0 && slot < joints.slots.size() && joints.slots[slot].live &&
+            demand(slot > 0 && slot < joints.slots.size() && joints.slots[slot].live == 1 &&
                        joints.slots[slot].type == type && joints.slots[slot].index == i,
                    "a joint without a handle");
+            const std::uint8_t colour = store.colours[i];
+            demand(colour <= overflow_colour || colour == no_colour, "a joint of no colour");
+            if (colour >= overflow_colour) continue;
+            for (const BodyId body : {definition.body_a, definition.body_b}) {
+                if (bodies.row_of(body).kind() == BodyKind::fixed) continue;
+                demand((colours[body.slot] >> colour & 1) == 0, "two joints of one colour on a body");
+                colours[body.slot] |= 1U << colour;
+            }
         }
     });
-    for (const std::uint32_t slot : joints.free_slots)
-        demand(slot > 0 && slot < joints.slots.size() && !joints.slots[slot].live,
-               "a free joint that is taken");
-    for (const ConstraintId id : joints.watched) demand(id.slot < joints.slots.size(), "a watch on no joint");
+    std::size_t alive = 0, watched = 0;
+    for (const JointStores::Slot& slot : joints.slots) {
+        demand(slot.live <= 1 && slot.watched <= 1, "a handle of no joint");
+        if (slot.live == 0) continue;
+        ++alive;
+        watched += slot.watched;
+        Scene::check_wish("iterations", slot.iterations);
+        Scene::check_break_limit(slot.break_limit);
+    }
+    demand(alive == count, "a handle of no joint");
+    check_free_list(
+        joints.free_slots, joints.slots.size(),
+        [&](std::uint32_t slot) { return joints.slots[slot].live != 0; }, "a free joint that is taken");
+    for (const ConstraintId id : joints.watched) {
+        if (scene.is_alive(id)) watched -= joints.slots[id.slot].watched;
+    }
+    demand(watched == 0, "a watch on no joint");
+}
+
+void SceneArchive::check(const Scene& scene)
+{
+    check_bodies(scene);
+    check_joints(scene);
+    for (const Scene::IslandIterations& asked : scene.island_iterations_) scene.check_island_wish(asked);
     const ContactList& list = scene.contacts_.current();
-    for (std::size_t i = 0; i < list.count; ++i) demand(is_colour(list.colours[i]), "a contact of no colour");
+    for (std::size_t i = 0; i < list.count; ++i)
+        demand(list.colours[i] <= overflow_colour || list.colours[i] == no_colour, "a contact of no colour");
+    demand(scene.last_substep >= 0 && scene.last_substep <= 1, "a substep of no length");
+}
+
+void SceneArchive::derive(Scene& scene)
+{
+    BodyStore& bodies = scene.bodies_;
+    JointStores& joints = scene.joints_;
+    bodies.derive();
+    bodies.first_ends.assign(bodies.slots_.size(), 0);
+    joints.ends.assign(2 * joints.slots.size(), {});
+    joints.for_each([&](auto& store, int) {
+        using Store = std::remove_cvref_t<decltype(store)>;
+        store.parameters.assign(store.size() * quad_floats<typename Store::Parameters>, 0);
+        store.world_points.assign(Store::has_world_points ? store.size() : 0, {});
+        for (std::size_t i = 0; i < store.size(); ++i) {
+            store.define(i, store.definitions[i]);
+            const std::uint32_t slot = store.slots[i];
+            joints.link(2 * slot, bodies.first_ends[store.definitions[i].body_a.slot]);
+            joints.link(2 * slot + 1, bodies.first_ends[store.definitions[i].body_b.slot]);
+        }
+    });
+    joints.with_iterations = 0;
+    for (const JointStores::Slot& slot : joints.slots)
+        joints.with_iterations += slot.live != 0 && slot.iterations != 0 ? 1 : 0;
 }
 
 }  // namespace motley

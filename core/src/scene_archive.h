@@ -1,4 +1,4 @@
-// Every field of a scene that outlives a step, named once for writing and reading alike.
+// Every field of a scene that outlives a step and does not follow from others, named once for writing and reading alike.
 #pragma once
 
 #include <cstddef>
@@ -87,28 +87,30 @@ struct SceneArchive {
         archive(scene.ground_);
         archive(scene.body_count_);
         archive(scene.last_substep);
-        // Room for a break event of each watched joint: a warm step allocates nothing.
-        if constexpr (Archive::reads) scene.break_events_.reserve(scene.joints_.watched.size());
+        if constexpr (Archive::reads) {
+            check(scene);
+            derive(scene);
+        }
     }
 
-    /// Throws std::runtime_error unless every index of the scene leads somewhere.
-    static void check(const Scene& scene);
-
   private:
+    /// Throws unless the scene is one that its host could have made: every index leads somewhere, and what its door
+    /// refuses is refused here, by the same checks.
+    static void check(const Scene& scene);
+    static void check_bodies(const Scene& scene);
+    static void check_joints(const Scene& scene);
+    /// What is in no file.
+    static void derive(Scene& scene);
+
     template <class Archive, class Store>
     static void visit_bodies(Archive& archive, Store& bodies)
     {
         for (auto& rows : bodies.rows_) {
             archive(rows.velocity);
-            archive(rows.delta);
             archive(rows.acceleration);
-            archive(rows.unpushed);
             archive(rows.pose);
             archive(rows.orientation);
-            archive(rows.world_inverse_inertia);
-            archive(rows.start_inverse_inertia);
             archive(rows.inertia);
-            archive(rows.inverse_inertia);
             archive(rows.slot);
             archive(rows.free_rows);
         }
@@ -117,9 +119,7 @@ struct SceneArchive {
         archive(bodies.models_);
         archive(bodies.motions_);
         archive(bodies.free_slots_);
-        archive(bodies.joint_counts);
         archive(bodies.contained);
-        archive(bodies.contained_count);
         archive(bodies.inverse_masses);
         archive(bodies.inverse_inertias);
     }
@@ -128,16 +128,13 @@ struct SceneArchive {
     {
         joints.for_each([&](auto& store, int) {
             archive(store.definitions);
-            archive(store.parameters);
             archive(store.memory);
-            archive(store.world_points);
             archive(store.colours);
             archive(store.slots);
         });
         archive(joints.slots);
         archive(joints.free_slots);
         archive(joints.watched);
-        archive(joints.with_iterations);
     }
     /// The list of the last step; where its keys lie in the table decides nothing.
     template <class Archive, class Cache>

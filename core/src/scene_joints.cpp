@@ -1,7 +1,9 @@
 // Joints that come and go, and what they and contacts did.
 #include "motley/core/scene.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "motley/core/invalid_input.h"
 
@@ -25,6 +27,7 @@ ConstraintId Scene::take_joint_slot(int type, std::size_t index)
     if (joints_.free_slots.empty()) {
         slot = static_cast<std::uint32_t>(joints_.slots.size());
         joints_.slots.emplace_back();
+        joints_.ends.resize(2 * joints_.slots.size());
     } else {
         slot = joints_.free_slots.back();
         joints_.free_slots.pop_back();
@@ -33,8 +36,8 @@ ConstraintId Scene::take_joint_slot(int type, std::size_t index)
     if (++entry.generation == 0) entry.generation = 1;
     entry.index = static_cast<std::uint32_t>(index);
     entry.type = static_cast<std::uint8_t>(type);
-    entry.live = true;
-    entry.watched = false;
+    entry.live = 1;
+    entry.watched = 0;
     entry.break_limit = {};
     entry.iterations = 0;
     return {slot, entry.generation};
@@ -51,7 +54,7 @@ std::size_t Scene::index_of_joint(ConstraintId joint, int type) const
 
 bool Scene::is_alive(ConstraintId joint) const
 {
-    return joint.slot < joints_.slots.size() && joints_.slots[joint.slot].live &&
+    return joint.slot < joints_.slots.size() && joints_.slots[joint.slot].live != 0 &&
            joints_.slots[joint.slot].generation == joint.generation;
 }
 
@@ -67,11 +70,12 @@ void Scene::remove_joint_at(int type, std::size_t index)
     joints_.for_each([&](auto& store, int t) {
         if (t != type) return;
         JointStores::Slot& entry = joints_.slots[store.slots[index]];
-        entry.live = false;
+        entry.live = 0;
         if (entry.iterations != 0) --joints_.with_iterations;
-        joints_.free_slots.push_back(store.slots[index]);
-        --bodies_.joint_counts[store.definitions[index].body_a.slot];
-        --bodies_.joint_counts[store.definitions[index].body_b.slot];
+        const std::uint32_t slot = store.slots[index];
+        joints_.free_slots.push_back(slot);
+        joints_.unlink(2 * slot, bodies_.first_ends[store.definitions[index].body_a.slot]);
+        joints_.unlink(2 * slot + 1, bodies_.first_ends[store.definitions[index].body_b.slot]);
         store.swap_remove(index);
         if (index < store.size()) joints_.slots[store.slots[index]].index = static_cast<std::uint32_t>(index);
     });
@@ -89,17 +93,37 @@ void Scene::remove_joint(ConstraintId joint)
 
 void Scene::remove_joints_of(std::span<const BodyId> bodies)
 {
-    bool any = false;
-    for (const BodyId body : bodies) any = any || bodies_.joint_counts[body.slot] != 0;
-    if (!any) return;
-    std::vector<std::uint8_t> going(bodies_.slot_count(), 0);
-    for (const BodyId body : bodies) going[body.slot] = 1;
-    joints_.for_each([&](auto& store, int type) {
-        for (std::size_t i = store.size(); i-- > 0;) {
-            if (going[store.definitions[i].body_a.slot] || going[store.definitions[i].body_b.slot])
-                remove_joint_at(type, i);
-        }
+    std::vector<std::pair<int, std::uint32_t>> going;  // type and index
+    for (const BodyId body : bodies) {
+        joints_.for_each_on(bodies_.first_ends[body.slot], [&](const JointStores::Slot& joint) {
+            going.emplace_back(joint.type, joint.index);
+        });
+    }
+    // The last of a type first: each removal moves the last one into the gap.
+    std::sort(going.begin(), going.end(), [](const auto& x, const auto& y) {
+        return x.first != y.first ? x.first < y.first : x.second > y.second;
     });
+    going.erase(std::unique(going.begin(), going.end()), going.end());
+    for (const auto& [type, index] : going) remove_joint_at(type, index);
+}
+
+void Scene::check_break_limit(const BreakLimit& limit)
+{
+    if (!(limit.force > 0)) refuse("BreakLimit.force", limit.force, "> 0 (N), infinite for none");
+    if (!(limit.torque > 0)) refuse("BreakLimit.torque", limit.torque, "> 0 (N m), infinite for none");
+}
+
+void Scene::check_wish(const char* field, int at_least)
+{
+    if (at_least < 0 || at_least > 10000) refuse(field, at_least, "0 to 10000");
+}
+
+void Scene::check_island_wish(const IslandIterations& asked) const
+{
+    require_alive(asked.body, "set_island_iterations.body");
+    if (bodies_.row_of(asked.body).kind() == BodyKind::fixed)
+        refuse("set_island_iterations.body", "a body that nothing moves", "a dynamic body");
+    check_wish("set_island_iterations.at_least", asked.at_least);
 }
 
 void Scene::set_break_limit(ConstraintId joint, const BreakLimit& limit)
@@ -108,11 +132,10 @@ void Scene::set_break_limit(ConstraintId joint, const BreakLimit& limit)
         refuse("set_break_limit.joint", "slot " + std::to_string(joint.slot) + ", not alive",
                "a joint of this scene");
     }
-    if (!(limit.force > 0)) refuse("BreakLimit.force", limit.force, "> 0 (N), infinite for none");
-    if (!(limit.torque > 0)) refuse("BreakLimit.torque", limit.torque, "> 0 (N m), infinite for none");
+    check_break_limit(limit);
     JointStores::Slot& slot = joints_.slots[joint.slot];
-    if (!slot.watched) joints_.watched.push_back(joint);
-    slot.watched = true;
+    if (slot.watched == 0) joints_.watched.push_back(joint);
+    slot.watched = 1;
     slot.break_limit = limit;
 }
 
@@ -122,7 +145,7 @@ void Scene::set_iterations(ConstraintId joint, int at_least)
         refuse("set_iterations.joint", "slot " + std::to_string(joint.slot) + ", not alive",
                "a joint of this scene");
     }
-    if (at_least < 0 || at_least > 10000) refuse("set_iterations.at_least", at_least, "0 to 10000");
+    check_wish("set_iterations.at_least", at_least);
     std::uint16_t& iterations = joints_.slots[joint.slot].iterations;
     joints_.with_iterations += (at_least != 0 ? 1U : 0U) - (iterations != 0 ? 1U : 0U);
     iterations = static_cast<std::uint16_t>(at_least);
@@ -130,24 +153,27 @@ void Scene::set_iterations(ConstraintId joint, int at_least)
 
 void Scene::set_island_iterations(BodyId body, int at_least)
 {
-    require_alive(body, "set_island_iterations.body");
-    if (bodies_.row_of(body).kind() == BodyKind::fixed)
-        refuse("set_island_iterations.body", "a body that nothing moves", "a dynamic body");
-    if (at_least < 0 || at_least > 10000) refuse("set_island_iterations.at_least", at_least, "0 to 10000");
+    check_island_wish({body, at_least});
+    make_room_for(island_iterations_, 1);
     std::erase_if(island_iterations_, [&](const IslandIterations& asked) { return asked.body == body; });
     if (at_least > 0) island_iterations_.push_back({body, at_least});
 }
 
-void Scene::find_break_events()
+void Scene::make_room_for_break_events()
+{
+    break_events_.reserve(joints_.watched.size());
+}
+
+void Scene::find_break_events() noexcept
 {
     break_events_.clear();
     std::erase_if(joints_.watched, [&](ConstraintId joint) {
         if (!is_alive(joint)) return true;
         JointStores::Slot& slot = joints_.slots[joint.slot];
-        slot.watched = !std::isinf(slot.break_limit.force) || !std::isinf(slot.break_limit.torque);
-        return !slot.watched;
+        const bool asks = !std::isinf(slot.break_limit.force) || !std::isinf(slot.break_limit.torque);
+        slot.watched = asks ? 1 : 0;
+        return !asks;
     });
-    break_events_.reserve(joints_.watched.size());
     for (const ConstraintId joint : joints_.watched) {
         const BreakLimit& limit = joints_.slots[joint.slot].break_limit;
         const JointReport report = joint_report(joint);

@@ -58,13 +58,11 @@ void Scene::set_pose(BodyId body, const Vec3<double>& position, const Quat<doubl
         if (where.kind() == BodyKind::rigid && bodies_.contained[body.slot] == 0)
             bodies_.refresh_world_inertia(where.row());
     }
-    if (bodies_.joint_counts[body.slot] == 0) return;
     // A teleport makes the cached impulses meaningless.
-    joints_.for_each([&](auto& store, int) {
-        for (std::size_t i = 0; i < store.size(); ++i) {
-            if (store.definitions[i].body_a == body || store.definitions[i].body_b == body)
-                store.forget_impulse(i);
-        }
+    joints_.for_each_on(bodies_.first_ends[body.slot], [&](const JointStores::Slot& joint) {
+        joints_.for_each([&](auto& store, int type) {
+            if (type == joint.type) store.forget_impulse(joint.index);
+        });
     });
 }
 
@@ -75,6 +73,7 @@ void Scene::check_velocity(BodyId body, const Vec3<float>* linear, const Vec3<fl
 
 void Scene::write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular)
 {
+    if (bodies_.contained[body.slot] != 0) return;  // frozen where it is
     const BodyRow where = bodies_.row_of(body);
     float* v =
         &bodies_.rows(where.kind())
@@ -154,8 +153,7 @@ void Scene::set_forces(std::span<const BodyId> bodies, StridedSpan<const Vec3<fl
         a[1] = inverse_mass * forces[i].y;
         if (where.kind() != BodyKind::planar) a[2] = inverse_mass * forces[i].z;
         if (torques.empty()) continue;
-        if (where.kind() == BodyKind::planar)
-            a[2] = rows.delta[std::size_t{4} * where.row() + 3] * torques[i].z;
+        if (where.kind() == BodyKind::planar) a[2] = bodies_.inverse_inertias[bodies[i].slot] * torques[i].z;
         if (where.kind() == BodyKind::rigid) {
             a[4] = torques[i].x;
             a[5] = torques[i].y;

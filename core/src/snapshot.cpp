@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstdio>
 #include <fstream>
 #include <type_traits>
@@ -15,7 +16,7 @@ namespace motley {
 namespace {
 
 /// Grows with every change of what is written.
-constexpr std::uint32_t format_version = 1;
+constexpr std::uint32_t format_version = 2;
 constexpr std::array<char, 8> scene_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 's'};
 constexpr std::array<char, 8> problem_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 'p'};
 
@@ -143,10 +144,19 @@ void read_archive(const std::string& file, const std::array<char, 8>& name, cons
     }
 }
 
-void read_scene(ArchiveReader& archive, Scene& scene)
+/// As it lies in memory; but a bool must be one before it is read as one.
+SolverSettings read_settings(ArchiveReader& archive)
 {
-    SceneArchive::visit(archive, scene);
-    SceneArchive::check(scene);
+    std::array<unsigned char, sizeof(SolverSettings)> bytes{};
+    archive(bytes);
+    for (const std::size_t at : {offsetof(SolverSettings, exact_joints), offsetof(SolverSettings, warm_start),
+                                 offsetof(SolverSettings, measures)}) {
+        if (bytes[at] > 1) throw std::runtime_error("holds settings that are neither true nor false");
+    }
+    SolverSettings settings;
+    std::memcpy(&settings, bytes.data(), sizeof settings);
+    settings.validate();
+    return settings;
 }
 
 }  // namespace
@@ -161,7 +171,7 @@ void save_scene(const Scene& scene, const std::string& file)
 Scene load_scene(const std::string& file)
 {
     Scene scene;
-    read_archive(file, scene_name, [&](ArchiveReader& archive) { read_scene(archive, scene); });
+    read_archive(file, scene_name, [&](ArchiveReader& archive) { SceneArchive::visit(archive, scene); });
     return scene;
 }
 
@@ -179,9 +189,8 @@ StepProblem load_problem(const std::string& file)
 {
     StepProblem problem;
     read_archive(file, problem_name, [&](ArchiveReader& archive) {
-        read_scene(archive, problem.scene);
-        archive(problem.settings);
-        problem.settings.validate();
+        SceneArchive::visit(archive, problem.scene);
+        problem.settings = read_settings(archive);
         archive(problem.dt);
         archive(problem.contacts);
     });

@@ -22,6 +22,8 @@ void SolverSettings::validate() const
         refuse("SolverSettings.method", static_cast<double>(method),
                "soft_step, sequential_impulse or direct");
     }
+    if (bad_contacts < BadContacts::refuse || bad_contacts > BadContacts::skip)
+        refuse("SolverSettings.bad_contacts", static_cast<double>(bad_contacts), "refuse or skip");
     if (drift_correction < DriftCorrection::none || drift_correction > DriftCorrection::projection) {
         refuse("SolverSettings.drift_correction", static_cast<double>(drift_correction),
                "none, baumgarte or projection");

@@ -1,9 +1,12 @@
-// One step, on one screen: Solver::step names the stages in their order, and does nothing else.
+// One step, on one screen: Solver::Impl::step names the stages in their order, and does nothing else.
 #include "motley/parallel/solver.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
+#include <new>
+#include <utility>
 
 #include "budget.h"
 #include "convergence.h"
@@ -33,6 +36,34 @@ Isa checked_isa(const std::optional<Isa>& wanted)
     refuse("SolverOptions.isa", isa_name(*wanted), "an instruction set of available_isas()");
 }
 
+/// What is being caught, in words; in few of them where there is no memory for more.
+std::string text_of_exception() noexcept
+{
+    try {
+        throw;
+    } catch (const std::bad_alloc&) {
+        return "out of memory";  // short enough to need none
+    } catch (const std::exception& error) {
+        try {
+            return error.what();
+        } catch (...) {
+            return "out of memory";
+        }
+    } catch (...) {
+        return "unknown throw";  // likewise
+    }
+}
+
+std::string text_of(const std::exception_ptr& thrown) noexcept
+{
+    try {
+        if (thrown) std::rethrow_exception(thrown);
+    } catch (...) {
+        return text_of_exception();
+    }
+    return {};
+}
+
 /// Adds the time since the last call to a stage.
 class StageClock {
   public:
@@ -55,8 +86,10 @@ void measure_start(const Scene& scene, std::span<const Contact> contacts, StepMe
     measures.before = scene.errors();
     double squares = 0;
     std::int64_t overlapping = 0;
-    for (const Contact& contact : contacts) {
-        if (contact.separation >= 0) continue;
+    const ContactList& list = scene.contact_cache().staged();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const Contact& contact = contacts[i];
+        if (list.colours[i] == no_colour || contact.separation >= 0) continue;  // left out, or apart
         const auto depth = -static_cast<double>(contact.separation);
         squares += depth * depth;
         measures.penetration_max = std::max(measures.penetration_max, depth);
@@ -78,6 +111,7 @@ struct Solver::Impl {
     Layout layout;
     Sweeper sweeper;
     Convergence convergence;
+    BusyFlag busy;
 
     Impl(const SolverSettings& s, Isa i, const SolverOptions& options)
         : asked(s),
@@ -91,7 +125,9 @@ struct Solver::Impl {
     {
     }
 
-    std::string take_in(Scene& scene, std::span<const Contact> contacts);
+    void step(Scene& scene, float dt, std::span<const Contact> contacts, StepReport& report);
+    [[nodiscard]] bool runs_alone(const Scene& scene, std::span<const Contact> contacts) const;
+    std::string take_in(Scene& scene, std::span<const Contact> contacts, StepReport& report);
     std::string lay_out(Scene& scene, std::span<const Contact> contacts);
     int iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations);
     void measure_residual(StepReport& report);
@@ -114,7 +150,7 @@ struct Solver::Impl {
 Solver::Solver(const SolverSettings& settings, const SolverOptions& options)
 {
     settings.validate();
-    if (options.threads < 1 || options.threads > 1024)
+    if (options.threads < 1 || options.threads > StageRunner::most_workers)
         refuse("SolverOptions.threads", options.threads, "1 to 1024");
     impl_ = std::make_unique<Impl>(settings, checked_isa(options.isa), options);
 }
@@ -123,60 +159,87 @@ Solver::~Solver() = default;
 Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
 
+Solver::Impl& Solver::impl() const
+{
+    if (!impl_) refuse("Solver", "moved from", "a solver that nobody has moved from");
+    return *impl_;
+}
 const SolverSettings& Solver::settings() const
 {
-    return impl_->asked;
+    return impl().asked;
 }
 void Solver::set_settings(const SolverSettings& settings)
 {
     settings.validate();
-    impl_->asked = settings;
+    impl().asked = settings;
 }
 Isa Solver::isa() const
 {
-    return impl_->isa;
+    return impl().isa;
 }
 int Solver::threads() const
 {
-    return impl_->runner.executor()->concurrency();
+    return impl().runner.workers();
 }
 Executor& Solver::executor()
 {
-    return *impl_->runner.executor();
+    return *impl().runner.executor();
 }
 
 StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contacts) noexcept
 {
     StepReport report;
     try {
-        if (!(dt >= 0 && dt <= 1)) refuse("step.dt", dt, "0 to 1 (s)");
-        if (contacts.size() > INT32_MAX)
-            refuse("step.contacts.size()", static_cast<double>(contacts.size()), "at most 2^31 - 1");
-        impl_->pick_settings();
-        impl_->runner.with_workers(size_of(scene, contacts) < impl_->alone_below, [&] {
-            StageClock clock(report);
-            report.error = impl_->take_in(scene, contacts);
-            clock.charge(Stage::intake);
-            if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);
-            if (dt == 0 || !report.error.empty()) return;
-            report.error = impl_->lay_out(scene, contacts);
-            if (!report.error.empty()) return;
-            impl_->layout.point_at(scene, step_constants(impl_->settings, dt, scene.last_substep));
-            clock.charge(Stage::colour);
-            if (impl_->settings.measures) measure_start(scene, contacts, report.measures);
-            if (impl_->settings.method == Method::direct) {
-                impl_->solve_directly(scene, dt, contacts, report);
-            } else {
-                impl_->solve_substeps(scene, report);
-            }
-            if (impl_->settings.measures) report.measures.after = scene.errors();
-            impl_->learn_times(report);
-        });
-    } catch (const std::exception& error) {
-        report.error = error.what();
+        impl().step(scene, dt, contacts, report);
+    } catch (...) {
+        report.status = StepStatus::refused;
+        report.error = text_of_exception();
     }
-    if (!report.error.empty()) report.status = StepStatus::refused;
     return report;
+}
+
+void Solver::Impl::step(Scene& scene, float dt, std::span<const Contact> contacts, StepReport& report)
+{
+    const BusyFlag::Hold own(busy), scenes(scene.busy());
+    if (!own.holds()) refuse("step", "called while the solver is in a step", "one step at a time");
+    if (!scenes.holds()) refuse("step.scene", "in another step", "one step at a time");
+    if (!(dt >= 0 && dt <= 1)) refuse("step.dt", dt, "0 to 1 (s)");
+    if (contacts.size() > INT32_MAX)
+        refuse("step.contacts.size()", static_cast<double>(contacts.size()), "at most 2^31 - 1");
+    const auto began = std::chrono::steady_clock::now();
+    pick_settings();
+    const std::exception_ptr late = runner.with_workers(runs_alone(scene, contacts), [&] {
+        StageClock clock(report);
+        report.error = take_in(scene, contacts, report);
+        clock.charge(Stage::intake);
+        if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);
+        if (dt == 0 || !report.error.empty()) return;
+        report.error = lay_out(scene, contacts);
+        if (!report.error.empty()) return;
+        layout.point_at(scene, step_constants(settings, dt, scene.last_substep));
+        clock.charge(Stage::colour);
+        if (settings.measures) measure_start(scene, contacts, report.measures);
+        if (settings.method == Method::direct) {
+            solve_directly(scene, dt, contacts, report);
+        } else {
+            solve_substeps(scene, report);
+        }
+        if (settings.measures) report.measures.after = scene.errors();
+        learn_times(report);
+    });
+    if (!report.error.empty()) {
+        report.status = StepStatus::refused;
+        return;
+    }
+    report.error = text_of(late);
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - began;
+    report.over_budget = asked.budget_ms > 0 && took.count() > static_cast<double>(asked.budget_ms);
+}
+
+/// Who solves directly does it on one thread, for far longer than others should wait for him awake.
+bool Solver::Impl::runs_alone(const Scene& scene, std::span<const Contact> contacts) const
+{
+    return settings.method == Method::direct || size_of(scene, contacts) < alone_below;
 }
 
 void Solver::Impl::decide_on_blocks(const Scene& scene)
@@ -298,15 +361,22 @@ bool Solver::Impl::anything_bounces(const Scene& scene) const
     return any;
 }
 
-std::string Solver::Impl::take_in(Scene& scene, std::span<const Contact> contacts)
+std::string Solver::Impl::take_in(Scene& scene, std::span<const Contact> contacts, StepReport& report)
 {
-    return layout.intake.take_in(scene, contacts,
-                                 [&](std::int64_t count, const auto& chunk) { runner.run(count, chunk); });
+    ContactIntake& intake = layout.intake;
+    const bool skips = settings.bad_contacts == BadContacts::skip;
+    std::string error = intake.take_in(
+        scene, contacts, skips, [&](std::int64_t count, const auto& chunk) { runner.run(count, chunk); });
+    if (!skips) return error;
+    report.contacts_skipped = intake.bad_contacts();
+    report.skipped_error = std::move(error);
+    return {};
 }
 
 std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contacts)
 {
     decide_on_blocks(scene);
+    scene.make_room_for_break_events();
     ContactCache& cache = scene.contact_cache();
     layout.begin(scene, contacts.size(), use_of_figures());
     // What only one thread can do is one chunk among those of whatever else is ready.

@@ -5,6 +5,8 @@
 #include <thread>
 #include <utility>
 
+#include "motley/core/invalid_input.h"
+
 namespace motley {
 namespace {
 
@@ -41,11 +43,19 @@ struct ShareWord {
     [[nodiscard]] std::uint64_t reserved() const { return (word & owner_came) != 0 ? 1 : 0; }
 };
 
+int checked_concurrency(const Executor& executor)
+{
+    const int concurrency = executor.concurrency();
+    if (concurrency < 1 || concurrency > StageRunner::most_workers)
+        refuse("SolverOptions.executor.concurrency()", concurrency, "1 to 1024");
+    return concurrency;
+}
+
 }  // namespace
 
 StageRunner::StageRunner(Executor* executor)
     : executor_(executor),
-      workers_(executor->concurrency()),
+      workers_(checked_concurrency(*executor)),
       shares_(std::make_unique<Share[]>(static_cast<std::size_t>(workers_)))
 {
     for (int worker = 0; worker < workers_; ++worker)
@@ -58,6 +68,18 @@ void StageRunner::open()
     open_ = true;
 }
 
+/// What the executor throws, or null.
+std::exception_ptr StageRunner::run_on_executor(const std::function<void(int)>& job)
+{
+    try {
+        executor_->run(workers_, job);
+    } catch (...) {
+        closed_.store(true, std::memory_order_release);
+        return std::current_exception();
+    }
+    return nullptr;
+}
+
 void StageRunner::publish(Job job, std::int64_t count)
 {
     done_.store(0, std::memory_order_relaxed);
@@ -67,6 +89,8 @@ void StageRunner::publish(Job job, std::int64_t count)
         spins = come_to_work(0, spins) ? 0 : spins + 1;
     }
     learn_sizes(count);
+    if (failed_.exchange(false, std::memory_order_acquire))
+        std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 /// The caller's own share last, so that nobody waits for it to be done with the others.
@@ -98,6 +122,17 @@ void StageRunner::learn_sizes(std::int64_t count)
     }
 }
 
+/// A chunk that throws is done all the same, for the caller waits for it.
+void StageRunner::run_chunk(const Job& job, std::int64_t index, int worker)
+{
+    if (failed_.load(std::memory_order_relaxed)) return;
+    try {
+        job.call(job.self, index, worker);
+    } catch (...) {
+        if (!failed_.exchange(true, std::memory_order_relaxed)) failure_ = std::current_exception();
+    }
+}
+
 /// Claims a chunk of a share of this stage and runs it. Whoever is no owner and still `patient` leaves him the last.
 bool StageRunner::claim_and_run(int whose, int worker, std::uint64_t stage, bool patient)
 {
@@ -109,7 +144,7 @@ bool StageRunner::claim_and_run(int whose, int worker, std::uint64_t stage, bool
         const std::uint64_t claimed = (seen.word + 1) | (is_own ? ShareWord::owner_came : 0);
         if (word.compare_exchange_weak(seen.word, claimed, std::memory_order_acq_rel,
                                        std::memory_order_acquire)) {
-            share.job.call(share.job.self, static_cast<std::int64_t>(seen.next()), worker);
+            run_chunk(share.job, static_cast<std::int64_t>(seen.next()), worker);
             return true;
         }
     }

@@ -12,7 +12,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
+#include <functional>
 #include <memory>
+#include <stdexcept>
 #include <type_traits>
 
 #include "float_environment.h"
@@ -22,34 +25,55 @@ namespace motley {
 
 class StageRunner {
   public:
+    static constexpr int most_workers = 1024;
+    /// Refuses an executor of another concurrency than 1 to 1024.
     explicit StageRunner(Executor* executor);
+    [[nodiscard]] int workers() const { return workers_; }
 
     /// Calls `body()` on this thread with the executor's other threads standing by for run() unless `alone`, all of them in
-    /// the floating-point environment of a step.
+    /// the floating-point environment of a step. Throws what `body` or a chunk threw, and what the executor threw before it
+    /// called anything. What it threw when `body` was done is returned: it takes nothing back.
     template <class Body>
-    void with_workers(bool alone, const Body& body)
+    std::exception_ptr with_workers(bool alone, const Body& body)
     {
         if (workers_ == 1 || alone) {
             const StepFloats floats;
             body();
-            return;
+            return nullptr;
         }
+        struct Call {
+            const Body& body;
+            std::atomic<bool> begun{false};
+            std::exception_ptr failure{};
+        } own{body};
         open();
-        // Two words captured: small enough that std::function does not allocate.
-        executor_->run(workers_, [this, &body](int worker) {
+        // Two words captured: small enough that std::function does not allocate. Nothing leaves a call: threads that wait for
+        // the caller would wait for ever, and the host's own need not know what to do with it.
+        const std::exception_ptr executors = run_on_executor([this, &own](int worker) noexcept {
+            if (worker < 0 || worker >= workers_) return;
             const StepFloats floats;
             if (worker != 0) {
                 work(worker);
                 return;
             }
-            body();
+            if (own.begun.exchange(true)) return;
+            try {
+                own.body();
+            } catch (...) {
+                own.failure = std::current_exception();
+            }
             closed_.store(true, std::memory_order_release);
         });
         open_ = false;
+        if (own.failure) std::rethrow_exception(own.failure);
+        if (own.begun) return executors;
+        if (executors) std::rethrow_exception(executors);
+        throw std::runtime_error("Executor.run returned without calling job(0)");
     }
 
     /// Calls chunk(i), or chunk(i, worker), for each i in [0, count), on whichever thread; returns when all are done. A
-    /// single chunk, or no other thread, runs in line.
+    /// single chunk, or no other thread, runs in line. When one throws, those that have not begun are left out, and it is
+    /// thrown here.
     template <class Chunk>
     void run(std::int64_t count, const Chunk& chunk)
     {
@@ -87,9 +111,11 @@ class StageRunner {
         double size = 0;                     ///< of all chunks; the caller's
     };
     void open();
+    std::exception_ptr run_on_executor(const std::function<void(int worker)>& job);
     void publish(Job job, std::int64_t count);
     void hand_out(Job job, std::int64_t count);
     void learn_sizes(std::int64_t count);
+    void run_chunk(const Job& job, std::int64_t index, int worker);
     bool claim_and_run(int whose, int worker, std::uint64_t stage, bool patient);
     bool help_others(int worker, std::uint64_t stage, bool patient);
     bool come_to_work(int worker, int spins);
@@ -102,6 +128,8 @@ class StageRunner {
     std::unique_ptr<Share[]> shares_;
     alignas(64) std::atomic<std::int64_t> done_{0};
     alignas(64) std::atomic<bool> closed_{false};
+    std::atomic<bool> failed_{false};  ///< a chunk of this stage threw
+    std::exception_ptr failure_;       ///< what; written by whoever set failed_
 };
 
 }  // namespace motley

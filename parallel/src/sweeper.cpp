@@ -15,9 +15,7 @@ constexpr std::int64_t rows_per_chunk = 1024;
 }  // namespace
 
 Sweeper::Sweeper(StageRunner& runner, Layout& layout)
-    : runner_(runner),
-      layout_(layout),
-      workspaces_(static_cast<std::size_t>(runner.executor()->concurrency()))
+    : runner_(runner), layout_(layout), workspaces_(static_cast<std::size_t>(runner.workers()))
 {
 }
 

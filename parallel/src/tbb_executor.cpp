@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <new>
 #include <optional>
 
 namespace motley {
@@ -31,8 +32,10 @@ class TbbExecutor final : public Executor {
     {
         arena_.execute([&] {
             tbb::task_group group;
-            for (int worker = 1; worker < workers; ++worker) {
-                group.run([&job, worker] { job(worker); });
+            try {
+                for (int worker = 1; worker < workers; ++worker) group.run([&job, worker] { job(worker); });
+            } catch (const std::bad_alloc&) {
+                // Whoever has come will do.
             }
             job(0);
             group.wait();

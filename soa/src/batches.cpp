@@ -21,20 +21,14 @@ constexpr std::int32_t open_overflow_blocks = 8;
 /// Constraints a chunk when they are sorted, at least: a chunk for each of many threads even of a small crowd.
 constexpr std::size_t placements_per_chunk = 1024;
 
-template <class T>
-void grow(AlignedVector<T>& stream, std::size_t size)
-{
-    if (stream.size() < size) stream.resize(with_room_to_grow(size));
-}
-
 }  // namespace
 
 void BatchSet::Pool::make_room(std::int32_t blocks)
 {
-    grow(bodies, static_cast<std::size_t>(blocks));
-    grow(who, static_cast<std::size_t>(blocks));
-    grow(counts, static_cast<std::size_t>(blocks));
-    grow(skipped, static_cast<std::size_t>(blocks));
+    grow_to(bodies, static_cast<std::size_t>(blocks));
+    grow_to(who, static_cast<std::size_t>(blocks));
+    grow_to(counts, static_cast<std::size_t>(blocks));
+    grow_to(skipped, static_cast<std::size_t>(blocks));
 }
 
 /// Makes lanes [first, 16) padding: the null bodies, and the parameters of a real constraint, so that no lane ever
@@ -97,13 +91,10 @@ void BatchSet::begin(std::span<const Placement> placements, bool has_patches)
     per_chunk_ = has_patches ? Patches::contacts_a_patch : std::max(placements_per_chunk, keys());
     std::fill(occurs_.begin(), occurs_.end(), std::uint8_t{0});
     const std::size_t wanted = static_cast<std::size_t>(chunk_count()) * keys();
-    const auto make_room = [&](std::vector<std::int32_t>& table) {
-        if (table.size() < wanted) table.resize(with_room_to_grow(wanted));
-    };
-    make_room(places_);
+    grow_to(places_, wanted);
     if (!has_patches) return;
-    make_room(patch_places_);
-    make_room(patch_blocks_);
+    grow_to(patch_places_, wanted);
+    grow_to(patch_blocks_, wanted);
 }
 
 void BatchSet::count(std::int64_t chunk)
@@ -168,9 +159,9 @@ void BatchSet::open(const KernelTable& kernels)
         if (has_patches_) open_patches(p);
         const ConstraintKernels& own = kernels.constraints[static_cast<std::size_t>(first_class_) + p];
         const std::size_t lanes = static_cast<std::size_t>(pool.all_blocks) * block_lanes;
-        grow(pool.rows, lanes * static_cast<std::size_t>(own.row_floats));
-        grow(pool.substep_rows, lanes * static_cast<std::size_t>(own.substep_floats));
-        grow(pool.impulses, lanes * static_cast<std::size_t>(own.impulse_floats));
+        grow_to(pool.rows, lanes * static_cast<std::size_t>(own.row_floats));
+        grow_to(pool.substep_rows, lanes * static_cast<std::size_t>(own.substep_floats));
+        grow_to(pool.impulses, lanes * static_cast<std::size_t>(own.impulse_floats));
     }
 }
 
@@ -316,10 +307,10 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
         Pool& pool = pools_[p];
         if (tells_apart) {
             const auto blocks = static_cast<std::size_t>(pool.all_blocks);
-            grow(pool.residuals, blocks * 2 * block_lanes);
-            grow(pool.finished, blocks);
-            grow(pool.islands, blocks);
-            grow(pool.wanted, blocks);
+            grow_to(pool.residuals, blocks * 2 * block_lanes);
+            grow_to(pool.finished, blocks);
+            grow_to(pool.islands, blocks);
+            grow_to(pool.wanted, blocks);
         }
         for (std::size_t colour = 0; colour < colours; ++colour) {
             const std::int32_t end = pool.first_block[colour + 1];

@@ -25,6 +25,7 @@ struct Placement {
     std::uint8_t type = 0;
     std::uint8_t colour = no_colour;
     bool in_patch = false;  ///< inside one: see Patches
+    bool is_bad = false;    ///< a contact that cannot be taken: it is left out
     /// Takes a lane in the block of the constraints before it and leaves it empty; `constraint` is ~ of one of them.
     [[nodiscard]] bool is_gap() const { return constraint < 0; }
     [[nodiscard]] bool is_left_out() const { return colour == left_out_colour; }

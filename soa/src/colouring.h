@@ -15,10 +15,6 @@
 
 namespace motley {
 
-/// Colours that run in parallel. A body with more constraints than this (a hub) sends the rest to the
-/// overflow, which runs in order.
-inline constexpr int parallel_colours = 30;
-inline constexpr std::uint8_t overflow_colour = parallel_colours;
 /// Of constraints on a contained body, which nothing may push: they are in no block.
 inline constexpr std::uint8_t left_out_colour = 254;
 

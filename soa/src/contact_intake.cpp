@@ -60,20 +60,19 @@ bool is_planar(BodyRow a, BodyRow b)
 
 void ContactIntake::begin(Scene& scene, std::size_t count)
 {
-    if (placements.size() < count) {
-        const std::size_t room = with_room_to_grow(count);
-        placements.resize(room);
-        memory_index.resize(room);
-    }
+    grow_to(placements, count);
+    grow_to(memory_index, count);
     count_ = count;
     patches.begin(scene.bodies(), count);
     scene.contact_cache().begin(count);
     first_bad_.store(none, std::memory_order_relaxed);
+    bad_contacts_.store(0, std::memory_order_relaxed);
     bounces_.store(false, std::memory_order_relaxed);
 }
 
 void ContactIntake::mark_bad(std::size_t index)
 {
+    bad_contacts_.fetch_add(1, std::memory_order_relaxed);
     std::size_t seen = first_bad_.load(std::memory_order_relaxed);
     while (index < seen && !first_bad_.compare_exchange_weak(seen, index, std::memory_order_relaxed)) {
     }
@@ -123,15 +122,20 @@ void ContactIntake::walk(Scene& scene, std::span<const Contact> contacts, std::i
             scene.bodies().prefetch(contacts[i + ahead].body_b);
         }
         placements[i].constraint = static_cast<std::int32_t>(i);
-        if (!place(scene.bodies(), contact, placements[i])) {
+        placements[i].is_bad = !place(scene.bodies(), contact, placements[i]);
+        if (placements[i].is_bad) {
             mark_bad(i);
-            continue;
+            // If it is skipped it is of no bodies that move, but has its place in the list and its key.
+            placements[i].a = placements[i].b = BodyRow(BodyKind::fixed, 0);
+            placements[i].type = 0;
+            placements[i].in_patch = false;
+        } else {
+            if (patches.are_wanted()) {
+                patches.claim(placements[i].a, i);
+                patches.claim(placements[i].b, i);
+            }
+            bounces = bounces || contact.restitution > 0;
         }
-        if (patches.are_wanted()) {
-            patches.claim(placements[i].a, i);
-            patches.claim(placements[i].b, i);
-        }
-        bounces = bounces || contact.restitution > 0;
         ContactList::Entry& entry = cache.staged().entries[i];
         entry.key = contact.key;
         entry.body_a = fingerprint(contact.body_a);

@@ -23,10 +23,12 @@ void for_each_unfinished(const SweepLists& sweeps, const Visit& visit)
 
 constexpr std::int32_t unseen = -1;
 
-/// Of numbers that are not negative, the order of their bits is their order; a NaN comes after all of them.
+/// Of numbers that are not negative, the order of their bits is their order; a NaN comes after all of them, once its sign
+/// is gone, which processors set as they like.
+constexpr std::int32_t all_but_sign = 0x7FFFFFFF;
 std::int32_t bits_of(float value)
 {
-    return std::bit_cast<std::int32_t>(value);
+    return std::bit_cast<std::int32_t>(value) & all_but_sign;
 }
 /// Integers, because a compiler may put a maximum of those in lanes, and of floats not.
 std::int32_t largest_bits(const float* values, int count)
@@ -35,7 +37,7 @@ std::int32_t largest_bits(const float* values, int count)
     std::memcpy(bits.data(), values, sizeof(bits));
     for (int lane = count; lane < block_lanes; ++lane) bits[static_cast<std::size_t>(lane)] = 0;
     std::int32_t largest = 0;
-    for (const std::int32_t b : bits) largest = std::max(largest, b);
+    for (const std::int32_t b : bits) largest = std::max(largest, b & all_but_sign);
     return largest;
 }
 
@@ -49,6 +51,7 @@ const float* speeds_of(const SweepChunk& chunk, std::int32_t block)
 ResidualSum sum_residuals(const SweepLists& sweeps)
 {
     ResidualSum sum;
+    std::int32_t largest = 0;
     for_each_unfinished(sweeps, [&](const SweepChunk& chunk, std::int32_t block) {
         const float* speeds = speeds_of(chunk, block);
         const int count = chunk.streams.counts[block];
@@ -56,10 +59,11 @@ ResidualSum sum_residuals(const SweepLists& sweeps)
             const auto speed = static_cast<double>(speeds[lane]);
             sum.energy += static_cast<double>(speeds[lane - block_lanes]);
             sum.squares += speed * speed;
-            sum.largest = std::max(sum.largest, speed);
+            largest = std::max(largest, bits_of(speeds[lane]));
         }
         sum.constraints += count;
     });
+    sum.largest = static_cast<double>(std::bit_cast<float>(largest));
     return sum;
 }
 

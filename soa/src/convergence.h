@@ -19,7 +19,7 @@ namespace motley {
 struct ResidualSum {
     double energy = 0;   ///< J
     double squares = 0;  ///< m2/s2
-    double largest = 0;  ///< m/s
+    double largest = 0;  ///< m/s; not a number as soon as one of them is not
     std::int64_t constraints = 0;
 };
 /// Of what a measuring sweep left.

@@ -87,7 +87,8 @@ inline void pivots_of(const Mover& body, const Triangle<6>& mass, Row6& pivots)
 {
     pivots[0] = pivots[1] = pivots[2] = mass.at(0, 0);
     pivots[3] = mass.at(3, 3);
-    pivots[4] = mass.at(4, 4) - mass.at(4, 3) * mass.at(4, 3) * inverse_or_zero(mass.at(3, 3));
+    // In this order: squares of moments leave the range of floats.
+    pivots[4] = mass.at(4, 4) - mass.at(4, 3) * (mass.at(4, 3) * inverse_or_zero(mass.at(3, 3)));
     // The last pivot of I is 1 / (I^-1)_zz.
     pivots[5] = inverse_or_zero(body.inverse_inertia.zz);
 }

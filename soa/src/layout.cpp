@@ -43,13 +43,15 @@ void Layout::begin(Scene& scene, std::size_t contact_count, const FigureUse& use
 {
     const bool plants_trees = std::exchange(use_, use).exactly != use.exactly;
     if (!scene.joints().version || scene.joints().version != joint_version_ || plants_trees) {
+        // Nothing holds until everything does: memory may run out on the way.
+        joint_version_.reset();
+        cut_.reset();
         place_joints(scene);
         if (!scene.joints().version) scene.joints().version = std::make_shared<const char>('\0');
         joint_version_ = scene.joints().version;
-        cut_.reset();
     }
     if (contact_count > 0) masks_.copy(joint_masks_, scene.bodies());
-    if (uncoloured_.size() < contact_count) uncoloured_.resize(with_room_to_grow(contact_count));
+    grow_to(uncoloured_, contact_count);
     contacts.begin({intake.placements.data(), contact_count}, intake.patches.are_wanted());
 }
 
@@ -101,7 +103,7 @@ void Layout::colour_contacts(const BodyStore& bodies, ContactList& list)
     std::size_t uncoloured = 0;
     for (std::uint32_t i = 0; i < placements.size(); ++i) {
         Placement& placement = placements[i];
-        if (bodies.is_contained(placement.a) || bodies.is_contained(placement.b)) {
+        if (placement.is_bad || bodies.is_contained(placement.a) || bodies.is_contained(placement.b)) {
             placement.colour = left_out_colour;
             list.colours[i] = no_colour;
             list.impulses[i + 1] = {};
@@ -134,7 +136,7 @@ void Layout::cut(Scene& scene, std::span<const Contact> list, bool tells_apart)
     for (int kind = 0; kind < body_kind_count; ++kind)
         wanted.rows[static_cast<std::size_t>(kind)] = scene.bodies().rows(static_cast<BodyKind>(kind)).size();
     if (contacts.is_empty() && cut_ == wanted) return;
-    cut_ = contacts.is_empty() ? std::optional(wanted) : std::nullopt;
+    cut_.reset();
     sweeps_.clear();
     transfers_.parts.clear();
     transfers_.tiles.clear();
@@ -142,6 +144,7 @@ void Layout::cut(Scene& scene, std::span<const Contact> list, bool tells_apart)
     list_rows(scene);
     joints_.cut(kernels_, tells_apart, sweeps_, transfers_);
     contacts.cut(kernels_, tells_apart, sweeps_, transfers_);
+    if (contacts.is_empty()) cut_ = wanted;
 }
 
 void Layout::list_rows(const Scene& scene)

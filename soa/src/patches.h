@@ -36,15 +36,13 @@ class Patches {
         if (!wanted_) return;
         const bool wraps = ++list_ > last_list;
         if (wraps) list_ = 1;
-        for (int kind = 0; kind < moving_kinds; ++kind) {
-            if (wraps) owners_[kind].clear();
+        for (auto& owners : owners_) {
+            if (wraps) std::fill(owners.begin(), owners.end(), 0U);
+        }
+        for (int kind = 0; kind < moving_kinds; ++kind)
             owners_[kind].resize(bodies.rows(static_cast<BodyKind>(kind)).size(), 0U);
-        }
-        const std::size_t patches = contacts / contacts_a_patch + 1;
-        if (counts_.size() < patches) {
-            counts_.resize(with_room_to_grow(patches));
-            bodies_.resize(counts_.size() * bodies_a_patch);
-        }
+        grow_to(counts_, contacts / contacts_a_patch + 1);
+        if (bodies_.size() < counts_.size() * bodies_a_patch) bodies_.resize(counts_.size() * bodies_a_patch);
     }
     [[nodiscard]] bool are_wanted() const { return wanted_; }
 

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
+#include <string>
 
 #include "engine.h"
 
@@ -115,7 +118,23 @@ TEST(Sweep, WritesWhatItMeasured)
     // Every peer is there or is told to be missing.
     EXPECT_EQ(engines.size(), 1 + peers().size());
     EXPECT_EQ(peers().size() + missing_peers().size(), 2U);
+    for (const auto& point : json["points"]) {
+        if (!point.contains("dials")) continue;
+        EXPECT_TRUE(point["dials"]["exact_joints"].is_boolean());
+    }
     const std::string csv = csv_of(result);
+    std::istringstream lines(csv);
+    std::string line, label;
+    std::getline(lines, line);
+    const auto commas = std::count(line.begin(), line.end(), ',');
+    while (std::getline(lines, line)) {
+        // Labels have commas of their own.
+        const std::size_t first = line.find('"'), last = line.rfind('"');
+        label = line.substr(first, last - first);
+        EXPECT_EQ(std::count(line.begin(), line.end(), ',') - std::count(label.begin(), label.end(), ','),
+                  commas)
+            << line;
+    }
     EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), 1 + result.points.size());
 }
 

@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
             motley::bench::read_trajectories(path);
         } else {
             motley::Scene scene = what == 0 ? motley::load_scene(path) : motley::load_problem(path).scene;
-            motley::Solver(motley::SolverSettings{}).step(scene, 1.0F / 60);
+            motley::testing::live_on(scene);
         }
     } catch (const std::runtime_error&) {
         // Refused.

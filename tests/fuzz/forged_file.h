@@ -5,8 +5,10 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "motley/core/snapshot.h"
+#include "motley/motley.h"
 
 namespace motley::testing {
 
@@ -44,22 +46,81 @@ inline std::string bytes_of(const std::string& path)
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A small scene, or a problem, with these bytes xored over its fields, over and over; `path` is written to on the way.
+/// A joint of every type, as its definition has it by default.
+template <class... Types>
+void add_one_of_each(Scene& scene, BodyId a, BodyId b, TypeList<Types...>)
+{
+    const auto add = [&]<class Definition>(Definition definition) {
+        definition.body_a = a;
+        definition.body_b = b;
+        scene.add_joint(definition);
+    };
+    (add(typename Types::Definition{}), ...);
+}
+
+/// Something of everything that a file holds, some steps old: each model of body and type of joint, figures in lockstep,
+/// wishes, watches, contacts, and what removed bodies and joints have left free.
+inline StepProblem seed_problem()
+{
+    StepProblem problem;
+    Scene& scene = problem.scene;
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 5; ++i) {
+        BodyDefinition body;
+        body.model = static_cast<BodyModel>(i % 3);
+        body.motion = i == 4 ? BodyMotion::kinematic_body : BodyMotion::dynamic_body;
+        body.position = {1.0 * i, 0.1 * i, 0};
+        bodies.push_back(scene.add_body(body));
+        if (i < 3) scene.add_joint(BallSocketDefinition{scene.ground(), bodies.back(), {}, {}});
+    }
+    BodyDefinition body;
+    body.position = {0, 2, 0};
+    const BodyId other = scene.add_body(body);
+    add_one_of_each(scene, bodies[2], other, JointTypes{});
+    const ConstraintId gone = scene.add_joint(BallSocketDefinition{scene.ground(), other, {}, {0, 2, 0}});
+    const ConstraintId rope = scene.add_joint(DistanceDefinition{scene.ground(), other, {}, {}, 0, 2});
+    scene.set_break_limit(rope, {1, 2});
+    scene.set_iterations(rope, 3);
+    scene.set_island_iterations(other, 2);
+    scene.remove_joint(gone);
+    scene.remove_body(bodies[3]);
+    Figure figure;
+    const BodyId hook = figure.add_body({.motion = BodyMotion::static_body});
+    const BodyId bob = figure.add_body({.position = {0, -1, 0}});
+    figure.add_joint(BallSocketDefinition{hook, bob, {}, {0, 1, 0}});
+    std::vector<Placing> placings(8);
+    for (std::size_t i = 0; i < placings.size(); ++i) placings[i].position.x = 10 + static_cast<double>(i);
+    add_assembly(scene, figure, placings);
+    problem.settings.gravity = {0, -9.81F, 0};
+    problem.dt = 1.0F / 60;
+    Contact contact;
+    contact.body_a = scene.ground();
+    contact.body_b = bodies[0];
+    contact.normal = {0, 1, 0};
+    contact.friction = 0.5F;
+    problem.contacts = {contact};
+    Solver solver(problem.settings);
+    for (int step = 0; step < 3; ++step) solver.step(scene, problem.dt, problem.contacts);
+    return problem;
+}
+
+/// The seed in a file, as bytes; `path` is written to on the way.
+inline std::string seed_file(const std::string& path, bool problem)
+{
+    const StepProblem seed = seed_problem();
+    if (problem) {
+        save_problem(seed, path);
+    } else {
+        save_scene(seed.scene, path);
+    }
+    return bytes_of(path);
+}
+
+/// The seed with these bytes xored over its fields, over and over.
 inline std::string forged(const std::string& path, const std::string& changes, bool problem)
 {
-    StepProblem step;
-    for (int i = 0; i < 3; ++i) {
-        BodyDefinition body;
-        body.model = static_cast<BodyModel>(i);
-        body.position.x = i;
-        step.scene.add_joint(BallSocketDefinition{step.scene.ground(), step.scene.add_body(body), {}, {}});
-    }
-    if (problem) {
-        save_problem(step, path);
-    } else {
-        save_scene(step.scene, path);
-    }
-    std::string file = bytes_of(path);
+    static const std::string seeds[] = {seed_file(path, false), seed_file(path, true)};
+    std::string file = seeds[problem ? 1 : 0];
     // Three bytes each: where, and what.
     for (std::size_t i = 0; i + 2 < changes.size(); i += 3) {
         const std::size_t where =
@@ -69,6 +130,22 @@ inline std::string forged(const std::string& path, const std::string& changes, b
     }
     make_whole(file);
     return file;
+}
+
+/// What a host may do with any scene: it steps by both ways to solve joints, and bodies and joints go and come.
+inline void live_on(Scene& scene)
+{
+    for (const bool exact : {false, true}) Solver({.exact_joints = exact}).step(scene, 1.0F / 60);
+    std::vector<BodyId> going;
+    const BodyStore& bodies = scene.bodies();
+    for (std::uint32_t slot = 1; slot < bodies.slot_count(); ++slot) {
+        const BodyId body = bodies.id_of_slot(slot);
+        if (bodies.is_slot_live(slot) && slot % 2 == 0 && body != scene.ground()) going.push_back(body);
+    }
+    scene.remove_bodies(going);
+    for (std::size_t i = 0; i <= going.size(); ++i)
+        scene.add_joint(BallSocketDefinition{scene.ground(), scene.add_body({}), {}, {}});
+    Solver({.gravity = {0, -9.81F, 0}}).step(scene, 1.0F / 60);
 }
 
 }  // namespace motley::testing

@@ -189,6 +189,7 @@ class HostileHost {
         if (flags & 16) settings.gravity = vector();
         if (flags & 32) settings.joint_hertz = number();
         if (flags & 64) settings.contact_hertz = number();
+        if (flags & 128) settings.bad_contacts = BadContacts::skip;
         solver_.set_settings(settings);
     }
 

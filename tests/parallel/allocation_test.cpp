@@ -5,16 +5,26 @@
 #include <cstdlib>
 #include <new>
 
+#include "allocator.h"
 #include "lattice_crowd.h"
 #include "mixed_scene.h"
 
-namespace {
+namespace motley::testing {
 
-std::atomic<long> allocations{0};
+std::atomic<long> allocations{0}, allocations_until_failure{never}, failures_left{0};
+
+}  // namespace motley::testing
+
+namespace {
 
 void* counted(std::size_t size, std::size_t alignment)
 {
-    ++allocations;
+    using motley::testing::allocations_until_failure;
+    using motley::testing::failures_left;
+    ++motley::testing::allocations;
+    if (allocations_until_failure != motley::testing::never && --allocations_until_failure < 0) {
+        if (failures_left.fetch_sub(1) > 0) throw std::bad_alloc();
+    }
     void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
     if (memory == nullptr) throw std::bad_alloc();
     return memory;
@@ -22,33 +32,36 @@ void* counted(std::size_t size, std::size_t alignment)
 
 }  // namespace
 
-void* operator new(std::size_t size)
+// Not inlined: the compiler would see memory of one function freed by another, and warn.
+[[gnu::noinline]] void* operator new(std::size_t size)
 {
     return counted(size, alignof(std::max_align_t));
 }
-void* operator new(std::size_t size, std::align_val_t alignment)
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment)
 {
     return counted(size, static_cast<std::size_t>(alignment));
 }
-void operator delete(void* memory) noexcept
+[[gnu::noinline]] void operator delete(void* memory) noexcept
 {
     std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept
 {
     std::free(memory);
 }
-void operator delete(void* memory, std::align_val_t) noexcept
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept
 {
     std::free(memory);
 }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept
+[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept
 {
     std::free(memory);
 }
 
 namespace motley {
 namespace {
+
+using testing::allocations;
 
 /// Allocations of 20 steps after 200 to warm up.
 long allocations_of_warm_steps(int threads, float tolerance = 0)

@@ -156,6 +156,47 @@ TEST(ContainedBodies, CanBeRemovedAndTheirSlotsUsedAgain)
     EXPECT_LT(scene.state(next).position.y, 0);
 }
 
+TEST_P(Containment, HoldsABodyWhateverSpeedTheHostGivesIt)
+{
+    for (const BodyModel model : {BodyModel::particle, BodyModel::planar, BodyModel::rigid}) {
+        Scene scene;
+        Solver solver(settings_of(GetParam()));
+        const BodyId bad = scene.add_body(ball({0, 0, 0}, model, light));
+        freeze(scene, solver, bad);
+        const BodyState before = scene.state(bad);
+        const Vec3<float> speed{1, 2, 0}, turn{0, 0, model == BodyModel::particle ? 0.0F : 3.0F};
+        scene.set_velocity(bad, speed, turn);
+        scene.set_velocities({&bad, 1}, std::span(&speed, 1), std::span(&turn, 1));
+        for (int step = 0; step < 5; ++step) solver.step(scene, dt);
+        const BodyState after = scene.state(bad);
+        EXPECT_EQ(after.position.x, before.position.x);
+        EXPECT_EQ(after.position.y, before.position.y);
+        EXPECT_EQ(after.yaw, before.yaw);
+        EXPECT_EQ(after.orientation.z, before.orientation.z);
+        EXPECT_EQ(after.linear_velocity.x, 0) << "and says so";
+    }
+}
+
+TEST(ContainedBodies, FeelTheForcesThatWereSetMeanwhileOnceTheyAreRevived)
+{
+    for (const BodyModel model : {BodyModel::particle, BodyModel::planar, BodyModel::rigid}) {
+        Scene scene;
+        SolverSettings settings;
+        Solver solver(settings);
+        BodyDefinition body = ball({0, 0, 0}, model, light);
+        body.inertia = {4, 0, 0, 4, 0, 4};
+        const BodyId bad = scene.add_body(body);
+        freeze(scene, solver, bad);
+        const float torque = model == BodyModel::particle ? 0.0F : 8.0F;
+        scene.set_force(bad, {3 * light, 0, 0}, {0, 0, torque});
+        scene.revive(bad, {0, 0, 0}, {});
+        solver.step(scene, 0.5F);
+        // v = F t / m, w = T t / I, within the rounding of four substeps.
+        EXPECT_NEAR(scene.state(bad).linear_velocity.x, 1.5, 1e-5);
+        EXPECT_NEAR(scene.state(bad).angular_velocity.z, torque * 0.5F / 4, 1e-5);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Containment,
                          testing::Values(Method::soft_step, Method::sequential_impulse, Method::direct));
 

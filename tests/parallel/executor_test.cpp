@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <stdexcept>
+#include <string>
 #include <thread>
 
 #include "mixed_scene.h"
@@ -96,6 +98,195 @@ TEST(Executor, ThreadedLoopsCoverEveryElementOnce)
         });
         for (const auto& visit : visits) EXPECT_EQ(visit, 1);
     }
+}
+
+TEST(Executor, IsLeftAloneByWhatOneThreadDoes)
+{
+    ThreadExecutor host(2, 1);
+    SolverSettings settings;
+    settings.method = Method::direct;
+    testing::MixedScene mixed(3);
+    Solver solver(settings, {.alone_below = 0, .executor = &host});
+    EXPECT_EQ(solver.step(mixed.scene, 1.0F / 60, mixed.contacts()).status, StepStatus::done);
+    EXPECT_EQ(host.runs, 0);
+}
+
+/// Does what a host's pool may do wrong.
+class FaultyExecutor final : public Executor {
+  public:
+    enum class Fault {
+        none,
+        throws_before,
+        throws_after,
+        throws_an_int,
+        calls_nobody,
+        calls_twice,
+        calls_strangers
+    };
+    Fault fault = Fault::none;
+    int said = 2;
+    [[nodiscard]] int concurrency() const override { return said; }
+    void run(int, const std::function<void(int)>& job) override
+    {
+        if (fault == Fault::throws_before) throw std::runtime_error("the pool is closed");
+        if (fault == Fault::throws_an_int) throw 7;
+        if (fault == Fault::calls_nobody) return;
+        if (fault == Fault::calls_strangers) {
+            job(-1);
+            job(2);
+        }
+        job(0);
+        if (fault == Fault::calls_twice) job(0);
+        if (fault == Fault::throws_after) throw std::runtime_error("the pool is closing");
+    }
+};
+
+TEST(Executor, OfAConcurrencyThatIsNoneIsRefused)
+{
+    for (const int said : {0, -1, 1025, 1000000}) {
+        FaultyExecutor host;
+        host.said = said;
+        try {
+            Solver solver(SolverSettings{}, {.executor = &host});
+            FAIL() << said;
+        } catch (const InvalidInput& refusal) {
+            EXPECT_EQ(std::string(refusal.what()), "SolverOptions.executor.concurrency() is " +
+                                                       std::to_string(said) + "; expected 1 to 1024");
+        }
+    }
+}
+
+TEST(Executor, ThatFailsGivesAReportThatIsTrueOfTheScene)
+{
+    using Fault = FaultyExecutor::Fault;
+    struct Case {
+        Fault fault;
+        StepStatus status;
+        const char* error;
+    };
+    const Case cases[] = {
+        {Fault::throws_before, StepStatus::refused, "the pool is closed"},
+        {Fault::throws_an_int, StepStatus::refused, "unknown throw"},
+        {Fault::calls_nobody, StepStatus::refused, "Executor.run returned without calling job(0)"},
+        {Fault::calls_twice, StepStatus::done, ""},
+        {Fault::calls_strangers, StepStatus::done, ""},
+        {Fault::throws_after, StepStatus::done, "the pool is closing"}};
+    for (const Case& faulty : cases) {
+        testing::MixedScene mixed, good;
+        FaultyExecutor host;
+        Solver solver({.gravity = {0, -9.81F, 0}}, {.alone_below = 0, .executor = &host}),
+            other({.gravity = {0, -9.81F, 0}});
+        const std::uint64_t before = mixed.scene.state_hash();
+        host.fault = faulty.fault;
+        const StepReport report = solver.step(mixed.scene, 1.0F / 60, mixed.contacts());
+        EXPECT_EQ(report.status, faulty.status) << faulty.error;
+        EXPECT_EQ(report.error, faulty.error);
+        if (report.status == StepStatus::refused) {
+            EXPECT_EQ(mixed.scene.state_hash(), before) << faulty.error;
+            host.fault = Fault::none;
+            EXPECT_EQ(solver.step(mixed.scene, 1.0F / 60, mixed.contacts()).status, StepStatus::done);
+        }
+        other.step(good.scene, 1.0F / 60, good.contacts());
+        EXPECT_EQ(mixed.scene.state_hash(), good.scene.state_hash()) << "as often as it is said to be done";
+    }
+}
+
+TEST(Executor, AChunkThatThrowsEndsItsStageAndTheNextOneRuns)
+{
+    for (const int lent : {0, 1, 3}) {
+        ThreadExecutor host(4, lent);
+        StageRunner runner(&host);
+        for (const int bad : {0, 57, 99}) {
+            const auto step = [&](bool throws) {
+                std::atomic<int> ran{0};
+                runner.with_workers(false, [&] {
+                    for (int stage = 0; stage < 3; ++stage) {
+                        runner.run(100, [&](std::int64_t i) {
+                            if (throws && stage == 1 && i == bad) throw std::length_error("chunk");
+                            ++ran;
+                        });
+                    }
+                });
+                return ran.load();
+            };
+            EXPECT_THROW(step(true), std::length_error) << lent;
+            EXPECT_EQ(step(false), 300) << lent;
+        }
+    }
+}
+
+TEST(Executor, ALoopThatThrowsIsThrownToItsCaller)
+{
+    for (const int lent : {0, 3}) {
+        ThreadExecutor host(4, lent);
+        for (const std::int64_t bad : {0, 50, 99}) {
+            EXPECT_THROW(parallel_for(host, 100, 1,
+                                      [&](std::int64_t begin, std::int64_t) {
+                                          if (begin == bad) throw std::length_error("chunk");
+                                      }),
+                         std::length_error);
+        }
+    }
+}
+
+/// Steps again while it is asked to run.
+class NestingExecutor final : public Executor {
+  public:
+    std::function<StepReport()> step;
+    StepReport nested;
+    [[nodiscard]] int concurrency() const override { return 2; }
+    void run(int, const std::function<void(int)>& job) override
+    {
+        nested = step();
+        job(0);
+    }
+};
+
+TEST(Executor, AStepOfASceneOrByASolverThatIsInOneIsRefused)
+{
+    testing::MixedScene mixed, good;
+    Scene elsewhere;
+    NestingExecutor host;
+    Solver solver(SolverSettings{}, {.alone_below = 0, .executor = &host}), other;
+    host.step = [&] { return other.step(mixed.scene, 1.0F / 60); };
+    EXPECT_EQ(solver.step(mixed.scene, 1.0F / 60, mixed.contacts()).status, StepStatus::done);
+    EXPECT_EQ(host.nested.status, StepStatus::refused);
+    EXPECT_EQ(host.nested.error, "step.scene is in another step; expected one step at a time");
+    host.step = [&] { return solver.step(elsewhere, 1.0F / 60); };
+    EXPECT_EQ(solver.step(mixed.scene, 1.0F / 60, mixed.contacts()).status, StepStatus::done);
+    EXPECT_EQ(host.nested.status, StepStatus::refused);
+    EXPECT_EQ(host.nested.error, "step is called while the solver is in a step; expected one step at a time");
+    for (int step = 0; step < 2; ++step) other.step(good.scene, 1.0F / 60, good.contacts());
+    EXPECT_EQ(mixed.scene.state_hash(), good.scene.state_hash());
+}
+
+TEST(Threads, MayWriteAndReadDifferentBodiesOfASceneBesideEachOther)
+{
+    Scene scene, alone;
+    const std::vector<BodyDefinition> definitions(400);
+    std::vector<BodyId> bodies(400), same(400);
+    scene.add_bodies(definitions, bodies);
+    alone.add_bodies(definitions, same);
+    std::vector<Vec3<float>> forces(400), speeds(400);
+    for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = speeds[i] = {static_cast<float>(i), 1, 0};
+    ThreadExecutor host(4, 3);
+    for (int round = 0; round < 20; ++round) {
+        parallel_for(host, 400, 10, [&](std::int64_t begin, std::int64_t end) {
+            const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+            const std::span<const BodyId> own = std::span(bodies).subspan(first, count);
+            std::vector<Vec3<double>> positions(count);
+            scene.set_velocities(own, std::span(speeds).subspan(first, count));
+            scene.read_positions(own, positions);
+            scene.set_forces(own, std::span(forces).subspan(first, count));
+            static_cast<void>(scene.state(own[0]));
+        });
+    }
+    alone.set_velocities(same, speeds);
+    alone.set_forces(same, forces);
+    Solver solver;
+    solver.step(scene, 1.0F / 60);
+    solver.step(alone, 1.0F / 60);
+    EXPECT_EQ(scene.state_hash(), alone.state_hash());
 }
 
 }  // namespace

@@ -407,5 +407,47 @@ TEST(Iterations, RemovedBodiesAndJointsTakeTheirWishesWithThem)
     EXPECT_FALSE(scene.asks_for_iterations());
 }
 
+TEST(Measures, WhatIsNotANumberIsNotSolved)
+{
+    // A force drives a light body past the range of floats within the step.
+    for (const BodyModel model : {BodyModel::particle, BodyModel::planar, BodyModel::rigid}) {
+        Scene scene;
+        BodyDefinition body;
+        body.model = model;
+        body.mass = 1e-6F;
+        const BodyId bad = scene.add_body(body);
+        scene.add_joint(BallSocketDefinition{scene.ground(), bad, {}, {}});
+        scene.set_force(bad, {3e38F, 3e38F, 0}, {});
+        SolverSettings settings;
+        settings.iterations = 8;
+        settings.tolerance = 1e-3F;
+        settings.measures = true;
+        settings.substeps = 1;
+        const StepReport report = Solver(settings).step(scene, 1.0F / 60);
+        ASSERT_EQ(report.bodies_contained, 1);
+        EXPECT_FALSE(report.measures.residual_max <= 1e30) << report.measures.residual_max;
+        EXPECT_FALSE(report.measures.residual_rms <= 1e30) << report.measures.residual_rms;
+        EXPECT_FALSE(report.measures.residual_norm <= 1e30) << report.measures.residual_norm;
+        EXPECT_EQ(report.islands_above_tolerance, 1);
+        EXPECT_EQ(report.iterations, 8);
+    }
+}
+
+TEST(Measures, AServosPullIsNoSeparation)
+{
+    Scene scene;
+    BodyDefinition body;
+    const BodyId a = scene.add_body(body);
+    scene.add_joint(BallSocketDefinition{scene.ground(), a, {0.0007F, 0, 0}, {}});
+    scene.add_joint(PointServoDefinition{scene.ground(), a, {0.031F, 0, 0}, {}});
+    AngularServoDefinition turn{scene.ground(), a};
+    turn.frame_a.rotation = {0, 0, 1, 1};
+    scene.add_joint(turn);
+    const SceneErrors errors = scene.errors();
+    EXPECT_NEAR(errors.joint_separation_max, 0.0007, 1e-9);
+    EXPECT_NEAR(errors.joint_separation_rms, 0.0007, 1e-9);
+    EXPECT_EQ(errors.joint_angle_max, 0);
+}
+
 }  // namespace
 }  // namespace motley

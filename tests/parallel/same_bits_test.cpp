@@ -30,10 +30,10 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 6515385902102635129ULL},
-            {"baumgarte", iterative, 7294046641496822510ULL},
-            {"no drift correction", none, 18193093497914501264ULL},
-            {"projection", projection, 12181773780268072262ULL}};
+    return {{"soft_step", soft, 13381041482605015285ULL},
+            {"baumgarte", iterative, 17078524211299489192ULL},
+            {"no drift correction", none, 888322108131994858ULL},
+            {"projection", projection, 8821261560627049049ULL}};
 }
 
 /// The state's hash after every step.
@@ -89,8 +89,8 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {6806883733091745205ULL, 2630704882665883419ULL, 5945671955822757556ULL,
-                                    16516728064466341087ULL};
+    const std::uint64_t golden[] = {4391953273081205932ULL, 9928486930215834024ULL, 17432216991351669175ULL,
+                                    11970503643310706723ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});

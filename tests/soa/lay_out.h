@@ -12,7 +12,7 @@ inline void lay_out(Layout& layout, Scene& scene, std::span<const Contact> conta
     const auto run = [](std::int64_t count, const auto& chunk) {
         for (std::int64_t i = 0; i < count; ++i) chunk(i);
     };
-    ASSERT_EQ(layout.intake.take_in(scene, contacts, run), "");
+    ASSERT_EQ(layout.intake.take_in(scene, contacts, false, run), "");
     ContactCache& cache = scene.contact_cache();
     layout.begin(scene, contacts.size(), {});
     layout.colour_contacts(scene.bodies(), cache.staged());

@@ -32,9 +32,9 @@ struct BodyDefinition {
     double yaw = 0;                  ///< planar: rad about +z, finite
     Vec3<float> linear_velocity{};   ///< m/s, finite; planar: z = 0; static: zero
     Vec3<float> angular_velocity{};  ///< rad/s, finite; planar: x = y = 0; particle and static: zero
-    float mass = 1;                  ///< kg, > 0, finite; only of dynamic bodies
+    float mass = 1;                  ///< kg, 1e-10 to 1e10; only of dynamic bodies
     /// About the centre of mass in the body frame, kg m2. rigid: symmetric positive definite, obeying the
-    /// triangle inequality (A + B >= C); planar: zz > 0 only; others: not read.
+    /// triangle inequality (A + B >= C), xx, yy and zz 1e-20 to 1e20; planar: zz 1e-20 to 1e20 only; others: not read.
     Sym3<float> inertia{1, 0, 0, 1, 0, 1};
 };
 

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "motley/core/aligned_vector.h"
@@ -74,8 +75,12 @@ class BodyStore {
   public:
     BodyStore();
 
+    /// Room for these; then add() cannot fail.
+    void make_room(std::span<const BodyDefinition> definitions);
     /// Adds a checked definition.
     BodyId add(const BodyDefinition& definition);
+    /// Room to remember what these leave free; then remove() cannot fail.
+    void make_room_to_remove(std::span<const BodyId> bodies);
     /// Frees the slot and row of a live body.
     void remove(BodyId body);
     /// Gives every body a new row, in the order of a curve that fills space, and closes the gaps of free ones.
@@ -98,8 +103,8 @@ class BodyStore {
 
     [[nodiscard]] BodyMotion motion(BodyId body) const { return motions_[body.slot]; }
     [[nodiscard]] BodyModel model(BodyId body) const { return models_[body.slot]; }
-    /// Joints on each slot; lets a removal skip the search for joints.
-    std::vector<std::uint32_t> joint_counts;
+    /// Of each slot the first joint on it, as JointStores::ends counts; 0 when there is none.
+    std::vector<std::uint32_t> first_ends;
     /// Frozen by a step because its state was not finite: what pushes it is left out.
     std::vector<std::uint8_t> contained;
     std::size_t contained_count = 0;
@@ -117,6 +122,8 @@ class BodyStore {
     int commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, std::uint32_t& contained_slot);
     /// Gives a contained body its mass back.
     void revive(BodyId body);
+    /// Fills in what follows from the rest and is in no file: displacements, inertias, what is counted.
+    void derive();
     /// World inverse inertia of a rigid row from its orientation, now and for the start of the next step.
     void refresh_world_inertia(std::uint32_t row);
 

@@ -13,6 +13,10 @@
 
 namespace motley {
 
+/// Colours that run in parallel. A body with more constraints than this (a hub) sends the rest to the
+/// overflow, which runs in order.
+inline constexpr int parallel_colours = 30;
+inline constexpr std::uint8_t overflow_colour = parallel_colours;
 inline constexpr std::uint8_t no_colour = 255;
 
 /// The contacts of one step, in the order of the host's list.

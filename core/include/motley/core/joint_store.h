@@ -10,6 +10,7 @@
 #include "motley/core/aligned_vector.h"
 #include "motley/core/constraint_types.h"
 #include "motley/core/contact_cache.h"
+#include "motley/core/growth.h"
 #include "motley/core/ids.h"
 #include "motley/core/joint_pose.h"
 #include "motley/core/joint_report.h"
@@ -39,6 +40,16 @@ struct JointStore {
     static constexpr bool has_world_points = requires { &Type::world_points; };
     [[nodiscard]] std::size_t size() const { return definitions.size(); }
 
+    /// Room for one more; then push_back() cannot fail.
+    void make_room()
+    {
+        make_room_for(definitions, 1);
+        make_room_for(parameters, quad_floats<Parameters>);
+        make_room_for(memory, quad_floats<Memory>);
+        if constexpr (has_world_points) make_room_for(world_points, 1);
+        make_room_for(colours, 1);
+        make_room_for(slots, 1);
+    }
     void push_back(const typename Type::Definition& definition, std::uint32_t slot)
     {
         definitions.push_back(definition);
@@ -70,17 +81,17 @@ struct JointStore {
     void swap_remove(std::size_t index)
     {
         const std::size_t last = size() - 1;
-        definitions[index] = definitions[last];
-        std::memcpy(&parameters[index * quad_floats<Parameters>], &parameters[last * quad_floats<Parameters>],
-                    quad_floats<Parameters> * sizeof(float));
-        std::memcpy(&memory[index * quad_floats<Memory>], &memory[last * quad_floats<Memory>],
-                    quad_floats<Memory> * sizeof(float));
-        if constexpr (has_world_points) {
-            world_points[index] = world_points[last];
-            world_points.pop_back();
+        if (index != last) {
+            definitions[index] = definitions[last];
+            std::memcpy(&parameters[index * quad_floats<Parameters>],
+                        &parameters[last * quad_floats<Parameters>], quad_floats<Parameters> * sizeof(float));
+            std::memcpy(&memory[index * quad_floats<Memory>], &memory[last * quad_floats<Memory>],
+                        quad_floats<Memory> * sizeof(float));
+            if constexpr (has_world_points) world_points[index] = world_points[last];
+            colours[index] = colours[last];
+            slots[index] = slots[last];
         }
-        colours[index] = colours[last];
-        slots[index] = slots[last];
+        if constexpr (has_world_points) world_points.pop_back();
         definitions.pop_back();
         parameters.resize(last * quad_floats<Parameters>);
         memory.resize(last * quad_floats<Memory>);
@@ -102,8 +113,8 @@ struct JointStores {
         std::uint32_t generation = 0;
         std::uint32_t index = 0;
         std::uint8_t type = 0;
-        bool live = false;
-        bool watched = false;  ///< stands in the list below
+        std::uint8_t live = 0;     ///< 1 or 0: in a file, a bool might be anything
+        std::uint8_t watched = 0;  ///< likewise: stands in the list below
         BreakLimit break_limit{};
         std::uint16_t iterations =
             0;  ///< at least so many sweeps of solve a substep; 0: as the solver's settings
@@ -111,11 +122,44 @@ struct JointStores {
     typename StoresOf<JointTypes>::type stores;
     std::vector<Slot> slots{Slot{}};  ///< slot 0 is null
     std::vector<std::uint32_t> free_slots;
+    /// The joints on each body, a list each, threaded through the joints: end 2 s is that of the joint in slot s on its body
+    /// a, end 2 s + 1 that on its body b; 0 is no end. A list begins at BodyStore::first_ends.
+    struct End {
+        std::uint32_t next = 0, previous = 0;
+    };
+    std::vector<End> ends{2};
     std::vector<ConstraintId> watched;  ///< joints with a break limit, and some that had one
     std::size_t with_iterations = 0;    ///< joints that ask for iterations of their own
     /// Names this set of joints: null after a change, given by the next step, shared by copies of the scene.
     /// A layout that holds the same token was made from the same joints.
     std::shared_ptr<const char> version;
+
+    /// Room for one more handle, and to take it back; then neither can fail.
+    void make_room()
+    {
+        make_room_for(slots, 1);
+        make_room_for(ends, 2);
+        if (free_slots.capacity() <= slots.size()) free_slots.reserve(slots.capacity());
+    }
+    /// Puts an end at the front of the list that begins at `first`; or takes it out.
+    void link(std::uint32_t end, std::uint32_t& first)
+    {
+        ends[end] = {first, 0};
+        if (first != 0) ends[first].previous = end;
+        first = end;
+    }
+    void unlink(std::uint32_t end, std::uint32_t& first)
+    {
+        const auto [next, previous] = ends[end];
+        (previous != 0 ? ends[previous].next : first) = next;
+        if (next != 0) ends[next].previous = previous;
+    }
+    /// Calls visit(slot) for each joint of the list that begins at `first`.
+    template <class Visit>
+    void for_each_on(std::uint32_t first, Visit&& visit) const
+    {
+        for (std::uint32_t end = first; end != 0; end = ends[end].next) visit(slots[end / 2]);
+    }
 
     /// Calls visit(store, type number) for each type.
     template <class Visit>

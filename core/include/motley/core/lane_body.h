@@ -341,20 +341,26 @@ Real inverse_or_zero(const Real& x)
     return select(usable, Real(1) / select(usable, x, Real(1)), Real(0));
 }
 
+/// Scaled by its trace first: in float the determinants of bodies of 5e-20 kg m2 and of 1e10 kg m2 leave the range. Zero
+/// where that of the scaled one is lost in rounding, or there is nothing.
 template <class Real>
 Sym2<Real> inverse(const Sym2<Real>& k)
 {
-    const Real d = inverse_or_zero(k.xx * k.yy - k.xy * k.xy);
-    return {d * k.yy, -(d * k.xy), d * k.xx};
+    const Real scale = inverse_or_zero(k.xx + k.yy);
+    const Real xx = scale * k.xx, xy = scale * k.xy, yy = scale * k.yy;
+    const Real d = scale * inverse_or_zero(xx * yy - xy * xy);
+    return {d * yy, -(d * xy), d * xx};
 }
 
 template <class Real>
 Sym3<Real> inverse(const Sym3<Real>& k)
 {
-    const Real d = inverse_or_zero(determinant(k));
-    return {d * (k.yy * k.zz - k.yz * k.yz), d * (k.xz * k.yz - k.xy * k.zz),
-            d * (k.xy * k.yz - k.xz * k.yy), d * (k.xx * k.zz - k.xz * k.xz),
-            d * (k.xz * k.xy - k.xx * k.yz), d * (k.xx * k.yy - k.xy * k.xy)};
+    const Real scale = inverse_or_zero(k.xx + k.yy + k.zz);
+    const Sym3<Real> m{scale * k.xx, scale * k.xy, scale * k.xz, scale * k.yy, scale * k.yz, scale * k.zz};
+    const Real d = scale * inverse_or_zero(determinant(m));
+    return {d * (m.yy * m.zz - m.yz * m.yz), d * (m.xz * m.yz - m.xy * m.zz),
+            d * (m.xy * m.yz - m.xz * m.yy), d * (m.xx * m.zz - m.xz * m.xz),
+            d * (m.xz * m.xy - m.xx * m.yz), d * (m.xx * m.yy - m.xy * m.xy)};
 }
 
 }  // namespace motley

@@ -40,13 +40,8 @@ Real energy_of_change(const LaneBody<Real, BodyKind::rigid>& before,
                       const LaneBody<Real, BodyKind::rigid>& after)
 {
     const Vec3<Real> change = after.linear - before.linear, turn = after.angular - before.angular;
-    // Scaled by its trace first: a determinant in float leaves its range at inertias of 1e10 kg m2.
-    const Sym3<Real>& i = after.inverse_inertia;
-    const Real scale = inverse_or_zero(i.xx + i.yy + i.zz);
-    const Sym3<Real> scaled{scale * i.xx, scale * i.xy, scale * i.xz,
-                            scale * i.yy, scale * i.yz, scale * i.zz};
     return inverse_or_zero(after.inverse_mass) * dot(change, change) +
-           scale * dot(turn, inverse(scaled) * turn);
+           dot(turn, inverse(after.inverse_inertia) * turn);
 }
 template <class Real>
 Real energy_of_change(const LaneBody<Real, BodyKind::fixed>&, const LaneBody<Real, BodyKind::fixed>&)
@@ -68,7 +63,8 @@ Real inverse_mass_of(const LaneBody<Real, kind>& body)
 template <class Real>
 LaneResidual<Real> residual_of(const Real& energy_of_changes, const Real& inverse_masses)
 {
-    const Real energy = maximum(energy_of_changes, Real(0));
+    // Rounding may leave it below zero. In this order what is not a number stays that, and is never taken for solved.
+    const Real energy = maximum(Real(0), energy_of_changes);
     return {energy, square_root(energy * inverse_masses)};
 }
 

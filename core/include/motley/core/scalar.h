@@ -16,12 +16,14 @@ inline float square_root(float x)
     return std::sqrt(x);
 }
 
+/// Where x or y is not a number, y.
 template <class Real>
 Real minimum(const Real& x, const Real& y)
 {
     return select(x < y, x, y);
 }
 
+/// Where x or y is not a number, y.
 template <class Real>
 Real maximum(const Real& x, const Real& y)
 {

@@ -7,6 +7,7 @@
 
 #include "motley/core/body.h"
 #include "motley/core/body_store.h"
+#include "motley/core/busy_flag.h"
 #include "motley/core/constraint_types.h"
 #include "motley/core/contact_cache.h"
 #include "motley/core/ids.h"
@@ -18,7 +19,14 @@
 namespace motley {
 
 /// Holds everything that decides what the next step computes. Every call that is refused throws
-/// InvalidInput and changes nothing. Not thread-safe; one scene, one thread, or many scenes, many threads.
+/// InvalidInput and changes nothing; so does one for which memory runs out, which throws std::bad_alloc. A scene that was
+/// moved from, or whose assignment ran out of memory, may be assigned to and destroyed, and nothing else.
+///
+/// Threads. Different scenes know nothing of each other. Of one scene,
+/// - calls that are const may run beside each other;
+/// - set_velocity, set_velocities, set_force and set_forces may run beside each other, and beside const calls about one or
+///   some bodies, as long as no body that one of them names is named by another: they touch those bodies' rows alone;
+/// - every other call, and a step, must be alone. A second step at the same time is refused; nothing else is found out.
 class Scene {
   public:
     Scene();
@@ -43,9 +51,11 @@ class Scene {
     [[nodiscard]] BodyState state(BodyId body) const;
     /// Teleports a body. Velocities are kept. Joints on it start cold in the next step.
     void set_pose(BodyId body, const Vec3<double>& position, const Quat<double>& orientation, double yaw);
-    /// Sets one body's velocity. Refused for static bodies and for components that the model does not have.
+    /// Sets one body's velocity. Refused for static bodies and for components that the model does not have. Of no effect on
+    /// a contained body, which stays where it is: revive() says how it moves.
     void set_velocity(BodyId body, const Vec3<float>& linear, const Vec3<float>& angular);
-    /// A force (N) and torque (N m), world, that act in every step until changed. Dynamic bodies only.
+    /// A force (N) and torque (N m), world, that act in every step until changed; on a contained body once it is revived.
+    /// Dynamic bodies only.
     void set_force(BodyId body, const Vec3<float>& force, const Vec3<float>& torque);
     /// Thaws a body that a step contained: the host says where it is and how it moves.
     void revive(BodyId body, const Vec3<double>& position, const Vec3<float>& linear);
@@ -126,8 +136,12 @@ class Scene {
     [[nodiscard]] JointStores& joints() { return joints_; }
     [[nodiscard]] ContactCache& contact_cache() { return contacts_; }
     [[nodiscard]] const ContactCache& contact_cache() const { return contacts_; }
+    /// Room for a break event of each watched joint; then looking for them allocates nothing.
+    void make_room_for_break_events();
     /// Looks for joints that bore more than their limit, once a step is done.
-    void find_break_events();
+    void find_break_events() noexcept;
+    /// Taken by a step for as long as it lasts.
+    [[nodiscard]] BusyFlag& busy() { return busy_; }
     /// Seconds of the last substep: turns impulses into forces. 0 before the first step.
     float last_substep = 0;
 
@@ -140,6 +154,7 @@ class Scene {
     std::vector<IslandIterations> island_iterations_;  ///< of bodies alive
     BodyId ground_{};
     std::size_t body_count_ = 0;
+    BusyFlag busy_;
 
     void require_alive(BodyId body, const char* what) const
     {
@@ -148,6 +163,9 @@ class Scene {
     [[noreturn]] static void refuse_dead(BodyId body, const char* what);
     void require_alive(std::span<const BodyId> bodies, const char* what) const;
     JointBodies check_joint_bodies(BodyId a, BodyId b) const;
+    static void check_break_limit(const BreakLimit& limit);
+    static void check_wish(const char* field, int at_least);
+    void check_island_wish(const IslandIterations& asked) const;
     ConstraintId take_joint_slot(int type, std::size_t index);
     std::size_t index_of_joint(ConstraintId joint, int type) const;
     void remove_joints_of(std::span<const BodyId> bodies);
@@ -163,10 +181,12 @@ ConstraintId Scene::add_joint(const Definition& definition)
     auto& store = std::get<static_cast<std::size_t>(type)>(joints_.stores);
     using Type = typename std::remove_cvref_t<decltype(store)>::Type;
     Type::validate(definition, check_joint_bodies(definition.body_a, definition.body_b));
+    joints_.make_room();
+    store.make_room();
     const ConstraintId id = take_joint_slot(type, store.size());
     store.push_back(definition, id.slot);
-    ++bodies_.joint_counts[definition.body_a.slot];
-    ++bodies_.joint_counts[definition.body_b.slot];
+    joints_.link(2 * id.slot, bodies_.first_ends[definition.body_a.slot]);
+    joints_.link(2 * id.slot + 1, bodies_.first_ends[definition.body_b.slot]);
     joints_.version.reset();
     return id;
 }

@@ -25,6 +25,12 @@ enum class DriftCorrection {
     projection,  ///< moves positions along J^T after the integration, weighted by inverse mass
 };
 
+/// What a step does about a contact that it cannot take (see Contact for the valid ranges).
+enum class BadContacts {
+    refuse,  ///< the whole step is refused
+    skip,    ///< it is left out, and the report tells. A key that comes twice is refused all the same
+};
+
 /// Settings of a step. A default-constructed value is a sensible crowd at 60 Hz.
 struct SolverSettings {
     Method method = Method::soft_step;
@@ -43,11 +49,12 @@ struct SolverSettings {
     float tolerance = 0;
     /// ms, 0 to 1e6. Above 0 each step picks its own substeps (soft_step) or iterations (sequential_impulse), so that it
     /// takes about so long on this machine, from what the steps before took; `substeps` or `iterations` are then the most.
-    /// StepReport tells what was picked and, in `measures`, the residual that it left. Not of `direct`. NOT the same bits
+    /// StepReport tells what was picked, whether it took longer, and, in `measures`, the residual that was left. Not of `direct`. NOT the same bits
     /// from run to run: what is picked depends on the clock.
     float budget_ms = 0;
     bool measures =
         false;  ///< fill StepReport::measures; costs about two sweeps a step, and reading every joint twice
+    BadContacts bad_contacts = BadContacts::refuse;
     Vec3<float> gravity{0, 0, 0};  ///< m/s2; planar bodies ignore z
 
     float contact_hertz = 30;          ///< soft_step: stiffness of contacts, > 0, capped at 0.25 / substep

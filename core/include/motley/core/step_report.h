@@ -30,14 +30,14 @@ const char* stage_name(Stage stage);
 /// How a step ended.
 enum class StepStatus {
     done,     ///< the scene has moved on by dt
-    refused,  ///< bad input: nothing was changed; `error` says why
+    refused,  ///< bad input, or no memory: nothing was changed; `error` says why
 };
 
 /// The errors of a scene's positions, in double from the definitions, not from what the solver believes.
 struct SceneErrors {
-    double joint_separation_rms = 0;  ///< m, over all joints
+    double joint_separation_rms = 0;  ///< m, over all joints but servos, which pull and hold nothing
     double joint_separation_max = 0;
-    double joint_angle_rms = 0;  ///< rad, over all joints
+    double joint_angle_rms = 0;  ///< rad, over the same
     double joint_angle_max = 0;
     double kinetic_energy = 0;       ///< J
     double momentum[3] = {0, 0, 0};  ///< kg m/s
@@ -59,9 +59,12 @@ struct StepMeasures {
 /// Returned by Solver::step. Counting is free; times cost two clock reads a stage.
 struct StepReport {
     StepStatus status = StepStatus::done;
-    std::string error;  ///< empty unless refused
+    std::string
+        error;  ///< why it was refused; of a step that is done what its executor threw afterwards, if anything
 
     std::int64_t contacts = 0;
+    std::int64_t contacts_skipped = 0;  ///< with BadContacts::skip: those that were left out
+    std::string skipped_error;          ///< of the first of them: field, value and valid range
     std::int64_t joints = 0;
     std::int64_t joints_in_lockstep = 0;  ///< of them, those of copies of a figure that nothing else touched
     int colours = 0;                      ///< colours in use, the overflow not counted
@@ -72,6 +75,7 @@ struct StepReport {
     std::int64_t sweeps = 0;   ///< sweeps over all constraints: warm starts, solves and relaxations
     int substeps = 0;          ///< that were made; with a budget: that were picked
     int iterations = 0;        ///< most sweeps of solve in a substep
+    bool over_budget = false;  ///< took longer than SolverSettings::budget_ms, if there is one
     std::int64_t islands = 0;  ///< found when SolverSettings::tolerance is above 0
     std::int64_t islands_above_tolerance = 0;  ///< after the last sweep of solve that was allowed
     StepMeasures measures;  ///< with SolverSettings::measures; with a budget its residuals alone

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <functional>
 
 #include "motley/parallel/executor.h"
@@ -12,16 +13,19 @@ namespace motley {
 /// Calls body(begin, end) for consecutive chunks of at most `grain` elements that cover [0, count), on
 /// whichever thread comes; returns when all are done. The chunks do not depend on the number of threads. The caller
 /// starts at the front and the others at the back, so that of two loops in a row over the same data each thread finds
-/// about the same part in its cache.
+/// about the same part in its cache. When a call throws, chunks that nobody has begun are left out, and what was thrown
+/// first is thrown here once all threads are back.
 template <class Body>
 void parallel_for(Executor& executor, std::int64_t count, std::int64_t grain, const Body& body)
 {
     const auto chunks = static_cast<std::uint32_t>((count + grain - 1) / grain);
     // The chunks that nobody has claimed: the first in the low half, one past the last in the high half.
     std::atomic<std::uint64_t> left{std::uint64_t{chunks} << 32};
-    const auto work = [&](int worker) {
+    std::atomic<bool> failed{false};
+    std::exception_ptr failure;
+    const auto work_until_done = [&](int worker) {
         std::uint64_t seen = left.load();
-        for (;;) {
+        while (!failed.load(std::memory_order_relaxed)) {
             const auto first = static_cast<std::uint32_t>(seen),
                        last = static_cast<std::uint32_t>(seen >> 32);
             if (first == last) return;
@@ -32,12 +36,22 @@ void parallel_for(Executor& executor, std::int64_t count, std::int64_t grain, co
             seen = left.load();
         }
     };
-    if (executor.concurrency() == 1 || chunks <= 1) {
+    // Nothing leaves a call: another's threads need not know what to do with it.
+    const auto work = [&](int worker) noexcept {
+        try {
+            work_until_done(worker);
+        } catch (...) {
+            if (!failed.exchange(true)) failure = std::current_exception();
+        }
+    };
+    if (executor.concurrency() <= 1 || chunks <= 1) {
         work(0);
     } else {
         // A reference: std::function need not allocate for it.
         executor.run(executor.concurrency(), std::ref(work));
+        work(0);  // what an executor that called nobody has left
     }
+    if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace motley

@@ -21,15 +21,19 @@ struct SolverOptions {
     /// Steps of fewer contacts (a joint counts as four, two bodies as one) run on the caller alone: they are done before
     /// another thread has come.
     std::size_t alone_below = 8192;
-    std::optional<Isa> isa{};      ///< default: MOTLEY_ISA, else the widest this machine has
+    /// Default: what the environment variable MOTLEY_ISA names, else the widest this machine has.
+    std::optional<Isa> isa{};
     Executor* executor = nullptr;  ///< the host's own threads; not owned, must outlive the solver
 };
 
 /// Steps scenes. Holds buffers and threads but no state that decides a result: two solvers step copies of a
-/// scene to the same bits. One solver steps one scene at a time.
+/// scene to the same bits. One solver steps one scene at a time: a step of a solver or a scene that is in one is refused.
+/// A solver that has been moved from steps nothing: step() is refused, everything else throws InvalidInput.
 class Solver {
   public:
-    /// Throws InvalidInput for settings or options out of range, or an instruction set not available here.
+    /// Throws InvalidInput for settings or options out of range, for an executor whose concurrency is, and for an instruction
+    /// set not available here, be it asked for by `options` or, where they leave it open, by MOTLEY_ISA: whoever forces one
+    /// would measure another unawares.
     explicit Solver(const SolverSettings& settings = {}, const SolverOptions& options = {});
     ~Solver();
     Solver(Solver&&) noexcept;
@@ -37,8 +41,8 @@ class Solver {
 
     /// Moves the scene on by `dt` seconds (0 to 1; 0 changes nothing), with the contacts of this step. The
     /// list is read during the call only; best in about the order of the step before, and large ones with neighbours in
-    /// space near each other. Never throws: bad input gives StepStatus::refused, a message, and
-    /// an untouched scene. Allocates nothing once the scene has stopped growing.
+    /// space near each other. Never throws: bad input, a lack of memory and an executor that fails give
+    /// StepStatus::refused, a message, and an untouched scene. Allocates nothing once the scene has stopped growing.
     StepReport step(Scene& scene, float dt, std::span<const Contact> contacts = {}) noexcept;
 
     [[nodiscard]] const SolverSettings& settings() const;
@@ -52,6 +56,8 @@ class Solver {
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
+
+    [[nodiscard]] Impl& impl() const;  ///< refuses when it has been moved from
 };
 
 }  // namespace motley

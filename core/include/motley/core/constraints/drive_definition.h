@@ -27,9 +27,8 @@ struct DriveDefinition {
         -std::numeric_limits<float>::infinity();  ///< <= upper; equal: a lock. twist: -pi to pi or infinite
     float upper = std::numeric_limits<float>::infinity();
 
-    float motor_speed = 0;  ///< m/s or rad/s that the motor wants, finite
-    float motor_max_force =
-        0;  ///< N or N m, >= 0, finite; 0: no motor. With speed 0 a brake, or dry friction
+    float motor_speed = 0;      ///< m/s or rad/s that the motor wants, finite
+    float motor_max_force = 0;  ///< N or N m, 0 to 1e12; 0: no motor. With speed 0 a brake, or dry friction
 
     float spring_hertz = 0;          ///< 0: no spring; to 1e6 (Hz), on the drive's own effective mass
     float spring_damping_ratio = 0;  ///< 0 to 1e6

@@ -53,7 +53,7 @@ void validate_servo(const Definition& servo, float most, const char* bound)
 
 struct PointServo {
     using Definition = PointServoDefinition;
-    static constexpr bool has_restitution = false;
+    static constexpr bool has_restitution = false, only_pulls = true;
     static constexpr bool recomputes_each_substep = true;
 
     template <class Real>
@@ -170,7 +170,7 @@ struct PointServo {
 
 struct AngularServo {
     using Definition = AngularServoDefinition;
-    static constexpr bool has_restitution = false;
+    static constexpr bool has_restitution = false, only_pulls = true;
     static constexpr bool recomputes_each_substep = true;
     static constexpr bool needs_bodies_that_turn = true;
 

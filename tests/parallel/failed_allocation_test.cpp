@@ -1,0 +1,188 @@
+// What happens when memory runs out: a call is refused and has changed nothing, and the same call with memory does what it
+// would have done. Independent evidence: the same calls where memory never ran out. Every allocation fails once.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "allocator.h"
+#include "lattice_crowd.h"
+#include "mixed_scene.h"
+
+namespace motley {
+namespace {
+
+using testing::FailingAllocator;
+using testing::MixedScene;
+
+constexpr float dt = 1.0F / 60;
+
+struct Way {
+    const char* name;
+    SolverSettings settings;
+    int threads;
+};
+
+std::vector<Way> ways()
+{
+    SolverSettings soft;
+    soft.gravity = {0, -9.81F, 0};
+    SolverSettings exact = soft;
+    exact.exact_joints = true;
+    SolverSettings careful = soft;
+    careful.tolerance = 1e-3F;
+    careful.measures = true;
+    SolverSettings direct = soft;
+    direct.method = Method::direct;
+    direct.substeps = 1;
+    return {{"soft", soft, 1},
+            {"soft", soft, 2},
+            {"exact", exact, 2},
+            {"careful", careful, 2},
+            {"direct", direct, 1}};
+}
+
+/// Small first, so that in a later step everything grows.
+std::span<const Contact> first_of(const std::vector<Contact>& contacts, std::size_t count)
+{
+    return std::span(contacts).first(std::min(count, contacts.size()));
+}
+
+/// A step with three contacts, then one with all, in which memory runs out, and two more. Returns the hash; `ran_out` tells
+/// whether an allocation failed.
+std::uint64_t hash_after_steps(const Way& way, long successes, bool for_good, bool& ran_out)
+{
+    MixedScene mixed(4);
+    Solver solver(way.settings, {.threads = way.threads, .alone_below = 0});
+    for (int step = 0; step < 12; ++step) mixed.contacts();
+    const std::vector<Contact> few(first_of(mixed.contacts(), 3).begin(),
+                                   first_of(mixed.contacts(), 3).end());
+    EXPECT_EQ(solver.step(mixed.scene, dt, few).status, StepStatus::done);
+    // A joint more, so that joints are laid out anew.
+    mixed.scene.set_break_limit(
+        mixed.scene.add_joint(DistanceDefinition{mixed.balls[0], mixed.balls[5], {}, {}, 0, 2}), {1, 1});
+    std::vector<Contact> contacts = mixed.contacts();
+    for (std::size_t i = 0; i < mixed.balls.size(); ++i) {
+        Contact contact;
+        contact.body_a = mixed.scene.ground();
+        contact.body_b = mixed.balls[i];
+        contact.key = std::uint64_t{1} << 50 | i;
+        contact.normal = {0, 1, 0};
+        contact.separation = 1;
+        contacts.push_back(contact);
+    }
+    const std::uint64_t before = mixed.scene.state_hash();
+    StepReport report;
+    {
+        const FailingAllocator failing(successes, for_good);
+        report = solver.step(mixed.scene, dt, contacts);
+        ran_out = FailingAllocator::has_failed();
+    }
+    if (report.status == StepStatus::refused) {
+        EXPECT_EQ(report.error, "out of memory");
+        EXPECT_EQ(mixed.scene.state_hash(), before) << way.name << ", allocation " << successes;
+        EXPECT_TRUE(ran_out);
+        report = solver.step(mixed.scene, dt, contacts);
+    }
+    EXPECT_EQ(report.status, StepStatus::done) << report.error;
+    for (int step = 0; step < 2; ++step)
+        EXPECT_EQ(solver.step(mixed.scene, dt, contacts).status, StepStatus::done);
+    return mixed.scene.state_hash();
+}
+
+TEST(FailedAllocation, AStepWithoutMemoryIsRefusedAndTheNextOneIsAsIfNothingHadBeen)
+{
+    for (const Way& way : ways()) {
+        bool ran_out = false;
+        const std::uint64_t expected = hash_after_steps(way, testing::never, false, ran_out);
+        for (const bool for_good : {false, true}) {
+            long successes = 0;
+            for (ran_out = true; ran_out; ++successes) {
+                ASSERT_EQ(hash_after_steps(way, successes, for_good, ran_out), expected)
+                    << way.name << " on " << way.threads << " threads, allocation " << successes;
+            }
+            EXPECT_GT(successes, 10) << way.name;
+        }
+    }
+}
+
+TEST(FailedAllocation, PatchesWithoutMemoryAreRefusedAndTheNextOnesDone)
+{
+    testing::LatticeCrowd crowd;
+    const std::vector<Contact> contacts = crowd.contacts();
+    const auto hash_after = [&](long successes, bool& ran_out) {
+        Scene scene = crowd.scene;
+        Solver solver(SolverSettings{}, {.threads = 2});
+        {
+            const FailingAllocator failing(successes, false);
+            const StepReport report = solver.step(scene, dt, contacts);
+            ran_out = FailingAllocator::has_failed();
+            if (report.status == StepStatus::done) return scene.state_hash();
+            EXPECT_EQ(report.error, "out of memory");
+        }
+        EXPECT_EQ(solver.step(scene, dt, contacts).status, StepStatus::done);
+        return scene.state_hash();
+    };
+    bool ran_out = false;
+    const std::uint64_t expected = hash_after(testing::never, ran_out);
+    ran_out = true;
+    // One in seven: what a small scene allocates too has failed in the test before.
+    for (long successes = 0; ran_out; successes += 7)
+        ASSERT_EQ(hash_after(successes, ran_out), expected) << "allocation " << successes;
+}
+
+TEST(FailedAllocation, ASceneWithoutMemoryRefusesAndIsAsItWas)
+{
+    const std::vector<std::pair<const char*, std::function<void(MixedScene&)>>> calls = {
+        {"add_body", [](MixedScene& m) { m.scene.add_body({}); }},
+        {"add_bodies",
+         [](MixedScene& m) {
+             static const std::vector<BodyDefinition> many(200);
+             static std::vector<BodyId> ids(200);
+             m.scene.add_bodies(many, ids);
+         }},
+        {"remove_bodies", [](MixedScene& m) { m.scene.remove_bodies(std::span(m.balls).first(6)); }},
+        {"add_joint",
+         [](MixedScene& m) {
+             m.scene.add_joint(
+                 PulleyDefinition{m.balls[0], m.balls[1], {}, {}, {0, 9, 0}, {1, 9, 0}, 1, 0, 20});
+         }},
+        {"remove_joint", [](MixedScene& m) { m.scene.remove_joint(m.joints[1]); }},
+        {"set_break_limit",
+         [](MixedScene& m) {
+             m.scene.set_break_limit(m.joints[1], {1, 1});
+         }},
+        {"set_island_iterations", [](MixedScene& m) { m.scene.set_island_iterations(m.balls[3], 7); }},
+        {"renumber_bodies", [](MixedScene& m) { m.scene.renumber_bodies(); }},
+    };
+    for (const auto& [name, call] : calls) {
+        MixedScene expected(3);
+        call(expected);
+        Solver solver({.gravity = {0, -9.81F, 0}});
+        for (int step = 0; step < 3; ++step) solver.step(expected.scene, dt);
+        bool ran_out = true;
+        for (long successes = 0; ran_out; ++successes) {
+            MixedScene mixed(3);
+            const std::uint64_t before = mixed.scene.state_hash();
+            const std::size_t bodies = mixed.scene.body_count(), joints = mixed.scene.joint_count();
+            try {
+                const FailingAllocator failing(successes, false);
+                call(mixed);
+                ran_out = FailingAllocator::has_failed();
+            } catch (const std::bad_alloc&) {
+                EXPECT_EQ(mixed.scene.state_hash(), before) << name << ", allocation " << successes;
+                EXPECT_EQ(mixed.scene.body_count(), bodies) << name;
+                EXPECT_EQ(mixed.scene.joint_count(), joints) << name;
+                call(mixed);
+            }
+            for (int step = 0; step < 3; ++step)
+                ASSERT_EQ(solver.step(mixed.scene, dt).status, StepStatus::done) << name;
+            ASSERT_EQ(mixed.scene.state_hash(), expected.scene.state_hash())
+                << name << ", allocation " << successes;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace motley
