@@ -148,8 +148,7 @@ void World::aim(BlockRow& row, const Eigen::VectorXd& error, double h, const Sol
             row.soft = rigid;
             row.bias = row.relax_bias = error / h;
         } else {
-            row.bias(0) = std::max(row.soft.rate * std::min(error(0) + slop, 0.0),
-                                   -static_cast<double>(settings.push_out_speed));
+            row.bias(0) = row.soft.rate * std::min(error(0) + slop, 0.0);
         }
     }
     if (block.speed.size() > 0) {
@@ -170,7 +169,12 @@ void World::solve_block(BlockRow& row, double h, const SolverSettings& settings,
     Eigen::VectorXd wanted =
         held - soft.mass_scale * row.mass * (speed(joint.a, joint.b, row.block.jacobian) + side * bias) -
         soft.impulse_scale * held;
-    if (row.block.is_one_sided()) wanted(0) = side * std::max(side * wanted(0), 0.0);
+    if (row.block.is_one_sided()) {
+        const double there = row.mass(0, 0) * side * speed(joint.a, joint.b, row.block.jacobian)(0);
+        const double most =
+            side * held(0) - there + row.mass(0, 0) * static_cast<double>(settings.push_out_speed);
+        wanted(0) = side * std::clamp(side * wanted(0), 0.0, std::max(most, 0.0));
+    }
     if (std::isfinite(row.bound())) {
         wanted = bounded(held, wanted, row.to_force, row.response,
                          row.response.cwiseAbs().rowwise().sum().maxCoeff(), row.bound());
@@ -278,8 +282,7 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
     Soft soft = contact_softness(point.a, point.b, h, settings);
     const double slop = soft_step ? 0 : static_cast<double>(settings.penetration_slop);
     const double s = separation(row);
-    double bias =
-        std::max(soft.rate * std::min(s + slop, 0.0), -static_cast<double>(settings.push_out_speed));
+    double bias = soft.rate * std::min(s + slop, 0.0);
     if (s > 0) {
         soft = {0, 1, 0};
         bias = s / h;
@@ -287,10 +290,13 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
         soft = {0, 1, 0};
         bias = 0;
     }
+    const double opening = speed(point.a, point.b, row.normal)(0);
     const double wanted =
-        row.impulse - row.normal_mass * soft.mass_scale * (speed(point.a, point.b, row.normal)(0) + bias) -
-        soft.impulse_scale * row.impulse;
-    const double impulse = std::max(wanted, 0.0);
+        row.impulse - row.normal_mass * soft.mass_scale * (opening + bias) - soft.impulse_scale * row.impulse;
+    // What would make it open as fast as it may.
+    const double most =
+        row.impulse - row.normal_mass * (opening - static_cast<double>(settings.push_out_speed));
+    const double impulse = std::max(std::min(wanted, most), 0.0);
     apply(point.a, point.b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
     row.impulse = impulse;
     row.peak = std::max(row.peak, impulse);
