@@ -147,7 +147,9 @@ double World::solve_substep_directly(double h, const SolverSettings& settings,
         const Index count = block.jacobian.rows();
         const int a = row.joint->a, b = row.joint->b;
         Jacobian jacobian = block.jacobian;
-        VectorXd bias = block.side * row.bias;
+        VectorXd bias = row.bias;
+        if (block.is_one_sided()) bias = bias.cwiseMax(-static_cast<double>(settings.push_out_speed));
+        bias *= block.side;
         Eigen::MatrixXd to_rows = Eigen::MatrixXd::Identity(count, count);
         const bool bounded = block.most_per_contact >= 0 || (std::isfinite(row.most) && count > 1);
         if (bounded && block.bounds_torque) {

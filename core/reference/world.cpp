@@ -1,5 +1,7 @@
 // The step of the reference, written for reading.
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "world_rows.h"
@@ -10,6 +12,23 @@ namespace {
 Eigen::Vector3d eigen(const Vec3<float>& v)
 {
     return {v.x, v.y, v.z};
+}
+
+/// A bounded impulse after a step that would lead to `free`. Where that is too long, a step of the same stride in every
+/// direction of the force, and then the cut: it rests only where the force points against what is left of the speed.
+/// `to_force` turns impulses into what is bounded, whose response is k; `most` is at least k's largest eigenvalue.
+Eigen::VectorXd bounded(const Eigen::VectorXd& held, const Eigen::VectorXd& free,
+                        const Eigen::MatrixXd& to_force, const Eigen::MatrixXd& k, double most, double bound)
+{
+    if ((to_force * free).norm() <= bound) return free;
+    Eigen::VectorXd next = held;
+    if (most > 0) {
+        const Eigen::VectorXd stride = k * (to_force * (free - held)) / most;
+        next += to_force.completeOrthogonalDecomposition().pseudoInverse() * stride;
+    }
+    const double size = (to_force * next).norm();
+    if (size > bound) next *= bound / size;
+    return next;
 }
 
 }  // namespace
@@ -82,7 +101,18 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
         blocks.begin(), blocks.end(), [](const Block& b) { return b.kind == Block::Kind::contact; }));
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const Block& block = blocks[i];
-        BlockRow row{&joint, i, block, mass_of(joint, block), {}, {}, {}, {}, h * block.most, contacts};
+        BlockRow row{&joint, i,  block, mass_of(joint, block), {},      {}, {},
+                     {},     {}, {},    h * block.most,        contacts};
+        const std::vector<Body>& then = joint.model->keeps_rows_of_start() ? start_ : bodies;
+        const Eigen::Matrix<double, 12, 12> inverse_mass = pair_inverse_mass(
+            then[static_cast<std::size_t>(joint.a)], then[static_cast<std::size_t>(joint.b)]);
+        if (block.bounds_torque) {
+            row.to_force = block.jacobian.rightCols<3>().transpose();
+            row.response = inverse_mass.block<3, 3>(3, 3) + inverse_mass.block<3, 3>(9, 9);
+        } else {
+            row.to_force.setIdentity(block.jacobian.rows(), block.jacobian.rows());
+            row.response = block.jacobian * inverse_mass * block.jacobian.transpose();
+        }
         aim(row, block.error, h, settings);
         if (row.impulse().size() != block.error.size()) row.impulse() = 0 * block.error;
         apply(joint.a, joint.b, block.jacobian, row.impulse());
@@ -118,8 +148,7 @@ void World::aim(BlockRow& row, const Eigen::VectorXd& error, double h, const Sol
             row.soft = rigid;
             row.bias = row.relax_bias = error / h;
         } else {
-            row.bias(0) = std::max(row.soft.rate * std::min(error(0) + slop, 0.0),
-                                   -static_cast<double>(settings.push_out_speed));
+            row.bias(0) = row.soft.rate * std::min(error(0) + slop, 0.0);
         }
     }
     if (block.speed.size() > 0) {
@@ -140,11 +169,16 @@ void World::solve_block(BlockRow& row, double h, const SolverSettings& settings,
     Eigen::VectorXd wanted =
         held - soft.mass_scale * row.mass * (speed(joint.a, joint.b, row.block.jacobian) + side * bias) -
         soft.impulse_scale * held;
-    if (row.block.is_one_sided()) wanted(0) = side * std::max(side * wanted(0), 0.0);
-    const double size = row.block.bounds_torque
-                            ? (row.block.jacobian.rightCols<3>().transpose() * wanted).norm()
-                            : wanted.norm();
-    if (size > row.bound()) wanted *= row.bound() / size;
+    if (row.block.is_one_sided()) {
+        const double there = row.mass(0, 0) * side * speed(joint.a, joint.b, row.block.jacobian)(0);
+        const double most =
+            side * held(0) - there + row.mass(0, 0) * static_cast<double>(settings.push_out_speed);
+        wanted(0) = side * std::clamp(side * wanted(0), 0.0, std::max(most, 0.0));
+    }
+    if (std::isfinite(row.bound())) {
+        wanted = bounded(held, wanted, row.to_force, row.response,
+                         row.response.cwiseAbs().rowwise().sum().maxCoeff(), row.bound());
+    }
     apply(joint.a, joint.b, row.block.jacobian, wanted - held);
     row.impulse() = wanted;
     double& peak = row.joint->peaks[row.index];
@@ -200,6 +234,7 @@ World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
         row.friction = warm * Eigen::Vector2d(t1.dot(before.friction), t2.dot(before.friction));
     }
     row.tangent_mass = effective_mass(row.tangents, a, b);
+    row.tangent_response = row.tangents * pair_inverse_mass(a, b) * row.tangents.transpose();
     return row;
 }
 
@@ -234,17 +269,20 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
     const ContactPoint& point = *row.point;
     const double mu = static_cast<double>(point.contact.friction);
     if (mu > 0 || point.contact.restitution > 0) {
-        Eigen::VectorXd free = row.friction - row.tangent_mass * speed(point.a, point.b, row.tangents);
-        if (free.norm() > mu * row.impulse) free *= mu * row.impulse / free.norm();
-        apply(point.a, point.b, row.tangents, free - row.friction);
-        row.friction = free;
+        const Eigen::VectorXd free = row.friction - row.tangent_mass * speed(point.a, point.b, row.tangents);
+        const Eigen::Index rows = free.size();
+        const Eigen::MatrixXd& k = row.tangent_response;
+        const double most = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k).eigenvalues().maxCoeff();
+        const Eigen::VectorXd next =
+            bounded(row.friction, free, Eigen::MatrixXd::Identity(rows, rows), k, most, mu * row.impulse);
+        apply(point.a, point.b, row.tangents, next - row.friction);
+        row.friction = next;
     }
     const bool soft_step = settings.method == Method::soft_step;
     Soft soft = contact_softness(point.a, point.b, h, settings);
     const double slop = soft_step ? 0 : static_cast<double>(settings.penetration_slop);
     const double s = separation(row);
-    double bias =
-        std::max(soft.rate * std::min(s + slop, 0.0), -static_cast<double>(settings.push_out_speed));
+    double bias = soft.rate * std::min(s + slop, 0.0);
     if (s > 0) {
         soft = {0, 1, 0};
         bias = s / h;
@@ -252,10 +290,13 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
         soft = {0, 1, 0};
         bias = 0;
     }
+    const double opening = speed(point.a, point.b, row.normal)(0);
     const double wanted =
-        row.impulse - row.normal_mass * soft.mass_scale * (speed(point.a, point.b, row.normal)(0) + bias) -
-        soft.impulse_scale * row.impulse;
-    const double impulse = std::max(wanted, 0.0);
+        row.impulse - row.normal_mass * soft.mass_scale * (opening + bias) - soft.impulse_scale * row.impulse;
+    // What would make it open as fast as it may.
+    const double most =
+        row.impulse - row.normal_mass * (opening - static_cast<double>(settings.push_out_speed));
+    const double impulse = std::max(std::min(wanted, most), 0.0);
     apply(point.a, point.b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
     row.impulse = impulse;
     row.peak = std::max(row.peak, impulse);

@@ -10,6 +10,8 @@ struct World::BlockRow {
     std::size_t index;  ///< of the block in its joint
     Block block;
     Eigen::MatrixXd mass;
+    Eigen::MatrixXd to_force;  ///< turns impulses into what `most` bounds
+    Eigen::MatrixXd response;  ///< the K of that
     Eigen::VectorXd bias, relax_bias;
     Soft soft, relax_soft;
     double most;                 ///< largest norm of the impulse, where the joint's contacts do not say
@@ -30,7 +32,7 @@ struct World::ContactRow {
     const ContactPoint* point;
     Jacobian normal, tangents;
     double normal_mass;
-    Eigen::MatrixXd tangent_mass;
+    Eigen::MatrixXd tangent_mass, tangent_response;  ///< K^-1 and K
     double approach;
     double impulse, peak = 0;
     Eigen::VectorXd friction;

@@ -1,7 +1,8 @@
 // Promise 2b: the lanes agree with the textbook in double. Every constraint, over the type list, for every pair of body
 // kinds that makes sense, in random scenes of one constraint, step after step; and a chain, solved in the same order.
 // Independent evidence: core/reference, which shares no row with the lanes, and whose own rows are checked against
-// finite differences of their C here too; and conservation laws.
+// finite differences of their C here too; and conservation laws. What a sweep does where a bound holds an impulse back is the
+// same formula in both: evidence for the direction of friction is in friction_direction_test.cpp.
 //
 // Bound: a step in float rounds each of about 200 operations on numbers near `size` once, so it leaves the double
 // step by at most about 200 x 6e-8 of it, amplified by the condition of K (below 30 here) where masses are inverted;

@@ -7,6 +7,16 @@
 
 namespace motley {
 
+/// An impulse that pushes out what is beyond a bound, but not faster than push_out_speed. It is the speed that is
+/// held back, never the impulse: a load that is pressed on is held however large it is, and gives way as far as the softness
+/// says and no further. (A bound on the bias alone would be one on the impulse, which then leaks as fast as it grows.)
+template <class Real>
+Real no_faster_than_push_out(const StepConstants& step, const Real& wanted, const Real& speed,
+                             const Real& mass, const Real& held)
+{
+    return minimum(wanted, held - mass * (speed - Real(step.push_out_speed)));
+}
+
 /// Of C >= 0 with speed dC/dt; the caller clamps it at 0. With room left it may be used up within the substep and no
 /// further; without, the error goes as fast as the joints' softness and push_out_speed allow. Relaxation takes the
 /// bias out.
@@ -16,10 +26,13 @@ Real limit_impulse(const StepConstants& step, const Real& c, const Real& speed, 
 {
     const auto room = c > Real(0);
     const Real closing = Real(step.inverse_substep) * c;
-    const Real soft = relax ? Real(0) : maximum(Real(step.joint.rate) * c, Real(-step.push_out_speed));
+    const Real soft = relax ? Real(0) : Real(step.joint.rate) * c;
     const Real mass_scale = relax ? Real(1) : select(room, Real(1), Real(step.joint.mass_scale));
     const Real impulse_scale = relax ? Real(0) : select(room, Real(0), Real(step.joint.impulse_scale));
-    return held - mass_scale * mass * (speed + select(room, closing, soft)) - impulse_scale * held;
+    const Real wanted =
+        held - mass_scale * mass * (speed + select(room, closing, soft)) - impulse_scale * held;
+    // With room nothing opens, so it may stand for both.
+    return relax ? wanted : no_faster_than_push_out(step, wanted, speed, mass, held);
 }
 
 /// Of C = 0.
@@ -47,13 +60,12 @@ Real contact_impulse(const StepConstants& step, const Softness& soft, const Real
     if constexpr (relax) {
         bias = select(apart, bias, Real(0));
     } else {
-        const Real deep = maximum(Real(soft.rate) * minimum(separation + Real(step.slop), Real(0)),
-                                  Real(-step.push_out_speed));
-        bias = select(apart, bias, deep);
+        bias = select(apart, bias, Real(soft.rate) * minimum(separation + Real(step.slop), Real(0)));
         mass_scale = select(apart, Real(1), Real(soft.mass_scale));
         impulse_scale = select(apart, Real(0), Real(soft.impulse_scale));
     }
-    return maximum(held - mass * mass_scale * (speed + bias) - impulse_scale * held, Real(0));
+    const Real wanted = held - mass * mass_scale * (speed + bias) - impulse_scale * held;
+    return maximum(relax ? wanted : no_faster_than_push_out(step, wanted, speed, mass, held), Real(0));
 }
 
 /// Of lower <= C <= upper. One limit at a time, the nearer one; a coordinate without room between them is held from

@@ -59,10 +59,12 @@ struct SolverSettings {
 
     float contact_hertz = 30;          ///< soft_step: stiffness of contacts, > 0, capped at 0.25 / substep
     float contact_damping_ratio = 10;  ///< >= 0
-    float push_out_speed = 3;          ///< m/s, > 0: the fastest that penetration is resolved
-    float joint_hertz = 60;            ///< soft_step: stiffness of joints, > 0, capped at 0.25 / substep
-    float joint_damping_ratio = 2;     ///< >= 0
-    float restitution_threshold = 1;   ///< m/s, >= 0: slower impacts do not bounce
+    /// m/s or rad/s, > 0: the fastest that penetration is resolved, and that a joint beyond its limit comes back. Bounds no
+    /// force: what presses on a contact or a limit is held.
+    float push_out_speed = 3;
+    float joint_hertz = 60;           ///< soft_step: stiffness of joints, > 0, capped at 0.25 / substep
+    float joint_damping_ratio = 2;    ///< >= 0
+    float restitution_threshold = 1;  ///< m/s, >= 0: slower impacts do not bounce
 
     DriftCorrection drift_correction = DriftCorrection::baumgarte;  ///< not of soft_step
     float baumgarte = 0.2F;  ///< 0 to 1: share of the error removed a step

@@ -46,6 +46,9 @@ template <class R> R dot(const Vec3<R>& u, const Vec3<R>& v) { return u.x * v.x 
 template <class R> Sym2<R> operator+(const Sym2<R>& m, const Sym2<R>& n) { return {m.xx + n.xx, m.xy + n.xy, m.yy + n.yy}; }
 template <class R> Sym3<R> operator+(const Sym3<R>& m, const Sym3<R>& n)
 { return {m.xx + n.xx, m.xy + n.xy, m.xz + n.xz, m.yy + n.yy, m.yz + n.yz, m.zz + n.zz}; }
+template <class R> Sym2<R> operator*(const R& s, const Sym2<R>& m) { return {s * m.xx, s * m.xy, s * m.yy}; }
+template <class R> Sym3<R> operator*(const R& s, const Sym3<R>& m)
+{ return {s * m.xx, s * m.xy, s * m.xz, s * m.yy, s * m.yz, s * m.zz}; }
 // clang-format on
 
 template <class R>

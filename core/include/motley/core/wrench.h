@@ -58,6 +58,25 @@ Vec3<Real> over_inertia(const LaneBody<Real, BodyKind::fixed>&, const Vec3<Real>
     return {Real(0), Real(0), Real(0)};
 }
 
+/// I^-1.
+template <class Real>
+const Sym3<Real>& angular_response(const LaneBody<Real, BodyKind::rigid>& body)
+{
+    return body.inverse_inertia;
+}
+template <class Real>
+Sym3<Real> angular_response(const LaneBody<Real, BodyKind::planar>& body)
+{
+    const Real none(0);
+    return {none, none, none, none, none, body.inverse_inertia};
+}
+template <class Real>
+Sym3<Real> angular_response(const LaneBody<Real, BodyKind::fixed>&)
+{
+    const Real none(0);
+    return {none, none, none, none, none, none};
+}
+
 /// The size of M^-1, against which a row that a body cannot follow is told from one that it hardly can: a planar body
 /// has no mass across its plane but rounding.
 template <class Real, BodyKind kind>

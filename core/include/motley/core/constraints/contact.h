@@ -9,6 +9,7 @@
 
 #include <type_traits>
 
+#include "motley/core/bounded_impulse.h"
 #include "motley/core/constraints/contact_definition.h"
 #include "motley/core/lever.h"
 #include "motley/core/limit.h"
@@ -76,8 +77,9 @@ struct ContactKind {
         Vec3<Real> normal, arm_a, arm_b;
         Real separation;
         Real normal_mass;
-        Vec3<Real> tangent;  ///< the first; the second is normal x tangent
-        Sym2<Real> tangent_mass;
+        Vec3<Real>
+            tangent;  ///< where the point gives way most; the second is normal x tangent, where it does least
+        Vec2<Real> tangent_mass;  ///< along the two, which do not touch each other; the first is the smaller
         Real friction;
     };
     template <class Real, BodyKind a, BodyKind b>
@@ -163,10 +165,11 @@ struct ContactKind {
             if constexpr (is_planar_pair(A::kind, B::kind)) {
                 impulse.tangent = warm * dot(tangent_of(row.normal), to_space<Vector>(memory.friction));
             } else {
-                row.tangent = tangent_of(row.normal);
+                const Vector s1 = tangent_of(row.normal), s2 = cross(row.normal, s1), k1 = k * s1;
+                const Principal<Real> most = principal(Sym2<Real>{dot(s1, k1), dot(s2, k1), dot(s2, k * s2)});
+                row.tangent = most.direction.x * s1 + most.direction.y * s2;
+                row.tangent_mass = {inverse_or_zero(most.largest), inverse_or_zero(most.smallest)};
                 const Vector t2 = cross(row.normal, row.tangent);
-                const Vector kt = k * row.tangent;
-                row.tangent_mass = inverse(Sym2<Real>{dot(row.tangent, kt), dot(t2, kt), dot(t2, k * t2)});
                 impulse.tangent = {warm * dot(row.tangent, memory.friction), warm * dot(t2, memory.friction)};
             }
         }
@@ -337,13 +340,11 @@ struct ContactKind {
         if constexpr (requires { row.tangent; }) {
             const Vec3<Real> t2 = cross(row.normal, row.tangent);
             const Vec2<Real> old = impulse.tangent;
-            const Vec2<Real> free =
-                old - row.tangent_mass * Vec2<Real>{dot(row.tangent, slip), dot(t2, slip)};
-            // Back onto the circle when outside. The floor keeps 0/0 out of lanes without friction.
-            const Real length2 = maximum(dot(free, free), Real(1e-30F));
-            const auto outside = length2 > bound * bound;
-            const Real scale = select(outside, bound / square_root(length2), Real(1));
-            impulse.tangent = scale * free;
+            const Real slip1 = dot(row.tangent, slip), slip2 = dot(t2, slip);
+            const Vec2<Real>& mass = row.tangent_mass;
+            const Real first = old.x - mass.x * slip1;
+            impulse.tangent = bounded_impulse(Vec2<Real>{first, old.y - mass.y * slip2},
+                                              Vec2<Real>{first, old.y - mass.x * slip2}, bound);
             const Vec2<Real> change = impulse.tangent - old;
             const Vec3<Real> push = change.x * row.tangent + change.y * t2;
             apply_impulse(a, row.arm_a, -push);

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <string>
 
+#include "motley/core/bounded_impulse.h"
 #include "motley/core/constraints/manifold_definition.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_checks.h"
@@ -57,8 +58,9 @@ struct Manifold {
         Vec3<Real> normal, tangent;  ///< world; the second tangent is normal x tangent
         Vec3<Real> lever_a[most_points], lever_b[most_points];
         Real mass[most_points], separation[most_points];
-        Vec3<Real> arm_a, arm_b;  ///< to where the friction acts
-        Sym2<Real> friction_mass, rolling_mass;
+        Vec3<Real> arm_a, arm_b;                     ///< to where the friction acts
+        Sym2<Real> friction_mass, rolling_mass;      ///< K^-1 along the tangents
+        Vec2<Real> friction_stride, rolling_stride;  ///< 1 / k_max; 0 along a tangent where nothing moves
         Real torsion_mass;
         Real friction, torsional_bound, rolling_radius;  ///< torsional_bound: friction times radius
         Vec2<Real> surface_speed;                        ///< along the tangents
@@ -164,13 +166,15 @@ struct Manifold {
                    dot(cross(row.arm_a, x), over_inertia(a, cross(row.arm_a, y))) +
                    dot(cross(row.arm_b, x), over_inertia(b, cross(row.arm_b, y)));
         };
-        row.friction_mass =
-            inverse_of_what_moves(across_mass(t, t), across_mass(t, t2), across_mass(t2, t2), linear_floor);
+        const Sym2<Real> across_k{across_mass(t, t), across_mass(t, t2), across_mass(t2, t2)};
+        row.friction_mass = inverse_of_what_moves(across_k, linear_floor);
+        row.friction_stride = stride_of_what_moves(across_k, linear_floor);
         const auto turning = [&](const Vec3<Real>& x, const Vec3<Real>& y) {
             return dot(x, over_inertia(a, y) + over_inertia(b, y));
         };
-        row.rolling_mass =
-            inverse_of_what_moves(turning(t, t), turning(t, t2), turning(t2, t2), angular_floor);
+        const Sym2<Real> turning_k{turning(t, t), turning(t, t2), turning(t2, t2)};
+        row.rolling_mass = inverse_of_what_moves(turning_k, angular_floor);
+        row.rolling_stride = stride_of_what_moves(turning_k, angular_floor);
         const Real k = turning(n, n);
         row.torsion_mass = select(k > angular_floor, inverse_or_zero(k), Real(0));
         impulse.friction = warm * memory.friction;
@@ -313,14 +317,20 @@ struct Manifold {
     }
     /// The inverse of a block of two rows; between planar bodies one of them may not move, and the other is alone.
     template <class Real>
-    static Sym2<Real> inverse_of_what_moves(const Real& xx, const Real& xy, const Real& yy, const Real& floor)
+    static Sym2<Real> inverse_of_what_moves(const Sym2<Real>& k, const Real& floor)
     {
-        const auto x_moves = xx > floor, y_moves = yy > floor;
-        const Sym2<Real> both = inverse(Sym2<Real>{xx, xy, yy});
+        const auto x_moves = k.xx > floor, y_moves = k.yy > floor;
+        const Sym2<Real> both = inverse(k);
         const Real zero(0);
-        return {select(x_moves, select(y_moves, both.xx, inverse_or_zero(xx)), zero),
+        return {select(x_moves, select(y_moves, both.xx, inverse_or_zero(k.xx)), zero),
                 select(x_moves, select(y_moves, both.xy, zero), zero),
-                select(y_moves, select(x_moves, both.yy, inverse_or_zero(yy)), zero)};
+                select(y_moves, select(x_moves, both.yy, inverse_or_zero(k.yy)), zero)};
+    }
+    template <class Real>
+    static Vec2<Real> stride_of_what_moves(const Sym2<Real>& k, const Real& floor)
+    {
+        const Real stride = inverse_or_zero(largest_response(k));
+        return {select(k.xx > floor, stride, Real(0)), select(k.yy > floor, stride, Real(0))};
     }
 
     template <class Real, class Row, class A, class B>
@@ -356,12 +366,12 @@ struct Manifold {
         apply_turn(a, -turn);
         apply_turn(b, turn);
     }
-    /// Back onto the circle when outside. The floor keeps 0/0 out of lanes without a bound.
     template <class Real>
-    static Vec2<Real> within_circle(const Vec2<Real>& v, const Real& radius)
+    static Vec2<Real> brake(const Vec2<Real>& held, const Vec2<Real>& speed, const Sym2<Real>& mass,
+                            const Vec2<Real>& stride, const Real& bound)
     {
-        const Real length2 = maximum(dot(v, v), Real(1e-30F));
-        return select(length2 > radius * radius, radius / square_root(length2), Real(1)) * v;
+        return bounded_impulse(held - mass * speed, held - Vec2<Real>{stride.x * speed.x, stride.y * speed.y},
+                               bound);
     }
 
     template <class Real, class Row, class Impulse, class A, class B>
@@ -371,10 +381,10 @@ struct Manifold {
         const Vec3<Real>&n = row.normal, &t = row.tangent, t2 = cross(n, t);
         const Vec3<Real> slip = (linear_of(b) + cross(angular_of(b), row.arm_b)) -
                                 (linear_of(a) + cross(angular_of(a), row.arm_a));
-        const Vec2<Real> friction = within_circle(
-            impulse.friction - row.friction_mass * Vec2<Real>{dot(t, slip) - row.surface_speed.x,
-                                                              dot(t2, slip) - row.surface_speed.y},
-            row.friction * push);
+        const Vec2<Real> friction =
+            brake(impulse.friction,
+                  Vec2<Real>{dot(t, slip) - row.surface_speed.x, dot(t2, slip) - row.surface_speed.y},
+                  row.friction_mass, row.friction_stride, row.friction * push);
         push_friction(row, friction - impulse.friction, a, b);
         impulse.friction = friction;
 
@@ -386,9 +396,8 @@ struct Manifold {
         impulse.torsion = torsion;
 
         const Vec3<Real> roll = angular_of(b) - angular_of(a);
-        const Vec2<Real> rolling =
-            within_circle(impulse.rolling - row.rolling_mass * Vec2<Real>{dot(t, roll), dot(t2, roll)},
-                          row.rolling_radius * push);
+        const Vec2<Real> rolling = brake(impulse.rolling, Vec2<Real>{dot(t, roll), dot(t2, roll)},
+                                         row.rolling_mass, row.rolling_stride, row.rolling_radius * push);
         push_turn(row, Real(0), rolling - impulse.rolling, a, b);
         impulse.rolling = rolling;
     }

@@ -3,14 +3,16 @@
 //   point    C = p_b - p_a            J = [-I, [r_a]x, I, -[r_b]x]
 //   angular  C = 2 vec(q_a* q_b)      J = [0, -G, 0, G], G = (w I - [v]x) F_a^T, w >= 0
 //
-//   lambda -= mass_scale K^-1 (J v - speed + rate C) + impulse_scale lambda, then |lambda| <= h max
+//   lambda -= mass_scale K^-1 (J v - speed + rate C) + impulse_scale lambda, |lambda| <= h max
 //
 // Without a frequency it is a motor: rate 0, mass_scale 1, impulse_scale 0. A servo is a force, not a position:
-// relaxation and projection leave it as it is. The bound is a ball: force or torque is the same in every direction.
+// relaxation and projection leave it as it is. The bound is a ball: force or torque is the same in every direction, and
+// what is held back by it points against the error that is left (bounded_impulse.h).
 #pragma once
 
 #include <cmath>
 
+#include "motley/core/bounded_impulse.h"
 #include "motley/core/constraints/servo_definition.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_checks.h"
@@ -21,15 +23,6 @@
 #include "motley/core/wrench.h"
 
 namespace motley {
-
-/// What makes a vector no longer than `most`: 1, or less.
-template <class Vector, class Real>
-Real scale_within(const Vector& v, const Real& most)
-{
-    const Real length2 = dot(v, v);
-    const auto too_long = length2 > most * most;
-    return select(too_long, most / square_root(select(too_long, length2, Real(1))), Real(1));
-}
 
 /// What a sweep reads of a servo's row.
 template <class Real>
@@ -77,8 +70,9 @@ struct PointServo {
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         PairVector<Real, a, b> arm_a, arm_b;
-        PairSymmetric<Real, a, b> mass;  ///< K^-1
-        PairVector<Real, a, b> bias;     ///< rate C - speed, m/s
+        PairSymmetric<Real, a, b> mass;    ///< K^-1
+        PairSymmetric<Real, a, b> stride;  ///< K / k_max: turns a step of K^-1 w into one of w / k_max
+        PairVector<Real, a, b> bias;       ///< rate C - speed, m/s
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -123,7 +117,9 @@ struct PointServo {
     {
         substep.arm_a = turned(a, row.start_arm_a);
         substep.arm_b = turned(b, row.start_arm_b);
-        substep.mass = inverse(inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b));
+        const auto k = inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b);
+        substep.mass = inverse(k);
+        substep.stride = inverse_or_zero(largest_response(k)) * k;
         substep.bias =
             row.in_sweep.soft.rate * anchor_error(row.start_error, row.start_arm_a, row.start_arm_b,
                                                   substep.arm_a, substep.arm_b, a, b) -
@@ -139,7 +135,8 @@ struct PointServo {
         const auto speed = velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a) + substep.bias;
         const auto free = impulse.push - in_sweep.soft.mass_scale * (substep.mass * speed) -
                           in_sweep.soft.impulse_scale * impulse.push;
-        const auto wanted = scale_within(free, in_sweep.max_impulse) * free;
+        const auto cautious = impulse.push + substep.stride * (free - impulse.push);
+        const auto wanted = bounded_impulse(free, cautious, in_sweep.max_impulse);
         const auto change = wanted - impulse.push;
         impulse.push = wanted;
         apply_impulse(a, substep.arm_a, -change);
@@ -194,7 +191,11 @@ struct AngularServo {
     struct SubstepRow {
         RotationRows<Real> rows;
         SmallFactor<Real, 3> mass;
-        Real bias[3];  ///< rate C - speed
+        Sym3<Real> stride;     ///< of the torque: K / k_max
+        Real cautious_mass;    ///< 1 / k_max
+        Vec3<Real> half_turn;  ///< tangent of half the angle between the frames, along its axis, in frame a
+        Vec3<Real> spin_bias;  ///< G^-1 bias, rad/s, world
+        Real bias[3];          ///< rate C - speed
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -236,7 +237,8 @@ struct AngularServo {
                            A& a, B& b)
     {
         Real error[3], k[3][3];
-        substep.rows = rotation_rows(turn_of(a) * row.start_frame_a, turn_of(b) * row.start_frame_b, error);
+        const Quat<Real> frame_a = turn_of(a) * row.start_frame_a, frame_b = turn_of(b) * row.start_frame_b;
+        substep.rows = rotation_rows(frame_a, frame_b, error);
         for (int i = 0; i < 3; ++i) {
             const Vec3<Real>& g = substep.rows.axis[i];
             substep.bias[i] = row.in_sweep.soft.rate * error[i] - dot(g, row.target_velocity);
@@ -246,6 +248,15 @@ struct AngularServo {
         const Real least = Real(rounding_share) * (angular_size(a) + angular_size(b));
         const Real floor[3] = {least, least, least};
         substep.mass = factor(k, floor);
+        const Sym3<Real> response = angular_response(a) + angular_response(b);
+        substep.cautious_mass = inverse_or_zero(largest_response(response));
+        substep.stride = substep.cautious_mass * response;
+        const Quat<Real> q = relative_rotation(frame_a, frame_b);
+        // Half a turn apart the rows are not independent, and no tangent is finite.
+        substep.half_turn = Real(1) / maximum(q.w, Real(0.01F)) * Vec3<Real>{q.x, q.y, q.z};
+        // G^-1 C is twice that tangent.
+        substep.spin_bias =
+            Real(2) * row.in_sweep.soft.rate * rotate(frame_a, substep.half_turn) - row.target_velocity;
         push(substep, impulse.turn, a, b);
     }
 
@@ -261,7 +272,13 @@ struct AngularServo {
                                 in_sweep.soft.mass_scale * Vec3<Real>{change[0], change[1], change[2]} -
                                 in_sweep.soft.impulse_scale * impulse.turn;
         // The bound is on the torque, which is shorter than lambda where the frames are far apart.
-        const Vec3<Real> wanted = scale_within(torque_of(substep, free), in_sweep.max_impulse) * free;
+        const Vec3<Real> torque = torque_of(substep, free);
+        const auto held_back = dot(torque, torque) > in_sweep.max_impulse * in_sweep.max_impulse;
+        Vec3<Real> left = in_sweep.soft.mass_scale * substep.cautious_mass * (speed + substep.spin_bias);
+        if constexpr (A::kind != BodyKind::rigid && B::kind != BodyKind::rigid) left.x = left.y = Real(0);
+        left = left + in_sweep.soft.impulse_scale * (substep.stride * torque_of(substep, impulse.turn));
+        const Vec3<Real> next = select(held_back, impulse.turn - lambda_of(substep, left), free);
+        const Vec3<Real> wanted = scale_within(torque_of(substep, next), in_sweep.max_impulse) * next;
         push(substep, wanted - impulse.turn, a, b);
         impulse.turn = wanted;
     }
@@ -300,6 +317,15 @@ struct AngularServo {
     {
         return lambda.x * substep.rows.axis[0] + lambda.y * substep.rows.axis[1] +
                lambda.z * substep.rows.axis[2];
+    }
+    /// The lambda of a torque, G^-T. G G^T = I - s s^T, s the vector part of the turn between the frames, so
+    /// G^-T = (G G^T)^-1 G = (I + u u^T) G with u = s / cos.
+    template <class Real, class Substep>
+    static Vec3<Real> lambda_of(const Substep& substep, const Vec3<Real>& torque)
+    {
+        const auto& axis = substep.rows.axis;
+        const Vec3<Real> along{dot(axis[0], torque), dot(axis[1], torque), dot(axis[2], torque)};
+        return along + dot(substep.half_turn, along) * substep.half_turn;
     }
     template <class Real, class Substep, class A, class B>
     static void push(const Substep& substep, const Vec3<Real>& lambda, A& a, B& b)
