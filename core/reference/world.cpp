@@ -74,19 +74,30 @@ Eigen::MatrixXd World::mass_of(const Joint& joint, const Block& block) const
                           then[static_cast<std::size_t>(joint.b)]);
 }
 
-void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows)
+void World::find_rows(Joint& joint, double h, const SolverSettings& settings,
+                      std::vector<BlockRow>& rows) const
 {
     std::vector<Block> blocks = blocks_of(joint);
     joint.impulses.resize(blocks.size());
     const auto contacts = static_cast<std::size_t>(std::count_if(
         blocks.begin(), blocks.end(), [](const Block& b) { return b.kind == Block::Kind::contact; }));
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-        const Block& block = blocks[i];
-        BlockRow row{&joint, i, block, mass_of(joint, block), {}, {}, {}, {}, h * block.most, contacts};
-        aim(row, block.error, h, settings);
-        if (row.impulse().size() != block.error.size()) row.impulse() = 0 * block.error;
-        apply(joint.a, joint.b, block.jacobian, row.impulse());
-        rows.push_back(row);
+        const double most = h * blocks[i].most;
+        BlockRow row{&joint, i, std::move(blocks[i]), {}, {}, {}, {}, {}, most, contacts};
+        const Eigen::VectorXd& error = row.block.error;
+        aim(row, error, h, settings);
+        if (row.impulse().size() != error.size()) row.impulse() = 0 * error;
+        rows.push_back(std::move(row));
+    }
+}
+
+void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows)
+{
+    const std::size_t first = rows.size();
+    find_rows(joint, h, settings, rows);
+    for (std::size_t i = first; i < rows.size(); ++i) {
+        rows[i].mass = mass_of(joint, rows[i].block);
+        apply(joint.a, joint.b, rows[i].block.jacobian, rows[i].impulse());
     }
 }
 
@@ -168,8 +179,12 @@ void World::begin_step()
     start_ = bodies;
     for (Joint& joint : joints) {
         joint.approaches.clear();
-        for (const Block& block : blocks_of(joint))
+        const bool recalls = joint.impulses.empty() && !joint.memory.empty();
+        for (const Block& block : blocks_of(joint)) {
             joint.approaches.push_back(speed(joint.a, joint.b, block.jacobian)(0));
+            if (recalls) joint.impulses.emplace_back(Eigen::VectorXd::Zero(block.error.size()));
+        }
+        if (recalls) joint.model->recall(joint.memory, joint.impulses);
         joint.peaks.assign(joint.approaches.size(), 0);
     }
 }
