@@ -103,6 +103,55 @@ void memory(benchmark::State& state)
     state.counters["contacts"] = static_cast<double>(net.contacts.size()) / people;
 }
 
+/// A step of Method::direct at its default substeps: a wall of cubes with friction that stands, each cube with two corners on
+/// either of the two below it or four on the floor, three rows a contact.
+void direct(benchmark::State& state, int base)
+{
+    Scene scene;
+    std::vector<Contact> contacts;
+    const auto stand = [&](BodyId a, BodyId b, Vec3<float> at_a, Vec3<float> at_b) {
+        Contact contact;
+        contact.body_a = a;
+        contact.body_b = b;
+        contact.key = contacts.size() + 1;
+        contact.normal = {0, 1, 0};
+        contact.arm_a = at_a;
+        contact.arm_b = at_b;
+        contact.friction = 0.5F;
+        contacts.push_back(contact);
+    };
+    std::vector<BodyId> below;
+    for (int row = 0; row < base; ++row) {
+        std::vector<BodyId> here;
+        for (int i = 0; i < base - row; ++i) {
+            BodyDefinition cube;
+            cube.position = {1.05 * i + 0.525 * row, 0.5 + row, 0};
+            cube.inertia = {1.0F / 6, 0, 0, 1.0F / 6, 0, 1.0F / 6};
+            here.push_back(scene.add_body(cube));
+            for (const float x : {-0.5F, 0.5F}) {
+                for (const float z : {-0.5F, 0.5F}) {
+                    const BodyId a =
+                        row == 0 ? scene.ground() : below[static_cast<std::size_t>(x < 0 ? i : i + 1)];
+                    const float side = x < 0 ? 0.025F : -0.025F;
+                    const auto left = static_cast<float>(cube.position.x);
+                    const Vec3<float> at_a =
+                        row == 0 ? Vec3<float>{left + x, 0, z} : Vec3<float>{side, 0.5F, z};
+                    stand(a, here.back(), at_a, {x, -0.5F, z});
+                }
+            }
+        }
+        below = here;
+    }
+    SolverSettings settings;
+    settings.method = Method::direct;
+    settings.gravity = {0, -9.81F, 0};
+    Solver solver(settings);
+    StepReport report = solver.step(scene, 1.0F / 60, contacts);
+    for (auto _ : state) report = solver.step(scene, 1.0F / 60, contacts);
+    state.counters["violation"] = report.direct_violation;
+    state.counters["unsolved"] = static_cast<double>(report.direct_unsolved);
+}
+
 /// A stage whose chunks do nothing: what a colour costs beyond its constraints.
 void hand_over(benchmark::State& state)
 {
@@ -196,6 +245,13 @@ void enter_all()
     enter_order("memory_order/shuffled_and_renumbered", BodyOrder::shuffled, true);
     benchmark::RegisterBenchmark("memory/planar_crowd", memory)->Iterations(3)->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("hand_over/threads:2", hand_over);
+    for (const int base : {4, 8, 12, 16}) {
+        const int rows = 6 * base * (base + 1);  // twelve a cube
+        benchmark::RegisterBenchmark(fmt::format("direct/rows:{}", rows).c_str(), [base](
+                                                                                      benchmark::State& s) {
+            direct(s, base);
+        })->Unit(benchmark::kMillisecond);
+    }
 #ifdef MOTLEY_HAS_TRANSFER
     enter_transfers();
 #endif

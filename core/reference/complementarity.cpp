@@ -1,338 +1,532 @@
-// Bounds by active sets on a sparse LDL^T; cones by a semismooth Newton method that starts from there.
+// A semismooth Newton method on the natural map (Alart and Curnier 1991), each step of it a proximal point step.
+//
+// Within a group the linearised map says E delta_lambda + F J delta_y = -map. With y = J^T lambda that makes a system of
+// six rows a body. Contacts, of which there are many between two bodies and more than these can move along, are
+// eliminated from it: delta_lambda = s - D J delta_y leaves (I + J^T D J) delta_y = J^T s. Joints stay in it with rows of
+// their own, for D is large where a row is to be met, and next to a large D the mass of a light body in a chain is lost.
+//
+//   [ I + J_c^T D J_c   -J_j^T ] [ delta_y        ]   [ J_c^T s ]
+//   [ F J_j              E     ] [ delta_lambda_j ] = [ -map_j  ]
+//
+// Where a row is to be met E is epsilon: that is regular also where rows are redundant, and because each step starts from
+// the impulses of the one before, epsilon slows it by epsilon / (sigma + epsilon) and leaves no error (the proximal
+// point method, Rockafellar 1976).
 #include "complementarity.h"
 
-#include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "block_system.h"
 
 namespace motley::reference {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-using Sparse = Eigen::SparseMatrix<double>;
-using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Column = RowGroup::Rows<1>;
+using Square = RowGroup::Square;
 
-/// Largest part for which contradictory rows are met by a dense decomposition.
-constexpr Index largest_dense = 1500;
+/// Share of a row's own K that is added to it. Smaller converges faster and rounds worse: equations alone are well
+/// posed, between contacts it is better to pull less hard at rows that all but contradict each other.
+constexpr double epsilon_of_equations = 1e-8, epsilon_of_contacts = 1e-7;
+/// Where the natural map cannot fall much further for the rounding of doubles.
+constexpr double enough = 1e-13;
+/// Where it is not worth the while any more.
+constexpr double rounding = 0.01 * solved_to;
 
-/// Least-norm solution of A x = b. LDL^T of A + epsilon I, refined: each round takes epsilon / (sigma + epsilon) of what
-/// is left of b in the range of A, and x never leaves that range (the proximal point method). Contradictory rows leave a
-/// residual that does not fall: then least squares.
-VectorXd solve_least_norm(const Sparse& a, const VectorXd& b)
-{
-    const Index n = a.rows();
-    const double largest = a.diagonal().cwiseAbs().maxCoeff();
-    Sparse shifted = a, one(n, n);
-    one.setIdentity();
-    shifted += 1e-10 * std::max(largest, 1e-300) * one;
-    const Eigen::SimplicialLDLT<Sparse> factors(shifted);
-    VectorXd x = VectorXd::Zero(n), rest = b;
-    const double enough = 1e-14 * (1 + b.norm());
-    for (int round = 0; round < 30 && factors.info() == Eigen::Success; ++round) {
-        x += factors.solve(rest);
-        const double before = rest.norm();
-        rest = b - a * x;
-        if (rest.norm() < enough || rest.norm() > 0.5 * before) break;
-    }
-    if ((x.allFinite() && rest.norm() < 1e-11 * (1 + b.norm())) || n > largest_dense) return x;
-    return Eigen::MatrixXd(a).completeOrthogonalDecomposition().solve(b);
-}
-
-Sparse submatrix(const Sparse& a, const std::vector<Index>& rows)
-{
-    std::vector<Index> place(static_cast<std::size_t>(a.rows()), -1);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        place[static_cast<std::size_t>(rows[i])] = static_cast<Index>(i);
-    std::vector<Eigen::Triplet<double>> entries;
-    for (const Index column : rows) {
-        for (Sparse::InnerIterator entry(a, column); entry; ++entry) {
-            const Index row = place[static_cast<std::size_t>(entry.row())];
-            if (row >= 0) entries.emplace_back(row, place[static_cast<std::size_t>(column)], entry.value());
-        }
-    }
-    const auto n = static_cast<Index>(rows.size());
-    Sparse part(n, n);
-    part.setFromTriplets(entries.begin(), entries.end());
-    return part;
-}
-
-/// One part of a problem.
+/// The groups of one part, with its bodies counted anew.
 class Part {
   public:
-    explicit Part(Problem problem) : p_(std::move(problem)), rows_(p_.a), n_(p_.q.size())
+    Part(std::vector<RowGroup*> groups, const std::vector<int>& place, int bodies)
+        : change(VectorXd::Zero(6 * static_cast<Index>(bodies))), bodies_(bodies), nodes_(bodies)
     {
-        scale_.resize(n_);
-        const double largest = p_.a.diagonal().cwiseAbs().maxCoeff();
-        for (Index i = 0; i < n_; ++i) {
-            const double k = p_.a.coeff(i, i);
-            scale_(i) = k > 1e-14 * largest ? 1 / k : 0;
+        units_.reserve(groups.size());
+        for (RowGroup* group : groups) {
+            Unit unit{.group = group};
+            for (std::size_t side = 0; side < 2; ++side) {
+                const int body = group->bodies[side];
+                unit.bodies[side] = body < 0 ? -1 : place[static_cast<std::size_t>(body)];
+            }
+            if (group->cones.empty() && !group->is_contact && group->size() <= 6) unit.node = nodes_++;
+            units_.push_back(unit);
         }
-        in_cone_.assign(static_cast<std::size_t>(n_), false);
-        for (const Cone& cone : p_.cones) {
-            for (Index i = 0; i < cone.count; ++i) in_cone_[static_cast<std::size_t>(cone.first + i)] = true;
+        const double largest = prepare_scales();
+        for (Unit& unit : units_) {
+            for (Index i = 0; i < unit.scale.size(); ++i)
+                unit.scale(i) = unit.scale(i) > 1e-14 * largest ? 1 / unit.scale(i) : 0;
+            const RowGroup& group = *unit.group;
+            is_linear_ = is_linear_ && group.cones.empty() && (group.low.array() == -unbounded).all() &&
+                         (group.high.array() == unbounded).all();
         }
     }
 
-    Solution solve()
+    VectorXd change;  ///< y
+
+    double solve()
     {
-        if (!p_.q.allFinite()) return {VectorXd::Zero(n_), std::numeric_limits<double>::infinity()};
-        VectorXd lambda = solve_bounds();
-        if (!p_.cones.empty()) solve_cones(lambda);
-        return {lambda, violation(lambda)};
+        for (Unit& unit : units_) {
+            if (!unit.group->offset.allFinite()) return fail();
+            if (is_linear_ || !unit.group->lambda.allFinite()) unit.group->lambda.setZero();
+            unit.offset = unit.group->offset;
+        }
+        accumulate();
+        lay_out();
+        iterate();
+        for (Unit& unit : units_) unit.group->lambda = unit.best;
+        accumulate();
+        for (Unit& unit : units_) unit.offset = unit.group->offset;
+        return look().violation;
     }
 
   private:
-    Problem p_;
-    Rows rows_;
-    Index n_;
-    VectorXd scale_;  ///< 1 / A_ii; 0 of a row that cannot move
-    std::vector<bool> in_cone_;
-    enum class Where { free, low, high };
+    static constexpr double unbounded = std::numeric_limits<double>::infinity();
+    /// What a row of the natural map is at.
+    enum class Where : std::uint8_t { inside, low, high, slides };
+    struct Unit {
+        RowGroup* group;
+        std::array<int, 2> bodies{-1, -1};
+        int node = -1;             ///< of the rows of a joint
+        Column offset{}, scale{};  ///< scale: 1 / K_ii; 0 of a row that cannot move
+        Column w{}, map{}, step{}, start{}, best{};
+        Square e{}, f{}, law{};  ///< law: D
+        Column drive{};          ///< s
+        std::array<Where, RowGroup::most_rows> where{};
+    };
+    struct Look {
+        double violation, merit;
+    };
+    std::vector<Unit> units_;
+    int bodies_, nodes_;     ///< nodes: bodies, then joints
+    bool is_linear_ = true;  ///< equations alone
+    double epsilon_ = 0, least_ = unbounded;
+    BlockSystem system_;
+    VectorXd move_;
 
-    [[nodiscard]] double low(Index i) const { return p_.low[static_cast<std::size_t>(i)]; }
-    [[nodiscard]] double high(Index i) const { return p_.high[static_cast<std::size_t>(i)]; }
-    [[nodiscard]] double radius(const Cone& cone, const VectorXd& lambda) const
+    double fail()
     {
-        if (cone.normals.empty()) return cone.bound;
-        double sum = 0;
-        for (const Index normal : cone.normals) sum += std::max(lambda(normal), 0.0);
-        return cone.bound * sum;
+        for (Unit& unit : units_) unit.group->lambda.setZero();
+        change.setZero();
+        return unbounded;
+    }
+    double prepare_scales()
+    {
+        double largest = 0;
+        for (Unit& unit : units_) {
+            RowGroup& group = *unit.group;
+            unit.scale = Column::Zero(group.size());
+            for (std::size_t side = 0; side < 2; ++side) {
+                if (unit.bodies[side] >= 0) unit.scale += group.jacobian[side].rowwise().squaredNorm();
+            }
+            if (group.softness.size() > 0) unit.scale += group.softness.diagonal();
+            if (group.size() > 0) largest = std::max(largest, unit.scale.maxCoeff());
+        }
+        return largest;
+    }
+    auto of_body(VectorXd& y, int body) const { return y.segment<6>(6 * static_cast<Index>(body)); }
+    Column speed(const Unit& unit, VectorXd& y) const
+    {
+        Column sum = Column::Zero(unit.group->size());
+        for (std::size_t side = 0; side < 2; ++side) {
+            if (unit.bodies[side] >= 0)
+                sum.noalias() += unit.group->jacobian[side] * of_body(y, unit.bodies[side]);
+        }
+        return sum;
+    }
+    void push(const Unit& unit, const Column& lambda, VectorXd& y) const
+    {
+        for (std::size_t side = 0; side < 2; ++side) {
+            if (unit.bodies[side] >= 0)
+                of_body(y, unit.bodies[side]).noalias() += unit.group->jacobian[side].transpose() * lambda;
+        }
+    }
+    void accumulate()
+    {
+        change.setZero();
+        for (const Unit& unit : units_) push(unit, unit.group->lambda, change);
+    }
+    void lay_out()
+    {
+        std::vector<std::pair<int, int>> pairs;
+        for (const Unit& unit : units_) {
+            for (const int body : unit.bodies) {
+                if (unit.node >= 0 && body >= 0) pairs.emplace_back(body, unit.node);
+            }
+            if (unit.node < 0 && unit.bodies[0] >= 0 && unit.bodies[1] >= 0)
+                pairs.emplace_back(unit.bodies[0], unit.bodies[1]);
+        }
+        system_.lay_out(nodes_, bodies_, pairs);
     }
 
-    /// Guesses which rows are at a bound, solves for the others exactly, and mends the guess: all wrong rows at once
-    /// while that helps, else the last of them alone, which ends (Murty; Judice and Pires, block principal pivoting).
-    /// Rows of cones stay at zero.
-    VectorXd solve_bounds() const
+    static double radius(const Cone& cone, const Column& lambda)
     {
-        std::vector<Where> where(static_cast<std::size_t>(n_), Where::free);
-        VectorXd lambda = VectorXd::Zero(n_);
-        const double least = 1e-12 * (1 + p_.q.cwiseAbs().maxCoeff());
-        std::size_t fewest = static_cast<std::size_t>(n_) + 1;
-        int patience = 10;
-        for (Index round = 0; round < 50 * n_ + 100; ++round) {
-            std::vector<Index> free;
-            for (Index i = 0; i < n_; ++i) {
-                const Where at = where[static_cast<std::size_t>(i)];
-                lambda(i) = at == Where::low ? low(i) : at == Where::high ? high(i) : 0;
-                if (at == Where::free && !in_cone_[static_cast<std::size_t>(i)]) free.push_back(i);
-            }
-            if (!free.empty()) {
-                const VectorXd rest = p_.q + p_.a * lambda;
-                const VectorXd inner = solve_least_norm(submatrix(p_.a, free), -VectorXd(rest(free)));
-                lambda(free) = inner;
-            }
-            const VectorXd w = p_.q + p_.a * lambda;
-            std::vector<Index> wrong;
-            for (Index i = 0; i < n_; ++i) {
-                const Where at = where[static_cast<std::size_t>(i)];
-                if (in_cone_[static_cast<std::size_t>(i)] || (low(i) == high(i) && at != Where::free))
-                    continue;
-                const bool is_wrong = at == Where::free
-                                          ? lambda(i) < low(i) - 1e-12 || lambda(i) > high(i) + 1e-12
-                                      : at == Where::low ? w(i) < -least
-                                                         : w(i) > least;
-                if (is_wrong) wrong.push_back(i);
-            }
-            if (wrong.empty()) break;
-            if (wrong.size() < fewest) {
-                fewest = wrong.size();
-                patience = 10;
-            } else if (patience > 0) {
-                --patience;
-            }
-            if (patience == 0) wrong = {wrong.back()};
-            for (const Index i : wrong) {
-                Where& at = where[static_cast<std::size_t>(i)];
-                at = at != Where::free ? Where::free : lambda(i) < low(i) ? Where::low : Where::high;
-            }
-        }
-        return lambda;
+        if (cone.normal_count == 0) return cone.bound;
+        return cone.bound * lambda.segment(cone.first_normal, cone.normal_count).cwiseMax(0).sum();
     }
 
-    /// The natural map lambda - P(lambda - scale w): zero at the solution. With `jacobian` also an element of its
-    /// generalised derivative (Alart and Curnier 1991).
-    VectorXd natural_map(const VectorXd& lambda, std::vector<Eigen::Triplet<double>>* jacobian) const
+    /// The natural map lambda - P(lambda - scale w), zero at the solution, of the impulses as they are.
+    Look look()
     {
-        const VectorXd w = p_.q + p_.a * lambda;
-        VectorXd map(n_);
-        const auto add_row = [&](Index to, double factor, Index row) {
-            for (Rows::InnerIterator entry(rows_, row); entry; ++entry)
-                jacobian->emplace_back(to, entry.col(), factor * entry.value());
-        };
-        for (Index i = 0; i < n_; ++i) {
-            if (in_cone_[static_cast<std::size_t>(i)]) continue;
-            const double z = lambda(i) - scale_(i) * w(i);
-            const bool inside = z > low(i) && z < high(i) && scale_(i) > 0;
-            map(i) = inside ? scale_(i) * w(i) : lambda(i) - std::clamp(z, low(i), high(i));
-            if (jacobian == nullptr) continue;
-            if (inside) add_row(i, scale_(i), i);
-            // Enough to make redundant rows regular; Newton's next round mends what it costs.
-            jacobian->emplace_back(i, i, inside ? 1e-10 : 1);
+        Look all{0, 0};
+        for (Unit& unit : units_) {
+            const RowGroup& group = *unit.group;
+            unit.w = unit.offset + speed(unit, change);
+            if (group.softness.size() > 0) unit.w.noalias() += group.softness * group.lambda;
+            map_of(unit);
+            for (int i = 0; i < group.size(); ++i) {
+                if (unit.scale(i) == 0) continue;
+                const double left = unit.map(i) / unit.scale(i);
+                all.violation = std::max(all.violation, std::abs(left));
+                all.merit += left * unit.map(i);
+            }
         }
-        for (const Cone& cone : p_.cones) {
-            const Index first = cone.first, count = cone.count;
-            const double step = scale_.segment(first, count).maxCoeff();
-            const VectorXd z = lambda.segment(first, count) - step * w.segment(first, count);
-            const double r = radius(cone, lambda), length = z.norm();
-            if (length <= r && step > 0) {
-                map.segment(first, count) = step * w.segment(first, count);
-                for (Index i = first; jacobian != nullptr && i < first + count; ++i) {
-                    add_row(i, step, i);
-                    jacobian->emplace_back(i, i, 1e-10);
-                }
+        if (!std::isfinite(all.merit)) all.violation = unbounded;
+        return all;
+    }
+    static void map_of(Unit& unit)
+    {
+        const RowGroup& group = *unit.group;
+        const Column& lambda = group.lambda;
+        unit.map.resize(group.size());
+        std::array<bool, RowGroup::most_rows> in_cone{};
+        for (const Cone& cone : group.cones) {
+            const double step = unit.scale.segment(cone.first, cone.count).maxCoeff();
+            const Column z =
+                lambda.segment(cone.first, cone.count) - step * unit.w.segment(cone.first, cone.count);
+            const double r = radius(cone, group.lambda), length = z.norm();
+            const bool sticks = length <= r && step > 0;
+            for (int i = 0; i < cone.count; ++i) {
+                const auto row = static_cast<std::size_t>(cone.first + i);
+                in_cone[row] = true;
+                unit.where[row] = sticks ? Where::inside : Where::slides;
+                unit.map(cone.first + i) = sticks       ? step * unit.w(cone.first + i)
+                                           : length > 0 ? lambda(cone.first + i) - r / length * z(i)
+                                                        : lambda(cone.first + i);
+            }
+        }
+        for (int i = 0; i < group.size(); ++i) {
+            const auto row = static_cast<std::size_t>(i);
+            if (in_cone[row]) continue;
+            const double z = lambda(i) - unit.scale(i) * unit.w(i);
+            const bool inside = z > group.low(i) && z < group.high(i) && unit.scale(i) > 0;
+            unit.where[row] = inside ? Where::inside : z <= group.low(i) ? Where::low : Where::high;
+            unit.map(i) = inside               ? unit.scale(i) * unit.w(i)
+                          : unit.scale(i) == 0 ? lambda(i)
+                                               : lambda(i) - std::clamp(z, group.low(i), group.high(i));
+        }
+    }
+
+    /// E and F of a group, an element of the generalised derivative, and of a contact D and s.
+    void linearise(Unit& unit) const
+    {
+        const RowGroup& group = *unit.group;
+        const int n = group.size();
+        Square &e = unit.e, &f = unit.f;
+        e.setZero(n, n);
+        f.setZero(n, n);
+        for (int i = 0; i < n; ++i) {
+            const bool inside = unit.where[static_cast<std::size_t>(i)] == Where::inside;
+            e(i, i) = inside ? epsilon_ : 1;
+            if (inside) f(i, i) = unit.scale(i);
+        }
+        for (const Cone& cone : group.cones) {
+            const double step = unit.scale.segment(cone.first, cone.count).maxCoeff();
+            auto ee = e.block(cone.first, cone.first, cone.count, cone.count);
+            auto ff = f.block(cone.first, cone.first, cone.count, cone.count);
+            if (unit.where[static_cast<std::size_t>(cone.first)] == Where::inside) {
+                ff.diagonal().setConstant(step);
                 continue;
             }
-            const VectorXd along = length > 0 ? VectorXd(z / length) : VectorXd::Zero(count);
-            map.segment(first, count) = lambda.segment(first, count) - r * along;
-            if (jacobian == nullptr) continue;
-            // d(r z / |z|) = z/|z| dr + r / |z| (I - z z^T / |z|^2) dz, dz = dlambda - step A dlambda.
-            const Eigen::MatrixXd turn =
-                (length > 0 ? r / length : 0.0) *
-                (Eigen::MatrixXd::Identity(count, count) - along * along.transpose());
-            for (Index i = 0; i < count; ++i) {
-                jacobian->emplace_back(first + i, first + i, 1);
-                for (Index k = 0; k < count; ++k) {
-                    jacobian->emplace_back(first + i, first + k, -turn(i, k));
-                    add_row(first + i, step * turn(i, k), first + k);
-                }
-                for (const Index normal : cone.normals) {
-                    if (lambda(normal) > 0) jacobian->emplace_back(first + i, normal, -cone.bound * along(i));
-                }
+            // d(r z / |z|) = z/|z| dr + r / |z| (I - z z^T / |z|^2) dz, dz = dlambda - step dw.
+            const Column z =
+                group.lambda.segment(cone.first, cone.count) - step * unit.w.segment(cone.first, cone.count);
+            const double length = z.norm();
+            const Column along = length > 0 ? Column(z / length) : Column(Column::Zero(cone.count));
+            const double share = length > 0 ? std::min(radius(cone, group.lambda) / length, 1.0) : 0;
+            const Square across =
+                share * (Square::Identity(cone.count, cone.count) - along * along.transpose());
+            ee = (1 + epsilon_) * Square::Identity(cone.count, cone.count) - across;
+            ff = step * across;
+            for (int normal = cone.first_normal; normal < cone.first_normal + cone.normal_count; ++normal) {
+                if (group.lambda(normal) > 0)
+                    e.block(cone.first, normal, cone.count, 1) -= cone.bound * along;
             }
         }
-        return map;
+        if (group.softness.size() > 0) e.noalias() += f * group.softness;
+        if (unit.node >= 0) return;
+        const Eigen::PartialPivLU<Square> factors(e);
+        unit.law = factors.solve(f);
+        unit.drive = -factors.solve(unit.map);
+    }
+    bool factor()
+    {
+        system_.reset();
+        for (Unit& unit : units_) {
+            linearise(unit);
+            if (unit.node >= 0) {
+                enter_joint(unit);
+            } else {
+                enter_contact(unit);
+            }
+        }
+        return system_.factor();
+    }
+    void enter_joint(const Unit& unit)
+    {
+        const int n = unit.group->size();
+        system_.at(unit.node, unit.node).topLeftCorner(n, n) = unit.e;
+        for (std::size_t side = 0; side < 2; ++side) {
+            if (unit.bodies[side] < 0) continue;
+            system_.at(unit.node, unit.bodies[side]).topRows(n).noalias() +=
+                unit.f * unit.group->jacobian[side];
+            system_.at(unit.bodies[side], unit.node).leftCols(n) -= unit.group->jacobian[side].transpose();
+        }
+    }
+    void enter_contact(const Unit& unit)
+    {
+        for (std::size_t a = 0; a < 2; ++a) {
+            if (unit.bodies[a] < 0) continue;
+            const Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, RowGroup::most_rows> left =
+                unit.group->jacobian[a].transpose() * unit.law;
+            for (std::size_t b = 0; b < 2; ++b) {
+                if (unit.bodies[b] >= 0)
+                    system_.at(unit.bodies[a], unit.bodies[b]).noalias() += left * unit.group->jacobian[b];
+            }
+        }
+    }
+    /// Newton's step of every group, by the factors there are.
+    bool find_step()
+    {
+        move_.setZero(6 * static_cast<Index>(nodes_));
+        for (const Unit& unit : units_) {
+            if (unit.node >= 0) {
+                move_.segment(6 * static_cast<Index>(unit.node), unit.group->size()) = -unit.map;
+            } else {
+                push(unit, unit.drive, move_);
+            }
+        }
+        system_.solve(move_);
+        if (!move_.allFinite()) return false;
+        for (Unit& unit : units_) {
+            if (unit.node >= 0) {
+                unit.step = move_.segment(6 * static_cast<Index>(unit.node), unit.group->size());
+            } else {
+                unit.step = unit.drive;
+                unit.step.noalias() -= unit.law * speed(unit, move_);
+            }
+        }
+        return true;
+    }
+    /// Takes as much of the step as makes the map smaller, and returns how much that is. 0 leaves the impulses where they were.
+    double descend(Look& now)
+    {
+        for (Unit& unit : units_) unit.start = unit.group->lambda;
+        for (double length = 1; length > 0.02; length /= 2) {
+            for (Unit& unit : units_) unit.group->lambda = unit.start + length * unit.step;
+            accumulate();
+            const Look there = look();
+            if (there.merit < (1 - 1e-4 * length) * now.merit) {
+                now = there;
+                return length;
+            }
+        }
+        for (Unit& unit : units_) unit.group->lambda = unit.start;
+        accumulate();
+        now = look();
+        return 0;
+    }
+    /// What no impulse can change of rows that are to be met, as the step that was not taken tells it: they are then met in
+    /// the least squares.
+    void give_up_contradictions()
+    {
+        for (Unit& unit : units_) {
+            for (int i = 0; i < unit.group->size(); ++i) {
+                if (unit.where[static_cast<std::size_t>(i)] == Where::inside && unit.scale(i) > 0)
+                    unit.offset(i) += epsilon_ / unit.scale(i) * unit.step(i);
+            }
+        }
+    }
+    /// Whether the step, taken in full, would leave more than half of the map: rows contradict each other.
+    [[nodiscard]] bool contradicts(const Look& now) const
+    {
+        double left = 0;
+        for (const Unit& unit : units_) {
+            for (int i = 0; i < unit.group->size(); ++i) {
+                if (unit.where[static_cast<std::size_t>(i)] == Where::inside && unit.scale(i) > 0)
+                    left = std::max(left, std::abs(epsilon_ / unit.scale(i) * unit.step(i)));
+            }
+        }
+        return left > 0.5 * now.violation;
+    }
+
+    void iterate()
+    {
+        keep_best(look());
+        newton(15);
+        // Stuck at a kink of the map that is no solution: full steps lead away from it, rows that are all but redundant
+        // pull until one of their bounds gives, and sweeps come to another face of the cones.
+        for (int attempt = 0; attempt < 4 && !is_linear_ && least_ > rounding; ++attempt) {
+            go_back_to_best();
+            walk(15, attempt % 2 == 0 ? 1e-6 : 1e-3);
+            newton(25);
+            if (least_ <= rounding) break;
+            go_back_to_best();
+            for (int i = 0; i < (50 << attempt); ++i) sweep();
+            newton(25);
+        }
+    }
+    /// Newton steps as long as they make the map smaller, at most `rounds`. Where one does not, a larger epsilon turns it
+    /// towards the single rows (Levenberg and Marquardt).
+    void newton(int rounds)
+    {
+        Look now = look();
+        const double least_epsilon = is_linear_ ? epsilon_of_equations : epsilon_of_contacts;
+        epsilon_ = least_epsilon;
+        for (int round = 0; round < rounds && now.violation > enough; ++round) {
+            const bool has_step = factor() && find_step();
+            const double before = now.violation;
+            const bool contradictory = has_step && is_linear_ && contradicts(now);
+            const double length = has_step ? descend(now) : 0;
+            if (contradictory && now.violation > std::max(0.5 * before, rounding)) {
+                for (Unit& unit : units_) unit.group->lambda = unit.start;
+                give_up_contradictions();
+                accumulate();
+                now = look();
+                least_ = unbounded;
+                keep_best(now);
+                continue;
+            }
+            keep_best(now);
+            if (length == 0 && (now.violation < rounding || epsilon_ >= 1)) return;
+            epsilon_ = length == 0    ? std::min(1.0, epsilon_ * 1e3)
+                       : length < 0.2 ? std::min(1.0, epsilon_ * 1e2)
+                                      : std::max(least_epsilon, epsilon_ * 1e-2);
+        }
+    }
+    /// Full steps of the proximal point method, whatever the map does meanwhile.
+    void walk(int rounds, double epsilon)
+    {
+        epsilon_ = epsilon;
+        for (int round = 0; round < rounds && least_ > enough; ++round) {
+            if (!factor() || !find_step()) return;
+            for (Unit& unit : units_) unit.group->lambda += unit.step;
+            accumulate();
+            keep_best(look());
+        }
+    }
+    void keep_best(const Look& now)
+    {
+        if (!(now.violation < least_)) return;
+        least_ = now.violation;
+        for (Unit& unit : units_) unit.best = unit.group->lambda;
+    }
+    void go_back_to_best()
+    {
+        for (Unit& unit : units_) unit.group->lambda = unit.best;
+        accumulate();
+        look();
     }
 
     /// One sweep of projected Gauss-Seidel over every row and cone.
-    void sweep(VectorXd& lambda) const
+    void sweep()
     {
-        const auto speed = [&](Index i) { return p_.q(i) + rows_.row(i).dot(lambda); };
-        for (Index i = 0; i < n_; ++i) {
-            if (!in_cone_[static_cast<std::size_t>(i)])
-                lambda(i) = std::clamp(lambda(i) - scale_(i) * speed(i), low(i), high(i));
-        }
-        for (const Cone& cone : p_.cones) {
-            const double step = scale_.segment(cone.first, cone.count).minCoeff();
-            VectorXd z(cone.count);
-            for (Index i = 0; i < cone.count; ++i)
-                z(i) = lambda(cone.first + i) - 0.7 * step * speed(cone.first + i);
-            const double r = radius(cone, lambda);
-            if (z.norm() > r) z *= r / z.norm();
-            lambda.segment(cone.first, cone.count) = z;
-        }
-    }
-
-    void solve_cones(VectorXd& lambda) const
-    {
-        constexpr double enough = 1e-12;
-        VectorXd best = lambda;
-        double least = violation(lambda);
-        for (int round = 0; round < 200 && least > enough; ++round) {
-            std::vector<Eigen::Triplet<double>> entries;
-            const VectorXd map = natural_map(lambda, &entries);
-            Sparse jacobian(n_, n_);
-            jacobian.setFromTriplets(entries.begin(), entries.end());
-            Eigen::SparseLU<Sparse> factors(jacobian);
-            bool descends = false;
-            if (factors.info() == Eigen::Success) {
-                const VectorXd step = factors.solve(-map);
-                for (double length = 1; step.allFinite() && length > 1e-3; length /= 2) {
-                    const VectorXd there = lambda + length * step;
-                    if (natural_map(there, nullptr).norm() > (1 - 1e-4 * length) * map.norm()) continue;
-                    lambda = there;
-                    descends = true;
-                    break;
+        for (Unit& unit : units_) {
+            RowGroup& group = *unit.group;
+            const auto soft = [&](int i) {
+                return group.softness.size() > 0 ? group.softness.row(i).dot(group.lambda) : 0.0;
+            };
+            const auto w_of = [&](int i) {
+                double w = unit.offset(i) + soft(i);
+                for (std::size_t side = 0; side < 2; ++side) {
+                    if (unit.bodies[side] >= 0)
+                        w += group.jacobian[side].row(i).dot(of_body(change, unit.bodies[side]));
                 }
+                return w;
+            };
+            const auto set = [&](int i, double lambda) {
+                for (std::size_t side = 0; side < 2; ++side) {
+                    if (unit.bodies[side] >= 0)
+                        of_body(change, unit.bodies[side]) +=
+                            (lambda - group.lambda(i)) * group.jacobian[side].row(i).transpose();
+                }
+                group.lambda(i) = lambda;
+            };
+            std::array<bool, RowGroup::most_rows> in_cone{};
+            for (const Cone& cone : group.cones) {
+                for (int i = 0; i < cone.count; ++i) in_cone[static_cast<std::size_t>(cone.first + i)] = true;
             }
-            // Where Newton's direction does not help, sweeps come nearer, and to another face of the cones.
-            for (int i = 0; !descends && i < 200; ++i) sweep(lambda);
-            const double now = violation(lambda);
-            if (now < least) {
-                least = now;
-                best = lambda;
+            for (int i = 0; i < group.size(); ++i) {
+                if (!in_cone[static_cast<std::size_t>(i)])
+                    set(i,
+                        std::clamp(group.lambda(i) - unit.scale(i) * w_of(i), group.low(i), group.high(i)));
+            }
+            for (const Cone& cone : group.cones) {
+                const double step = unit.scale.segment(cone.first, cone.count).minCoeff();
+                Column z(cone.count);
+                for (int i = 0; i < cone.count; ++i)
+                    z(i) = group.lambda(cone.first + i) - 0.7 * step * w_of(cone.first + i);
+                const double r = radius(cone, group.lambda);
+                if (z.norm() > r) z *= r / z.norm();
+                for (int i = 0; i < cone.count; ++i) set(cone.first + i, z(i));
             }
         }
-        lambda = best;
-        for (int i = 0; i < 20000 && violation(lambda) > 1e-10; ++i) sweep(lambda);
-        if (violation(lambda) > least) lambda = best;
-    }
-
-    [[nodiscard]] double violation(const VectorXd& lambda) const
-    {
-        const VectorXd map = natural_map(lambda, nullptr);
-        double most = 0;
-        for (Index i = 0; i < n_; ++i) {
-            if (scale_(i) > 0) most = std::max(most, std::abs(map(i)) / scale_(i));
-        }
-        return most;
     }
 };
 
-/// Which part each row belongs to: rows hang together through A and through their cones.
-std::vector<Index> parts_of(const Problem& problem)
+/// Which part each body belongs to: the least body of those that groups tie together.
+std::vector<int> parts_of(const Problem& problem)
 {
-    std::vector<Index> leader(static_cast<std::size_t>(problem.q.size()));
-    std::iota(leader.begin(), leader.end(), Index{0});
-    const auto find = [&](Index i) {
+    std::vector<int> leader(static_cast<std::size_t>(problem.bodies));
+    std::iota(leader.begin(), leader.end(), 0);
+    const auto find = [&](int i) {
         while (leader[static_cast<std::size_t>(i)] != i)
             i = leader[static_cast<std::size_t>(i)] =
                 leader[static_cast<std::size_t>(leader[static_cast<std::size_t>(i)])];
         return i;
     };
-    const auto join = [&](Index i, Index k) {
-        const Index a = find(i), b = find(k);
+    for (const RowGroup& group : problem.groups) {
+        if (group.bodies[0] < 0 || group.bodies[1] < 0) continue;
+        const int a = find(group.bodies[0]), b = find(group.bodies[1]);
         leader[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    };
-    for (Index column = 0; column < problem.a.cols(); ++column) {
-        for (Sparse::InnerIterator entry(problem.a, column); entry; ++entry) {
-            if (entry.value() != 0) join(entry.row(), column);
-        }
     }
-    for (const Cone& cone : problem.cones) {
-        for (Index i = 0; i < cone.count; ++i) join(cone.first, cone.first + i);
-        for (const Index normal : cone.normals) join(cone.first, normal);
-    }
-    for (std::size_t i = 0; i < leader.size(); ++i) leader[i] = find(static_cast<Index>(i));
+    for (std::size_t i = 0; i < leader.size(); ++i) leader[i] = find(static_cast<int>(i));
     return leader;
 }
 
 }  // namespace
 
-Solution solve(const Problem& problem)
+Solution solve(Problem& problem)
 {
-    const Index n = problem.q.size();
-    Solution whole{VectorXd::Zero(n), 0};
-    const std::vector<Index> part_of = parts_of(problem);
-    std::vector<std::vector<Index>> members(static_cast<std::size_t>(n));
-    for (Index i = 0; i < n; ++i)
-        members[static_cast<std::size_t>(part_of[static_cast<std::size_t>(i)])].push_back(i);
-    std::vector<std::vector<Cone>> cones(static_cast<std::size_t>(n));
-    for (const Cone& cone : problem.cones)
-        cones[static_cast<std::size_t>(part_of[static_cast<std::size_t>(cone.first)])].push_back(cone);
-    for (std::size_t leader = 0; leader < members.size(); ++leader) {
-        const std::vector<Index>& rows = members[leader];
-        if (rows.empty()) continue;
-        Problem part{submatrix(problem.a, rows), problem.q(rows), {}, {}, cones[leader]};
-        const auto place = [&](Index row) {
-            return static_cast<Index>(std::lower_bound(rows.begin(), rows.end(), row) - rows.begin());
-        };
-        for (const Index row : rows) {
-            part.low.push_back(problem.low[static_cast<std::size_t>(row)]);
-            part.high.push_back(problem.high[static_cast<std::size_t>(row)]);
+    const auto count = static_cast<std::size_t>(problem.bodies);
+    Solution whole{VectorXd::Zero(6 * static_cast<Index>(count)), 0, 0};
+    const std::vector<int> part_of = parts_of(problem);
+    std::vector<std::vector<RowGroup*>> groups(count);
+    std::vector<std::vector<int>> members(count);
+    std::vector<int> place(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::vector<int>& part = members[static_cast<std::size_t>(part_of[i])];
+        place[i] = static_cast<int>(part.size());
+        part.push_back(static_cast<int>(i));
+    }
+    for (RowGroup& group : problem.groups) {
+        const int body = std::max(group.bodies[0], group.bodies[1]);
+        if (body < 0) {
+            group.lambda.setZero();  // between bodies that nothing moves
+        } else {
+            groups[static_cast<std::size_t>(part_of[static_cast<std::size_t>(body)])].push_back(&group);
         }
-        // The rows of a cone lie in line in the whole, and so in a part that has all of them.
-        for (Cone& cone : part.cones) {
-            cone.first = place(cone.first);
-            for (Index& normal : cone.normals) normal = place(normal);
+    }
+    for (std::size_t leader = 0; leader < count; ++leader) {
+        if (groups[leader].empty()) continue;
+        Part part(groups[leader], place, static_cast<int>(members[leader].size()));
+        const double violation = part.solve();
+        for (std::size_t i = 0; i < members[leader].size(); ++i) {
+            whole.change.segment<6>(6 * static_cast<Index>(members[leader][i])) =
+                part.change.segment<6>(6 * static_cast<Index>(i));
         }
-        const Solution solution = Part(std::move(part)).solve();
-        whole.lambda(rows) = solution.lambda;
-        whole.violation = std::max(whole.violation, solution.violation);
+        whole.violation = std::max(whole.violation, violation);
+        whole.unsolved += violation > solved_to ? 1 : 0;
     }
     return whole;
 }

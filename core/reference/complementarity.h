@@ -1,34 +1,61 @@
-// Linear complementarity with bounds and cones, solved to the rounding of doubles.
+// Linear complementarity with bounds and cones over the velocities of bodies, solved to the rounding of doubles.
 #pragma once
 
-#include <Eigen/SparseCore>
+#include <Eigen/Dense>
+#include <array>
 #include <vector>
 
 namespace motley::reference {
 
 /// |lambda[first .. first + count)| <= bound, or <= bound times the sum of lambda over the normals where there are any.
+/// Rows are counted within their group.
 struct Cone {
-    Eigen::Index first = 0, count = 0;
+    int first = 0, count = 0;
     double bound = 0;
-    std::vector<Eigen::Index> normals{};
+    int first_normal = 0, normal_count = 0;
 };
 
-/// w = A lambda + q, A symmetric positive semi-definite. low <= lambda <= high, w = 0 between the bounds, w >= 0 at the
+/// Rows that hang together by more than their bodies: of one joint or contact.
+struct RowGroup {
+    static constexpr int most_rows = 12;
+    template <int columns>
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, columns,
+                               columns == 1 ? Eigen::ColMajor : Eigen::RowMajor, most_rows, columns>;
+    using Square =
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_rows, most_rows>;
+
+    std::array<int, 2> bodies{-1, -1};  ///< whose velocities the rows take; -1 is nobody
+    std::array<Rows<6>, 2> jacobian{};  ///< over velocities scaled such that every body's mass is 1
+    Rows<1> offset{};                   ///< w without any impulse
+    Rows<1> low{}, high{};
+    Square softness{};  ///< Gamma, symmetric positive semi-definite; empty is zero
+    std::vector<Cone> cones{};
+    bool is_contact = false;  ///< more of the kind may tie its bodies than they can move along
+    Rows<1> lambda{};         ///< the guess, then the solution
+
+    [[nodiscard]] int size() const { return static_cast<int>(offset.size()); }
+};
+
+/// w = J y + Gamma lambda + offset with y = J^T lambda. low <= lambda <= high, w = 0 between the bounds, w >= 0 at the
 /// low one and w <= 0 at the high one. Rows of a cone have no bounds of their own; at its edge w points against lambda.
 struct Problem {
-    Eigen::SparseMatrix<double> a;
-    Eigen::VectorXd q;
-    std::vector<double> low, high;
-    std::vector<Cone> cones;
+    int bodies = 0;
+    std::vector<RowGroup> groups;
 };
 
 struct Solution {
-    Eigen::VectorXd lambda;
-    double violation = 0;  ///< largest of the natural map, in the units of w; infinite where q was not finite
+    Eigen::VectorXd change;  ///< y, six numbers a body: what all impulses do to scaled velocities
+    double violation =
+        0;  ///< largest of the natural map, in the units of w; infinite where an offset was not finite
+    int unsolved = 0;  ///< islands with a violation above `solved_to`
 };
 
-/// Solves each part of the problem that hangs together on its own. Redundant rows share their impulse with the least
-/// norm; contradictory ones are met in the least squares, and the violation says by how much not.
-Solution solve(const Problem& problem);
+/// What counts as solved, in the units of w.
+inline constexpr double solved_to = 1e-9;
+
+/// Solves each part of the problem that hangs together through its bodies on its own, from the impulses that the groups
+/// have as a guess; parts of equations alone from none. These then share their impulse with the least norm where they are redundant.
+/// Contradictory rows are met in the least squares, and the violation says by how much not.
+Solution solve(Problem& problem);
 
 }  // namespace motley::reference

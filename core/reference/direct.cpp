@@ -4,7 +4,6 @@
 //
 // Gamma is what softness comes to: delta = -ms K^-1 (J v + bias) - is lambda rests where
 // J v + bias + (is / ms) K lambda = 0.
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,103 +18,121 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 using Eigen::Index;
 using Eigen::VectorXd;
 
+/// S of a body, with S S^T = M^-1: over y = S^-1 v every body's mass is 1.
+struct Scale {
+    Eigen::Vector3d linear = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d angular = Eigen::Matrix3d::Zero();
+
+    explicit Scale(const Body& body)
+    {
+        const Matrix6 inverse_mass = body.inverse_mass();
+        linear = inverse_mass.diagonal().head<3>().cwiseSqrt();
+        // Cholesky, with nothing where the body does not turn.
+        for (Index i = 0; i < 3; ++i) {
+            for (Index k = 0; k <= i; ++k) {
+                const double rest =
+                    inverse_mass(3 + i, 3 + k) - angular.row(i).head(k).dot(angular.row(k).head(k));
+                if (i == k)
+                    angular(i, i) = std::sqrt(std::max(rest, 0.0));
+                else if (angular(k, k) > 0)
+                    angular(i, k) = rest / angular(k, k);
+            }
+        }
+    }
+};
+
 /// The rows of a problem as they come.
 class Assembly {
   public:
-    explicit Assembly(const std::vector<Body>& bodies) : bodies_(bodies) {}
-
-    /// Adds rows between two bodies, each within [low, high]. Returns the first.
-    Index add(int a, int b, const Jacobian& rows, const VectorXd& bias, double low, double high)
+    explicit Assembly(const std::vector<Body>& bodies) : bodies_(bodies)
     {
-        const Index first = size();
-        for (Index i = 0; i < rows.rows(); ++i) {
-            for (int side = 0; side < 2; ++side) {
-                for (Index k = 0; k < 6; ++k) {
-                    const double value = rows(i, 6 * side + k);
-                    if (value != 0) entries_.emplace_back(first + i, 6 * (side == 0 ? a : b) + k, value);
-                }
-            }
-            bias_.push_back(bias(i));
-            problem.low.push_back(low);
-            problem.high.push_back(high);
-        }
-        return first;
-    }
-    void soften(Index first, const Eigen::MatrixXd& gamma)
-    {
-        for (Index i = 0; i < gamma.rows(); ++i) {
-            for (Index k = 0; k < gamma.cols(); ++k) {
-                if (gamma(i, k) != 0) softness_.emplace_back(first + i, first + k, gamma(i, k));
-            }
-        }
-    }
-    [[nodiscard]] Index size() const { return static_cast<Index>(bias_.size()); }
-
-    /// Makes A and q of the rows; `velocity` is that of all bodies in line.
-    Solution solve(const VectorXd& velocity)
-    {
-        const Index n = size(), columns = 6 * static_cast<Index>(bodies_.size());
-        if (n == 0) return {VectorXd::Zero(0), 0};
-        std::vector<Eigen::Triplet<double>> mass;
-        for (std::size_t i = 0; i < bodies_.size(); ++i) {
-            const Matrix6 m = bodies_[i].inverse_mass();
-            for (Index r = 0; r < 6; ++r) {
-                for (Index c = 0; c < 6; ++c) {
-                    if (m(r, c) != 0)
-                        mass.emplace_back(6 * static_cast<Index>(i) + r, 6 * static_cast<Index>(i) + c,
-                                          m(r, c));
-                }
-            }
-        }
-        jacobian_.resize(n, columns);
-        jacobian_.setFromTriplets(entries_.begin(), entries_.end());
-        inverse_mass_.resize(columns, columns);
-        inverse_mass_.setFromTriplets(mass.begin(), mass.end());
-        Eigen::SparseMatrix<double> gamma(n, n);
-        gamma.setFromTriplets(softness_.begin(), softness_.end());
-        problem.a = jacobian_ * inverse_mass_ * Eigen::SparseMatrix<double>(jacobian_.transpose());
-        problem.a += gamma;
-        problem.q = jacobian_ * velocity + Eigen::Map<const VectorXd>(bias_.data(), n);
-        return reference::solve(problem);
-    }
-    /// M^-1 J^T lambda, of all bodies in line.
-    [[nodiscard]] VectorXd change(const VectorXd& lambda) const
-    {
-        if (size() == 0) return VectorXd::Zero(6 * static_cast<Index>(bodies_.size()));
-        return inverse_mass_ * (jacobian_.transpose() * lambda);
+        scales_.reserve(bodies.size());
+        for (const Body& body : bodies) scales_.emplace_back(body);
+        problem_.bodies = static_cast<int>(bodies.size());
     }
 
-    Problem problem;
+    /// Opens a group for `rows` rows between two bodies, which are at zero until they are filled. Returns where it is.
+    std::size_t open(int a, int b, Index rows)
+    {
+        RowGroup& group = problem_.groups.emplace_back();
+        for (const auto& [side, body] : {std::pair{0U, a}, std::pair{1U, b}}) {
+            const bool moves = bodies_[static_cast<std::size_t>(body)].motion == BodyMotion::dynamic_body;
+            group.bodies[side] = moves ? body : -1;
+            group.jacobian[side].setZero(rows, 6);
+        }
+        for (RowGroup::Rows<1>* column : {&group.offset, &group.low, &group.high, &group.lambda})
+            column->setZero(rows);
+        return problem_.groups.size() - 1;
+    }
+    /// Fills rows of a group, each within [low, high]; w is `offset` without any impulse.
+    void fill(std::size_t at, Index first, const Jacobian& rows, const VectorXd& offset, double low,
+              double high, const VectorXd& guess)
+    {
+        RowGroup& group = problem_.groups[at];
+        const Index count = rows.rows();
+        group.offset.segment(first, count) = offset;
+        group.low.segment(first, count).setConstant(low);
+        group.high.segment(first, count).setConstant(high);
+        group.lambda.segment(first, count) = guess;
+        for (std::size_t side = 0; side < 2; ++side) {
+            if (group.bodies[side] < 0) continue;
+            const Scale& scale = scales_[static_cast<std::size_t>(group.bodies[side])];
+            const auto from = static_cast<Index>(6 * side);
+            auto into = group.jacobian[side].middleRows(first, count);
+            into.leftCols<3>() = rows.middleCols<3>(from) * scale.linear.asDiagonal();
+            into.rightCols<3>() = rows.middleCols<3>(from + 3) * scale.angular;
+        }
+    }
+    /// Softens rows of a group by a share of their own J M^-1 J^T.
+    void soften(std::size_t at, Index first, Index count, double share)
+    {
+        if (share == 0) return;
+        RowGroup& group = problem_.groups[at];
+        if (group.softness.size() == 0) group.softness.setZero(group.size(), group.size());
+        for (const auto& jacobian : group.jacobian) {
+            const auto rows = jacobian.middleRows(first, count);
+            group.softness.block(first, first, count, count) += share * (rows * rows.transpose());
+        }
+    }
+    [[nodiscard]] RowGroup& group(std::size_t at) { return problem_.groups[at]; }
+
+    Solution solve() { return reference::solve(problem_); }
+    /// What a solution does to the velocity of a body.
+    [[nodiscard]] Vector6 change(const Solution& solution, std::size_t body) const
+    {
+        const Vector6 y = solution.change.segment<6>(6 * static_cast<Index>(body));
+        Vector6 v;
+        v << scales_[body].linear.cwiseProduct(y.head<3>()), scales_[body].angular * y.tail<3>();
+        return v;
+    }
 
   private:
     const std::vector<Body>& bodies_;
-    std::vector<Eigen::Triplet<double>> entries_, softness_;
-    std::vector<double> bias_;
-    Eigen::SparseMatrix<double> jacobian_, inverse_mass_;
+    std::vector<Scale> scales_;
+    Problem problem_;
 };
-
-VectorXd velocities(const std::vector<Body>& bodies)
-{
-    VectorXd v(6 * static_cast<Index>(bodies.size()));
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        v.segment<6>(6 * static_cast<Index>(i)) = bodies[i].velocity;
-    return v;
-}
 
 }  // namespace
 
-double World::step_directly(double dt, const SolverSettings& settings,
-                            const std::vector<ContactPoint>& points)
+DirectResult World::step_directly(double dt, const SolverSettings& settings,
+                                  const std::vector<ContactPoint>& points)
 {
     const double h = dt / settings.substeps;
+    const double warm = last_substep_ > 0 ? h / last_substep_ : 0;
     begin_step();
+    for (Joint& joint : joints) {
+        for (VectorXd& impulse : joint.impulses) impulse *= warm;
+    }
     std::vector<ContactRow> contacts;
-    for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, 0));
+    contacts.reserve(points.size());
+    for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, warm));
     const Eigen::Vector3d gravity(settings.gravity.x, settings.gravity.y, settings.gravity.z);
-    double violation = 0;
+    DirectResult result;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         for (Body& body : bodies) body.accelerate(gravity, h);
-        violation = std::max(violation, solve_substep_directly(h, settings, contacts));
+        const DirectResult part = solve_substep_directly(h, settings, contacts);
+        result.violation = std::max(result.violation, part.violation);
+        result.unsolved += part.unsolved;
         for (Body& body : bodies) {
             if (body.motion != BodyMotion::static_body) body.advance(body.velocity, h);
         }
@@ -125,106 +142,112 @@ double World::step_directly(double dt, const SolverSettings& settings,
     }
     finish_contacts(contacts, h, settings);
     end_step(h);
-    return violation;
+    return result;
 }
 
-double World::solve_substep_directly(double h, const SolverSettings& settings,
-                                     std::vector<ContactRow>& contacts)
+DirectResult World::solve_substep_directly(double h, const SolverSettings& settings,
+                                           std::vector<ContactRow>& contacts)
 {
     Assembly assembly(bodies);
-    for (Joint& joint : joints) {
-        for (VectorXd& impulse : joint.impulses) impulse.setZero();
-    }
     std::vector<BlockRow> blocks;
-    for (Joint& joint : joints) begin_joint(joint, h, settings, blocks);
+    for (Joint& joint : joints) find_rows(joint, h, settings, blocks);
     struct Placed {
+        std::size_t group;
         Index first;
         Eigen::MatrixXd to_rows;  ///< what turns the impulse of the problem into that of the block's rows
     };
     std::vector<Placed> placed;
-    for (const BlockRow& row : blocks) {
+    placed.reserve(blocks.size());
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const BlockRow& row = blocks[i];
         const Block& block = row.block;
         const Index count = block.jacobian.rows();
         const int a = row.joint->a, b = row.joint->b;
+        // Rows of a joint are a group of their own each, unless contacts of the joint bound others of it.
+        const bool by_contacts = block.most_per_contact >= 0;
+        Placed at{0, 0, {}};
+        if (row.joint_contacts > 0 && row.index > 0) {
+            at = {placed.back().group, placed.back().first + blocks[i - 1].block.jacobian.rows(), {}};
+        } else {
+            Index rows = count;
+            for (std::size_t k = i + 1;
+                 row.joint_contacts > 0 && k < blocks.size() && blocks[k].joint == row.joint; ++k)
+                rows += blocks[k].block.jacobian.rows();
+            at.group = assembly.open(a, b, rows);
+        }
         Jacobian jacobian = block.jacobian;
-        VectorXd bias = row.bias;
+        VectorXd bias = row.bias, guess = row.impulse();
         if (block.is_one_sided()) bias = bias.cwiseMax(-static_cast<double>(settings.push_out_speed));
         bias *= block.side;
-        Eigen::MatrixXd to_rows = Eigen::MatrixXd::Identity(count, count);
-        const bool bounded = block.most_per_contact >= 0 || (std::isfinite(row.most) && count > 1);
+        const bool bounded = by_contacts || (std::isfinite(row.most) && count > 1);
         if (bounded && block.bounds_torque) {
             // The bound is a ball of torques: rows G w = s are solved as w = G^-1 s, whose impulse is the torque.
             const Eigen::MatrixXd turn = block.jacobian.rightCols<3>();
             const Eigen::MatrixXd inverse = turn.completeOrthogonalDecomposition().pseudoInverse();
             jacobian = inverse * jacobian;
             bias = inverse * bias;
-            to_rows = inverse.transpose();
+            guess = turn.transpose() * guess;
+            at.to_rows = inverse.transpose();
         }
         const bool limit = block.is_one_sided();
-        const bool by_contacts = block.most_per_contact >= 0;
         double low = limit && block.side > 0 ? 0 : -row.most;
         double high = limit && block.side < 0 ? 0 : row.most;
         if (!bias.allFinite()) {  // a limit at infinity
             bias.setZero();
             low = high = 0;
         }
-        const Index first = assembly.add(a, b, jacobian, bias, low, high);
-        const Eigen::MatrixXd k =
-            jacobian *
-            pair_inverse_mass(bodies[static_cast<std::size_t>(a)], bodies[static_cast<std::size_t>(b)]) *
-            jacobian.transpose();
-        assembly.soften(first, row.soft.impulse_scale / row.soft.mass_scale * k);
+        assembly.fill(at.group, at.first, jacobian, speed(a, b, jacobian) + bias, low, high, guess);
+        assembly.soften(at.group, at.first, count, row.soft.impulse_scale / row.soft.mass_scale);
+        RowGroup& group = assembly.group(at.group);
+        const int first = static_cast<int>(at.first);
         if (by_contacts) {
-            // The joint's contacts come next, one row each, once its other blocks are there.
-            Cone cone{first, count, block.most_per_contact};
-            Index next = first;
-            for (std::size_t i = row.index; i < row.joint->impulses.size(); ++i) {
-                if (i + row.joint_contacts >= row.joint->impulses.size()) cone.normals.push_back(next);
-                next += row.joint->impulses[i].size();
-            }
-            assembly.problem.cones.push_back(cone);
+            // The joint's contacts come last, one row each.
+            const int normals = static_cast<int>(row.joint_contacts);
+            group.cones.push_back(
+                {first, static_cast<int>(count), block.most_per_contact, group.size() - normals, normals});
         } else if (bounded) {
-            assembly.problem.cones.push_back({first, count, row.most});
+            group.cones.push_back({first, static_cast<int>(count), row.most, 0, 0});
         }
-        placed.push_back({first, to_rows});
+        placed.push_back(std::move(at));
     }
     const double beta =
         settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
-    std::vector<Index> first_of_contact;
+    std::vector<std::size_t> group_of_contact;
+    group_of_contact.reserve(contacts.size());
     for (const ContactRow& row : contacts) {
-        const ContactPoint& point = *row.point;
+        const int a = row.point->a, b = row.point->b;
         const double s = separation(row);
         const double deep = beta / h * std::min(s + static_cast<double>(settings.penetration_slop), 0.0);
         const double bias = s > 0 ? s / h : std::max(deep, -static_cast<double>(settings.push_out_speed));
-        const Index normal =
-            assembly.add(point.a, point.b, row.normal, VectorXd::Constant(1, bias), 0, unbounded);
-        first_of_contact.push_back(normal);
-        const double mu = static_cast<double>(point.contact.friction);
-        if (mu == 0) continue;
-        const Index count = row.tangents.rows();
-        const Index first =
-            assembly.add(point.a, point.b, row.tangents, VectorXd::Zero(count), -unbounded, unbounded);
-        assembly.problem.cones.push_back({first, count, mu, {normal}});
+        const double mu = static_cast<double>(row.point->contact.friction);
+        const Index tangents = mu > 0 ? row.tangents.rows() : 0;
+        const std::size_t at = assembly.open(a, b, 1 + tangents);
+        group_of_contact.push_back(at);
+        assembly.group(at).is_contact = true;
+        assembly.fill(at, 0, row.normal, speed(a, b, row.normal).array() + bias, 0, unbounded,
+                      VectorXd::Constant(1, row.impulse));
+        if (tangents == 0) continue;
+        assembly.fill(at, 1, row.tangents, speed(a, b, row.tangents), -unbounded, unbounded, row.friction);
+        assembly.group(at).cones.push_back({1, static_cast<int>(tangents), mu, 0, 1});
     }
-    const Solution solution = assembly.solve(velocities(bodies));
-    const VectorXd change = assembly.change(solution.lambda);
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        bodies[i].velocity += change.segment<6>(6 * static_cast<Index>(i));
+    const Solution solution = assembly.solve();
+    for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].velocity += assembly.change(solution, i);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         VectorXd& impulse = blocks[i].impulse();
-        impulse = placed[i].to_rows * solution.lambda.segment(placed[i].first, impulse.size());
+        impulse = assembly.group(placed[i].group).lambda.segment(placed[i].first, impulse.size());
+        if (placed[i].to_rows.size() > 0) impulse = placed[i].to_rows * impulse;
         double& peak = blocks[i].joint->peaks[blocks[i].index];
         peak = std::max(peak, impulse(0));
     }
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         ContactRow& row = contacts[i];
-        row.impulse = solution.lambda(first_of_contact[i]);
+        const RowGroup& group = assembly.group(group_of_contact[i]);
+        row.impulse = group.lambda(0);
         row.peak = std::max(row.peak, row.impulse);
         row.friction.setZero();
-        if (row.point->contact.friction > 0)
-            row.friction = solution.lambda.segment(first_of_contact[i] + 1, row.friction.size());
+        if (group.size() > 1) row.friction = group.lambda.tail(group.size() - 1);
     }
-    return solution.violation;
+    return {solution.violation, solution.unsolved};
 }
 
 /// The norm of C over all locks and broken limits.
@@ -254,24 +277,25 @@ void World::project_directly(const std::vector<ContactRow>& contacts, const Solv
             if (block.kind == Block::Kind::contact)
                 error(0) += static_cast<double>(settings.penetration_slop);
             if (limit && error(0) > 0) continue;
-            assembly.add(joint.a, joint.b, block.jacobian, block.side * error,
-                         limit && block.side > 0 ? 0 : -unbounded, limit && block.side < 0 ? 0 : unbounded);
+            assembly.fill(assembly.open(joint.a, joint.b, error.size()), 0, block.jacobian,
+                          block.side * error, limit && block.side > 0 ? 0 : -unbounded,
+                          limit && block.side < 0 ? 0 : unbounded, VectorXd::Zero(error.size()));
         }
     }
     for (const ContactRow& row : contacts) {
         const double deep = separation(row) + static_cast<double>(settings.penetration_slop);
         if (deep < 0)
-            assembly.add(row.point->a, row.point->b, row.normal, VectorXd::Constant(1, deep), 0, unbounded);
+            assembly.fill(assembly.open(row.point->a, row.point->b, 1), 0, row.normal,
+                          VectorXd::Constant(1, deep), 0, unbounded, VectorXd::Zero(1));
     }
-    const Solution solution = assembly.solve(VectorXd::Zero(6 * static_cast<Index>(bodies.size())));
-    const VectorXd change = assembly.change(solution.lambda);
+    const Solution solution = assembly.solve();
     // Far from the solution a whole step may lead away from it: then half of it, and so on.
     const std::vector<Body> before = bodies;
     const double error = position_error();
     for (double share = 1; share > 0.01; share /= 2) {
         bodies = before;
         for (std::size_t i = 0; i < bodies.size(); ++i)
-            bodies[i].advance(change.segment<6>(6 * static_cast<Index>(i)), share);
+            bodies[i].advance(assembly.change(solution, i), share);
         if (position_error() <= error) break;
     }
 }

@@ -77,6 +77,11 @@ class DistanceModel : public JointModel {
     {
         return {impulses.size() > 1 ? impulses[0](0) : 0, impulses.back()(0)};  // spring, limit
     }
+    void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const override
+    {
+        impulses.front()(0) = static_cast<double>(memory[0]);
+        impulses.back()(0) = static_cast<double>(memory[1]);
+    }
 
   private:
     DistanceDefinition joint_;
@@ -137,6 +142,13 @@ class DriveModel : public JointModel {
         const std::size_t motor = impulses.size() - 2;
         return {impulses[motor](0), motor > 0 ? impulses[0](0) : 0, impulses[motor + 1](0)};
     }
+    void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const override
+    {
+        const std::size_t motor = impulses.size() - 2;
+        impulses[0](0) = static_cast<double>(memory[1]);
+        impulses[motor](0) = static_cast<double>(memory[0]);
+        impulses[motor + 1](0) = static_cast<double>(memory[2]);
+    }
 
   private:
     SlideDriveDefinition drive_;
@@ -162,6 +174,10 @@ class SwingLimitModel : public JointModel {
                                              double) const override
     {
         return {-impulses[0](0)};  // the lanes' limit is positive
+    }
+    void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const override
+    {
+        impulses[0](0) = -static_cast<double>(memory[0]);
     }
 
   private:
@@ -353,6 +369,14 @@ class ManifoldModel : public JointModel {
             memory.insert(memory.end(), impulses[i].begin(), impulses[i].end());
         return memory;
     }
+    void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const override
+    {
+        for (std::size_t i = 3; i < impulses.size(); ++i) impulses[i](0) = static_cast<double>(memory[i - 3]);
+        std::size_t next = 4;
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (double& impulse : impulses[i]) impulse = static_cast<double>(memory[next++]);
+        }
+    }
 
   private:
     ManifoldDefinition contact_;
@@ -374,6 +398,15 @@ std::vector<double> JointModel::memory(const std::vector<Eigen::VectorXd>& impul
     std::vector<double> in_line;
     for (const Eigen::VectorXd& block : impulses) in_line.insert(in_line.end(), block.begin(), block.end());
     return in_line;
+}
+
+void JointModel::recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const
+{
+    std::size_t next = 0;
+    for (Eigen::VectorXd& block : impulses) {
+        for (double& impulse : block)
+            impulse = next < memory.size() ? static_cast<double>(memory[next++]) : 0;
+    }
 }
 
 Model model_of(const BallSocketDefinition& joint)

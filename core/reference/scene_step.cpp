@@ -74,8 +74,8 @@ void write_back(Scene& scene, BodyId id, const Body& body)
 
 }  // namespace
 
-double step_directly(Scene& scene, float dt, const SolverSettings& settings,
-                     std::span<const Contact> contacts)
+DirectResult step_directly(Scene& scene, float dt, const SolverSettings& settings,
+                           std::span<const Contact> contacts)
 {
     World world;
     std::vector<int> index_of_slot(scene.bodies().slot_count(), -1);
@@ -97,9 +97,10 @@ double step_directly(Scene& scene, float dt, const SolverSettings& settings,
             if (is_left_out(definition.body_a, definition.body_b)) continue;
             Joint joint{index_of_slot[definition.body_a.slot], index_of_slot[definition.body_b.slot],
                         model_of(definition)};
-            joint.travelled =
-                joint.model->travelled_in(&store.memory[i * quad_floats<typename Store::Memory>]);
-            world.joints.push_back(joint);
+            constexpr std::size_t stride = quad_floats<typename Store::Memory>;
+            joint.memory = {&store.memory[i * stride], stride};
+            joint.travelled = joint.model->travelled_in(joint.memory.data());
+            world.joints.push_back(std::move(joint));
         }
     });
     std::vector<ContactPoint> points;
@@ -109,7 +110,18 @@ double step_directly(Scene& scene, float dt, const SolverSettings& settings,
         points.push_back({index_of_slot[contact.body_a.slot], index_of_slot[contact.body_b.slot], contact});
     }
 
-    const double violation = world.step_directly(static_cast<double>(dt), settings, points);
+    const ContactList& before = scene.contact_cache().current();
+    std::map<std::uint64_t, World::ContactResult> recalled;
+    for (std::size_t i = 0; i < before.count; ++i) {
+        const ContactImpulse& impulse = before.impulses[i + 1];
+        recalled[before.entries[i].key] = {
+            static_cast<double>(impulse.normal),
+            {static_cast<double>(impulse.friction.x), static_cast<double>(impulse.friction.y),
+             static_cast<double>(impulse.friction.z)}};
+    }
+    world.recall(static_cast<double>(scene.last_substep), std::move(recalled));
+
+    const DirectResult result = world.step_directly(static_cast<double>(dt), settings, points);
 
     // Everything that asks for memory comes before anything is written.
     std::vector<std::vector<double>> memories;
@@ -135,13 +147,13 @@ double step_directly(Scene& scene, float dt, const SolverSettings& settings,
     });
     ContactList& staged = scene.contact_cache().staged();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const World::ContactResult result = world.contact_result(contacts[i].key);
+        const World::ContactResult left = world.contact_result(contacts[i].key);
         staged.impulses[i + 1] = {
-            static_cast<float>(result.normal),
-            {static_cast<float>(result.friction.x()), static_cast<float>(result.friction.y()),
-             static_cast<float>(result.friction.z())}};
+            static_cast<float>(left.normal),
+            {static_cast<float>(left.friction.x()), static_cast<float>(left.friction.y()),
+             static_cast<float>(left.friction.z())}};
     }
-    return violation;
+    return result;
 }
 
 }  // namespace motley::reference

@@ -93,19 +93,34 @@ Eigen::MatrixXd World::mass_of(const Joint& joint, const Block& block) const
                           then[static_cast<std::size_t>(joint.b)]);
 }
 
-void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows)
+void World::find_rows(Joint& joint, double h, const SolverSettings& settings,
+                      std::vector<BlockRow>& rows) const
 {
     std::vector<Block> blocks = blocks_of(joint);
     joint.impulses.resize(blocks.size());
     const auto contacts = static_cast<std::size_t>(std::count_if(
         blocks.begin(), blocks.end(), [](const Block& b) { return b.kind == Block::Kind::contact; }));
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-        const Block& block = blocks[i];
-        BlockRow row{&joint, i,  block, mass_of(joint, block), {},      {}, {},
-                     {},     {}, {},    h * block.most,        contacts};
-        const std::vector<Body>& then = joint.model->keeps_rows_of_start() ? start_ : bodies;
-        const Eigen::Matrix<double, 12, 12> inverse_mass = pair_inverse_mass(
-            then[static_cast<std::size_t>(joint.a)], then[static_cast<std::size_t>(joint.b)]);
+        const double most = h * blocks[i].most;
+        BlockRow row{&joint, i, std::move(blocks[i]), {}, {}, {}, {}, {}, {}, {}, most, contacts};
+        const Eigen::VectorXd& error = row.block.error;
+        aim(row, error, h, settings);
+        if (row.impulse().size() != error.size()) row.impulse() = 0 * error;
+        rows.push_back(std::move(row));
+    }
+}
+
+void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows)
+{
+    const std::size_t first = rows.size();
+    find_rows(joint, h, settings, rows);
+    const std::vector<Body>& then = joint.model->keeps_rows_of_start() ? start_ : bodies;
+    const Eigen::Matrix<double, 12, 12> inverse_mass = pair_inverse_mass(
+        then[static_cast<std::size_t>(joint.a)], then[static_cast<std::size_t>(joint.b)]);
+    for (std::size_t i = first; i < rows.size(); ++i) {
+        BlockRow& row = rows[i];
+        const Block& block = row.block;
+        row.mass = mass_of(joint, block);
         if (block.bounds_torque) {
             row.to_force = block.jacobian.rightCols<3>().transpose();
             row.response = inverse_mass.block<3, 3>(3, 3) + inverse_mass.block<3, 3>(9, 9);
@@ -113,10 +128,7 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
             row.to_force.setIdentity(block.jacobian.rows(), block.jacobian.rows());
             row.response = block.jacobian * inverse_mass * block.jacobian.transpose();
         }
-        aim(row, block.error, h, settings);
-        if (row.impulse().size() != block.error.size()) row.impulse() = 0 * block.error;
         apply(joint.a, joint.b, block.jacobian, row.impulse());
-        rows.push_back(row);
     }
 }
 
@@ -202,8 +214,12 @@ void World::begin_step()
     start_ = bodies;
     for (Joint& joint : joints) {
         joint.approaches.clear();
-        for (const Block& block : blocks_of(joint))
+        const bool recalls = joint.impulses.empty() && !joint.memory.empty();
+        for (const Block& block : blocks_of(joint)) {
             joint.approaches.push_back(speed(joint.a, joint.b, block.jacobian)(0));
+            if (recalls) joint.impulses.emplace_back(Eigen::VectorXd::Zero(block.error.size()));
+        }
+        if (recalls) joint.model->recall(joint.memory, joint.impulses);
         joint.peaks.assign(joint.approaches.size(), 0);
     }
 }

@@ -336,7 +336,9 @@ void Solver::Impl::solve_directly(Scene& scene, float dt, std::span<const Contac
                                   StepReport& report)
 {
     StageClock clock(report);
-    report.direct_violation = reference::step_directly(scene, dt, settings, contacts);
+    const reference::DirectResult result = reference::step_directly(scene, dt, settings, contacts);
+    report.direct_violation = result.violation;
+    report.direct_unsolved = result.unsolved;
     clock.charge(Stage::solve);
     finish(scene, report);
     clock.charge(Stage::store);

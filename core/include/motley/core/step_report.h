@@ -81,6 +81,9 @@ struct StepReport {
     StepMeasures measures;  ///< with SolverSettings::measures; with a budget its residuals alone
     double direct_violation =
         0;  ///< Method::direct: largest left of its equations and inequalities, m/s or rad/s
+    /// Method::direct: islands left with more than 1e-9 m/s or rad/s of it, counted in every substep. 0: all is solved.
+    /// Contradictory joints have no solution; they are met in the least squares, and counted here.
+    std::int64_t direct_unsolved = 0;
     std::int64_t bodies_contained = 0;  ///< bodies frozen in this step because their state was not finite
     BodyId first_contained{};           ///< one of them
 

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "motley/reference/constraints.h"
@@ -52,6 +53,8 @@ class JointModel {
     /// What a joint remembers in lanes, in the order of its type's Memory: of most the impulses in line.
     [[nodiscard]] virtual std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
                                                      double travelled) const;
+    /// The impulses again, from there, as far as they say; `impulses` has the sizes of the blocks.
+    virtual void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const;
     /// What has piled up, from there.
     [[nodiscard]] virtual double travelled_in(const float* /*memory*/) const { return 0; }
 };
@@ -62,6 +65,7 @@ struct Joint {
     std::shared_ptr<const JointModel> model{};
     std::vector<Eigen::VectorXd> impulses{};  ///< of each block, carried from step to step
     double travelled = 0;
+    std::span<const float> memory{};  ///< where impulses are recalled from while there are none
     std::vector<double> approaches{},
         peaks{};  ///< of a step: J v when it began, and the largest impulse, of each block
 };

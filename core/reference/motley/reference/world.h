@@ -8,6 +8,7 @@
 
 #include "motley/core/constraints/contact_definition.h"
 #include "motley/core/settings.h"
+#include "motley/reference/direct_result.h"
 #include "motley/reference/joint.h"
 
 namespace motley::reference {
@@ -30,10 +31,9 @@ class World {
     /// instead of one after another; what a sequential method converges to as its iterations grow. Rigid, with the drift
     /// correction of the settings: baumgarte, or a position solve of all rows at once. Redundant rows share their impulse
     /// with the least norm, contradictory ones are met in the least squares. Restitution comes after the substeps,
-    /// contact by contact, as in step(). Returns the largest violation that is left of the equations and inequalities,
-    /// m/s or rad/s.
-    double step_directly(double dt, const SolverSettings& settings,
-                         const std::vector<ContactPoint>& contacts);
+    /// contact by contact, as in step(). Impulses of the step before are where the search begins.
+    DirectResult step_directly(double dt, const SolverSettings& settings,
+                               const std::vector<ContactPoint>& contacts);
 
     /// What the last step's contact with this key did, N s: along the normal, and across it, on b.
     struct ContactResult {
@@ -44,6 +44,13 @@ class World {
     {
         const auto found = memory_.find(key);
         return found == memory_.end() ? ContactResult{} : found->second;
+    }
+
+    /// Takes over what another step, of this substep, did to its contacts: by key. Joints carry theirs themselves.
+    void recall(double last_substep, std::map<std::uint64_t, ContactResult> contacts)
+    {
+        last_substep_ = last_substep;
+        memory_ = std::move(contacts);
     }
 
   private:
@@ -64,6 +71,7 @@ class World {
     [[nodiscard]] std::vector<Block> blocks_of(const Joint& joint) const;
     [[nodiscard]] Soft contact_softness(int a, int b, double h, const SolverSettings& settings) const;
     void begin_step();
+    void find_rows(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows) const;
     void begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows);
     [[nodiscard]] Eigen::MatrixXd mass_of(const Joint& joint, const Block& block) const;
     void aim(BlockRow& row, const Eigen::VectorXd& error, double h, const SolverSettings& settings) const;
@@ -78,8 +86,8 @@ class World {
                                        double restitution, double h, const SolverSettings& settings) const;
     void finish_contacts(std::vector<ContactRow>& contacts, double h, const SolverSettings& settings);
     void end_step(double h);
-    double solve_substep_directly(double h, const SolverSettings& settings,
-                                  std::vector<ContactRow>& contacts);
+    DirectResult solve_substep_directly(double h, const SolverSettings& settings,
+                                        std::vector<ContactRow>& contacts);
     [[nodiscard]] double position_error() const;
     void project_directly(const std::vector<ContactRow>& contacts, const SolverSettings& settings);
 };
