@@ -42,7 +42,9 @@ FigureBlock FigureWorkspace::take_in(const FigureBlock& block)
     for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
         const auto [kernels, streams, index] = block.joints[i];
         joints_[i] = {kernels,
-                      {.bodies = streams.bodies + index,
+                      {.kind_a = streams.kind_a,
+                       .kind_b = streams.kind_b,
+                       .bodies = streams.bodies + index,
                        .counts = streams.counts + index,
                        .constraints = streams.constraints + index,
                        .rows = take(std::int64_t{kernels->row_floats} * block_lanes),

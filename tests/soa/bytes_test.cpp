@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "block.h"
+#include "kernel_table.h"
 
 namespace motley {
 namespace {
