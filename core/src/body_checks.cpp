@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "motley/core/built.h"
 #include "motley/core/invalid_input.h"
 
 namespace motley {
@@ -115,6 +116,7 @@ void check_definition(const BodyDefinition& d)
     }
     check_velocity_of(d.model, d.motion, &d.linear_velocity, &d.angular_velocity);
     if (fixed) return;
+    check_model_is_built(d.model);
     check("BodyDefinition.mass", d.mass, lightest_body, heaviest_body, "1e-10 to 1e10 (kg)");
     if (d.model == BodyModel::planar) check_moment("BodyDefinition.inertia.zz", d.inertia.zz);
     if (d.model == BodyModel::rigid) check_inertia(d.inertia);

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "motley/core/built.h"
 #include "motley/core/invalid_input.h"
 
 namespace motley {
 
-JointBodies Scene::check_joint_bodies(BodyId a, BodyId b) const
+JointBodies Scene::check_joint_bodies(int type, BodyId a, BodyId b) const
 {
+    check_joint_is_built(type);
     require_alive(a, "joint.body_a");
     require_alive(b, "joint.body_b");
     if (a == b) refuse("joint.body_b", "the same body as body_a", "two different bodies");

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <string>
+#include <type_traits>
 
 #include "kernel_entries.h"
 #include "kernel_table.h"
@@ -101,13 +102,26 @@ Isa default_isa()
 
 namespace {
 
+#ifdef MOTLEY_BUILT_TYPES
+using BuiltLists = TypeList<MOTLEY_BUILT_TYPES>;
+#else
+using BuiltLists = ConstraintLists;
+#endif
+template <class List, class... Built>
+constexpr bool is_built(TypeList<Built...>)
+{
+    return (std::is_same_v<List, Built> || ...);
+}
+
 template <Isa isa, class... Lists>
 void enter_constraints(KernelTable& table, TypeList<Lists...>)
 {
     ConstraintKernels* next = table.constraints;
     const auto enter = [&]<class Types>(Types) {
-        enter_constraint_kernels<isa, KernelShare::swept, Types>(next);
-        enter_constraint_kernels<isa, KernelShare::rare, Types>(next);
+        if constexpr (is_built<Types>(BuiltLists{})) {
+            enter_constraint_kernels<isa, KernelShare::swept, Types>(next);
+            enter_constraint_kernels<isa, KernelShare::rare, Types>(next);
+        }
         next += class_of(Types::size, BodyKind{}, BodyKind{});
     };
     (enter(Lists{}), ...);
@@ -122,7 +136,9 @@ const KernelTable& table_of()
         if constexpr (isa != Isa::scalar) entered = table_of<Isa::scalar>();
         enter_constraints<isa>(entered, ConstraintLists{});
         enter_body_kernels<isa>(entered.bodies, entered.figures);
+#ifndef MOTLEY_WITHOUT_TREES
         enter_tree_kernels<isa>(entered.figures);
+#endif
         return entered;
     }();
     return table;

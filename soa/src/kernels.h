@@ -8,6 +8,26 @@
 
 #include "kernel_constraints.h"
 
+constexpr bool is_built(BodyKind kind)
+{
+    switch (kind) {
+#ifdef MOTLEY_WITHOUT_PARTICLE
+        case BodyKind::particle:
+            return false;
+#endif
+#ifdef MOTLEY_WITHOUT_PLANAR
+        case BodyKind::planar:
+            return false;
+#endif
+#ifdef MOTLEY_WITHOUT_RIGID
+        case BodyKind::rigid:
+            return false;
+#endif
+        default:
+            return true;
+    }
+}
+
 /// Whether there is such a pair at all: two bodies that cannot move need no constraint, a particle has no axes to lock, and
 /// the scene refuses both.
 template <class Type, BodyKind a, BodyKind b>
@@ -15,7 +35,8 @@ constexpr bool occurs()
 {
     constexpr bool moves = a != BodyKind::fixed || b != BodyKind::fixed;
     constexpr bool has_particle = a == BodyKind::particle || b == BodyKind::particle;
-    return moves && !(has_particle && requires { Type::needs_bodies_that_turn; });
+    return is_built(a) && is_built(b) && moves &&
+           !(has_particle && requires { Type::needs_bodies_that_turn; });
 }
 /// Moving bodies of two models.
 constexpr bool is_mixed(BodyKind a, BodyKind b)

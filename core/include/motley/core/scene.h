@@ -162,7 +162,7 @@ class Scene {
     }
     [[noreturn]] static void refuse_dead(BodyId body, const char* what);
     void require_alive(std::span<const BodyId> bodies, const char* what) const;
-    JointBodies check_joint_bodies(BodyId a, BodyId b) const;
+    JointBodies check_joint_bodies(int type, BodyId a, BodyId b) const;
     static void check_break_limit(const BreakLimit& limit);
     static void check_wish(const char* field, int at_least);
     void check_island_wish(const IslandIterations& asked) const;
@@ -180,7 +180,7 @@ ConstraintId Scene::add_joint(const Definition& definition)
     constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
     auto& store = std::get<static_cast<std::size_t>(type)>(joints_.stores);
     using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-    Type::validate(definition, check_joint_bodies(definition.body_a, definition.body_b));
+    Type::validate(definition, check_joint_bodies(type, definition.body_a, definition.body_b));
     joints_.make_room();
     store.make_room();
     const ConstraintId id = take_joint_slot(type, store.size());
@@ -201,7 +201,7 @@ void Scene::set_joint(ConstraintId joint, const Definition& definition)
     const Definition& now = store.definitions[index];
     if (definition.body_a != now.body_a || definition.body_b != now.body_b)
         refuse("set_joint.definition", "other bodies", "the bodies of the joint");
-    Type::validate(definition, check_joint_bodies(definition.body_a, definition.body_b));
+    Type::validate(definition, check_joint_bodies(type, definition.body_a, definition.body_b));
     if constexpr (requires { Type::equality_count; }) {
         // What locks is laid out by itself.
         if (Type::is_equality(definition) != Type::is_equality(now)) joints_.version.reset();
