@@ -10,6 +10,7 @@
 #include "median.h"
 #include "motley/core/aligned_vector.h"
 #include "motley/core/lane_body.h"
+#include "motley/core/step_constants.h"
 #include "tie_net.h"
 
 namespace motley::bench {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motley/core/joint_store.h"
 #include "trial.h"
 
 namespace motley::bench {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motley/core/joint_store.h"
 #include "motley/reference/joint_models.h"
 #include "motley/reference/world.h"
 

@@ -3,6 +3,7 @@
 
 #include "motley/core/body_checks.h"
 #include "motley/core/invalid_input.h"
+#include "motley/core/joint_store.h"
 
 namespace motley {
 
@@ -62,7 +63,7 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
 void Scene::renumber_bodies()
 {
     bodies_.renumber();
-    joints_.version.reset();  // blocks name rows
+    joints_->version.reset();  // blocks name rows
 }
 
 bool Scene::is_alive(BodyId body) const

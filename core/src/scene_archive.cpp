@@ -130,7 +130,7 @@ void SceneArchive::check_bodies(const Scene& scene)
 void SceneArchive::check_joints(const Scene& scene)
 {
     const BodyStore& bodies = scene.bodies_;
-    const JointStores& joints = scene.joints_;
+    const JointStores& joints = *scene.joints_;
     demand(!joints.slots.empty() && joints.slots[0].live == 0, "a joint of the null handle");
     std::vector<std::uint32_t> colours(bodies.slots_.size(), 0);  // a bit for each that touches a body
     std::size_t count = 0;
@@ -192,7 +192,7 @@ void SceneArchive::check(const Scene& scene)
 void SceneArchive::derive(Scene& scene)
 {
     BodyStore& bodies = scene.bodies_;
-    JointStores& joints = scene.joints_;
+    JointStores& joints = *scene.joints_;
     bodies.derive();
     bodies.first_ends.assign(bodies.slots_.size(), 0);
     joints.ends.assign(2 * joints.slots.size(), {});

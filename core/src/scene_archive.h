@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "motley/core/joint_store.h"
 #include "motley/core/scene.h"
 
 namespace motley {
@@ -81,7 +82,7 @@ struct SceneArchive {
     static void visit(Archive& archive, S& scene)
     {
         visit_bodies(archive, scene.bodies_);
-        visit_joints(archive, scene.joints_);
+        visit_joints(archive, *scene.joints_);
         visit_contacts(archive, scene.contacts_);
         archive(scene.island_iterations_);
         archive(scene.ground_);

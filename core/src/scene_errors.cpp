@@ -1,4 +1,5 @@
 // A scene as a whole: the hash of its state, and how far it is from what its joints want.
+#include "motley/core/joint_store.h"
 #include "motley/core/scene.h"
 
 #include <cmath>
@@ -50,7 +51,7 @@ SceneErrors Scene::errors() const
     SceneErrors errors;
     double squares = 0, angle_squares = 0;
     std::size_t count = 0;
-    joints_.for_each([&](const auto& store, int) {
+    joints_->for_each([&](const auto& store, int) {
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         if constexpr (requires { Type::only_pulls; }) return;  // what it is from its target is no error
         for (std::size_t i = 0; i < store.size(); ++i) {

@@ -1,14 +1,23 @@
 // Joints that come and go, and what they and contacts did.
+#include "motley/core/joint_store.h"
 #include "motley/core/scene.h"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "motley/core/built.h"
 #include "motley/core/invalid_input.h"
 
 namespace motley {
+
+template class Boxed<JointStores>;
+
+bool Scene::asks_for_iterations() const
+{
+    return joints_->with_iterations > 0 || !island_iterations_.empty();
+}
 
 JointBodies Scene::check_joint_bodies(int type, BodyId a, BodyId b) const
 {
@@ -26,15 +35,15 @@ JointBodies Scene::check_joint_bodies(int type, BodyId a, BodyId b) const
 ConstraintId Scene::take_joint_slot(int type, std::size_t index)
 {
     std::uint32_t slot;
-    if (joints_.free_slots.empty()) {
-        slot = static_cast<std::uint32_t>(joints_.slots.size());
-        joints_.slots.emplace_back();
-        joints_.ends.resize(2 * joints_.slots.size());
+    if (joints_->free_slots.empty()) {
+        slot = static_cast<std::uint32_t>(joints_->slots.size());
+        joints_->slots.emplace_back();
+        joints_->ends.resize(2 * joints_->slots.size());
     } else {
-        slot = joints_.free_slots.back();
-        joints_.free_slots.pop_back();
+        slot = joints_->free_slots.back();
+        joints_->free_slots.pop_back();
     }
-    JointStores::Slot& entry = joints_.slots[slot];
+    JointStores::Slot& entry = joints_->slots[slot];
     if (++entry.generation == 0) entry.generation = 1;
     entry.index = static_cast<std::uint32_t>(index);
     entry.type = static_cast<std::uint8_t>(type);
@@ -49,39 +58,40 @@ std::size_t Scene::index_of_joint(ConstraintId joint, int type) const
 {
     if (!is_alive(joint))
         refuse("joint", joint.generation == 0 ? "null" : "removed", "a joint of this scene");
-    const JointStores::Slot& slot = joints_.slots[joint.slot];
+    const JointStores::Slot& slot = joints_->slots[joint.slot];
     if (slot.type != type) refuse("set_joint.definition", "of another type", "the type of the joint");
     return slot.index;
 }
 
 bool Scene::is_alive(ConstraintId joint) const
 {
-    return joint.slot < joints_.slots.size() && joints_.slots[joint.slot].live != 0 &&
-           joints_.slots[joint.slot].generation == joint.generation;
+    return joint.slot < joints_->slots.size() && joints_->slots[joint.slot].live != 0 &&
+           joints_->slots[joint.slot].generation == joint.generation;
 }
 
 std::size_t Scene::joint_count() const
 {
     std::size_t count = 0;
-    joints_.for_each([&](const auto& store, int) { count += store.size(); });
+    joints_->for_each([&](const auto& store, int) { count += store.size(); });
     return count;
 }
 
 void Scene::remove_joint_at(int type, std::size_t index)
 {
-    joints_.for_each([&](auto& store, int t) {
+    joints_->for_each([&](auto& store, int t) {
         if (t != type) return;
-        JointStores::Slot& entry = joints_.slots[store.slots[index]];
+        JointStores::Slot& entry = joints_->slots[store.slots[index]];
         entry.live = 0;
-        if (entry.iterations != 0) --joints_.with_iterations;
+        if (entry.iterations != 0) --joints_->with_iterations;
         const std::uint32_t slot = store.slots[index];
-        joints_.free_slots.push_back(slot);
-        joints_.unlink(2 * slot, bodies_.first_ends[store.definitions[index].body_a.slot]);
-        joints_.unlink(2 * slot + 1, bodies_.first_ends[store.definitions[index].body_b.slot]);
+        joints_->free_slots.push_back(slot);
+        joints_->unlink(2 * slot, bodies_.first_ends[store.definitions[index].body_a.slot]);
+        joints_->unlink(2 * slot + 1, bodies_.first_ends[store.definitions[index].body_b.slot]);
         store.swap_remove(index);
-        if (index < store.size()) joints_.slots[store.slots[index]].index = static_cast<std::uint32_t>(index);
+        if (index < store.size())
+            joints_->slots[store.slots[index]].index = static_cast<std::uint32_t>(index);
     });
-    joints_.version.reset();
+    joints_->version.reset();
 }
 
 void Scene::remove_joint(ConstraintId joint)
@@ -90,14 +100,14 @@ void Scene::remove_joint(ConstraintId joint)
         refuse("remove_joint.joint", "slot " + std::to_string(joint.slot) + ", not alive",
                "a joint of this scene");
     }
-    remove_joint_at(joints_.slots[joint.slot].type, joints_.slots[joint.slot].index);
+    remove_joint_at(joints_->slots[joint.slot].type, joints_->slots[joint.slot].index);
 }
 
 void Scene::remove_joints_of(std::span<const BodyId> bodies)
 {
     std::vector<std::pair<int, std::uint32_t>> going;  // type and index
     for (const BodyId body : bodies) {
-        joints_.for_each_on(bodies_.first_ends[body.slot], [&](const JointStores::Slot& joint) {
+        joints_->for_each_on(bodies_.first_ends[body.slot], [&](const JointStores::Slot& joint) {
             going.emplace_back(joint.type, joint.index);
         });
     }
@@ -135,8 +145,8 @@ void Scene::set_break_limit(ConstraintId joint, const BreakLimit& limit)
                "a joint of this scene");
     }
     check_break_limit(limit);
-    JointStores::Slot& slot = joints_.slots[joint.slot];
-    if (slot.watched == 0) joints_.watched.push_back(joint);
+    JointStores::Slot& slot = joints_->slots[joint.slot];
+    if (slot.watched == 0) joints_->watched.push_back(joint);
     slot.watched = 1;
     slot.break_limit = limit;
 }
@@ -148,8 +158,8 @@ void Scene::set_iterations(ConstraintId joint, int at_least)
                "a joint of this scene");
     }
     check_wish("set_iterations.at_least", at_least);
-    std::uint16_t& iterations = joints_.slots[joint.slot].iterations;
-    joints_.with_iterations += (at_least != 0 ? 1U : 0U) - (iterations != 0 ? 1U : 0U);
+    std::uint16_t& iterations = joints_->slots[joint.slot].iterations;
+    joints_->with_iterations += (at_least != 0 ? 1U : 0U) - (iterations != 0 ? 1U : 0U);
     iterations = static_cast<std::uint16_t>(at_least);
 }
 
@@ -163,21 +173,21 @@ void Scene::set_island_iterations(BodyId body, int at_least)
 
 void Scene::make_room_for_break_events()
 {
-    break_events_.reserve(joints_.watched.size());
+    break_events_.reserve(joints_->watched.size());
 }
 
 void Scene::find_break_events() noexcept
 {
     break_events_.clear();
-    std::erase_if(joints_.watched, [&](ConstraintId joint) {
+    std::erase_if(joints_->watched, [&](ConstraintId joint) {
         if (!is_alive(joint)) return true;
-        JointStores::Slot& slot = joints_.slots[joint.slot];
+        JointStores::Slot& slot = joints_->slots[joint.slot];
         const bool asks = !std::isinf(slot.break_limit.force) || !std::isinf(slot.break_limit.torque);
         slot.watched = asks ? 1 : 0;
         return !asks;
     });
-    for (const ConstraintId joint : joints_.watched) {
-        const BreakLimit& limit = joints_.slots[joint.slot].break_limit;
+    for (const ConstraintId joint : joints_->watched) {
+        const BreakLimit& limit = joints_->slots[joint.slot].break_limit;
         const JointReport report = joint_report(joint);
         const float force = std::sqrt(dot(report.force, report.force));
         const float torque = std::sqrt(dot(report.torque, report.torque));
@@ -191,10 +201,10 @@ JointReport Scene::joint_report(ConstraintId joint) const
         refuse("joint_report.joint", "slot " + std::to_string(joint.slot) + ", not alive",
                "a joint of this scene");
     }
-    const JointStores::Slot& entry = joints_.slots[joint.slot];
+    const JointStores::Slot& entry = joints_->slots[joint.slot];
     const double inverse_substep = last_substep > 0 ? 1 / static_cast<double>(last_substep) : 0;
     JointReport result;
-    joints_.for_each([&](const auto& store, int type) {
+    joints_->for_each([&](const auto& store, int type) {
         if (type != entry.type) return;
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         const auto& definition = store.definitions[entry.index];
@@ -222,5 +232,56 @@ JointReport Scene::contact_report(std::span<const Contact> contacts, std::size_t
     report.state = impulse.normal > 0 ? JointState::active : JointState::inactive;
     return report;
 }
+
+template <class Definition>
+ConstraintId Scene::add_joint(const Definition& definition)
+{
+    constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
+    auto& store = std::get<static_cast<std::size_t>(type)>(joints_->stores);
+    using Type = typename std::remove_cvref_t<decltype(store)>::Type;
+    Type::validate(definition, check_joint_bodies(type, definition.body_a, definition.body_b));
+    joints_->make_room();
+    store.make_room();
+    const ConstraintId id = take_joint_slot(type, store.size());
+    store.push_back(definition, id.slot);
+    joints_->link(2 * id.slot, bodies_.first_ends[definition.body_a.slot]);
+    joints_->link(2 * id.slot + 1, bodies_.first_ends[definition.body_b.slot]);
+    joints_->version.reset();
+    return id;
+}
+
+template <class Definition>
+void Scene::set_joint(ConstraintId joint, const Definition& definition)
+{
+    constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
+    auto& store = std::get<static_cast<std::size_t>(type)>(joints_->stores);
+    using Type = typename std::remove_cvref_t<decltype(store)>::Type;
+    const std::size_t index = index_of_joint(joint, type);
+    const Definition& now = store.definitions[index];
+    if (definition.body_a != now.body_a || definition.body_b != now.body_b)
+        refuse("set_joint.definition", "other bodies", "the bodies of the joint");
+    Type::validate(definition, check_joint_bodies(type, definition.body_a, definition.body_b));
+    if constexpr (requires { Type::equality_count; }) {
+        // What locks is laid out by itself.
+        if (Type::is_equality(definition) != Type::is_equality(now)) joints_->version.reset();
+    }
+    store.define(index, definition);
+}
+
+namespace {
+
+/// Has both calls compiled for every type in the list.
+template <class List>
+struct JointCalls;
+template <class... Types>
+struct JointCalls<TypeList<Types...>> {
+    std::tuple<ConstraintId (Scene::*)(const typename Types::Definition&)...> add{
+        &Scene::add_joint<typename Types::Definition>...};
+    std::tuple<void (Scene::*)(ConstraintId, const typename Types::Definition&)...> set{
+        &Scene::set_joint<typename Types::Definition>...};
+};
+[[gnu::used]] const JointCalls<JointTypes> joint_calls;
+
+}  // namespace
 
 }  // namespace motley

@@ -6,6 +6,7 @@
 
 #include "motley/core/body_checks.h"
 #include "motley/core/invalid_input.h"
+#include "motley/core/joint_store.h"
 
 namespace motley {
 
@@ -59,8 +60,8 @@ void Scene::set_pose(BodyId body, const Vec3<double>& position, const Quat<doubl
             bodies_.refresh_world_inertia(where.row());
     }
     // A teleport makes the cached impulses meaningless.
-    joints_.for_each_on(bodies_.first_ends[body.slot], [&](const JointStores::Slot& joint) {
-        joints_.for_each([&](auto& store, int type) {
+    joints_->for_each_on(bodies_.first_ends[body.slot], [&](const JointStores::Slot& joint) {
+        joints_->for_each([&](auto& store, int type) {
             if (type == joint.type) store.forget_impulse(joint.index);
         });
     });
@@ -169,7 +170,7 @@ void Scene::revive(BodyId body, const Vec3<double>& position, const Vec3<float>&
     check_position("revive.position", position);
     check_velocity(body, &linear, nullptr);
     bodies_.revive(body);
-    joints_.version.reset();
+    joints_->version.reset();
     bodies_.rows(bodies_.row_of(body).kind()).pose[bodies_.row_of(body).row()].position =
         convert<PoseReal>(position);
     write_velocity(body, &linear, nullptr);

@@ -1,5 +1,6 @@
 // Files of scenes: a header that says what they are, the fields, and a checksum over both.
 #include "motley/core/snapshot.h"
+#include "motley/core/joint_store.h"
 
 #include <unistd.h>
 

@@ -12,6 +12,7 @@
 #include "convergence.h"
 #include "layout.h"
 #include "motley/core/invalid_input.h"
+#include "motley/core/joint_store.h"
 #include "motley/core/step_constants.h"
 #include "motley/reference/scene_step.h"
 #include "stage_runner.h"

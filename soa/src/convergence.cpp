@@ -1,5 +1,6 @@
 // Islands by union-find, residuals and wishes by block.
 #include "convergence.h"
+#include "motley/core/joint_store.h"
 
 #include <algorithm>
 #include <bit>

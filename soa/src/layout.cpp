@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "motley/core/growth.h"
+#include "motley/core/joint_store.h"
 
 namespace motley {
 namespace {

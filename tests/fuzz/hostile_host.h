@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "motley/core/joint_store.h"
 #include "motley/motley.h"
 
 namespace motley::testing {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "joint_cases.h"
+#include "motley/core/joint_store.h"
 #include "rig.h"
 
 namespace motley {

@@ -7,16 +7,21 @@
 
 #include "motley/core/body.h"
 #include "motley/core/body_store.h"
+#include "motley/core/boxed.h"
 #include "motley/core/busy_flag.h"
-#include "motley/core/constraint_types.h"
 #include "motley/core/contact_cache.h"
 #include "motley/core/ids.h"
+#include "motley/core/invalid_input.h"
+#include "motley/core/joint_definitions.h"
 #include "motley/core/joint_report.h"
-#include "motley/core/joint_store.h"
 #include "motley/core/step_report.h"
 #include "motley/core/strided_span.h"
 
 namespace motley {
+
+struct JointBodies;
+struct JointStores;
+extern template class Boxed<JointStores>;
 
 /// Holds everything that decides what the next step computes. Every call that is refused throws
 /// InvalidInput and changes nothing; so does one for which memory runs out, which throws std::bad_alloc. A scene that was
@@ -74,7 +79,7 @@ class Scene {
     void read_yaws(std::span<const BodyId> bodies, StridedSpan<double> yaws) const;
 
     // ---- joints -------------------------------------------------------------------------------------------
-    /// Adds a joint of any registered type: add_joint(BallSocketDefinition{...}).
+    /// Adds a joint of any type of joint_definitions.h: add_joint(BallSocketDefinition{...}).
     template <class Definition>
     ConstraintId add_joint(const Definition& definition);
     /// Says a joint anew: a motor's speed, a servo's target, a limit. Type and bodies stay as they are, and so does what
@@ -121,10 +126,7 @@ class Scene {
 
     // ---- for the solver
     // ------------------------------------------------------------------------------------
-    [[nodiscard]] bool asks_for_iterations() const
-    {
-        return joints_.with_iterations > 0 || !island_iterations_.empty();
-    }
+    [[nodiscard]] bool asks_for_iterations() const;
     struct IslandIterations {
         BodyId body;
         int at_least;
@@ -132,8 +134,8 @@ class Scene {
     [[nodiscard]] std::span<const IslandIterations> island_iterations() const { return island_iterations_; }
     [[nodiscard]] const BodyStore& bodies() const { return bodies_; }
     [[nodiscard]] BodyStore& bodies() { return bodies_; }
-    [[nodiscard]] const JointStores& joints() const { return joints_; }
-    [[nodiscard]] JointStores& joints() { return joints_; }
+    [[nodiscard]] const JointStores& joints() const { return *joints_; }
+    [[nodiscard]] JointStores& joints() { return *joints_; }
     [[nodiscard]] ContactCache& contact_cache() { return contacts_; }
     [[nodiscard]] const ContactCache& contact_cache() const { return contacts_; }
     /// Room for a break event of each watched joint; then looking for them allocates nothing.
@@ -148,7 +150,7 @@ class Scene {
   private:
     friend struct SceneArchive;
     BodyStore bodies_;
-    JointStores joints_;
+    Boxed<JointStores> joints_;
     ContactCache contacts_;
     std::vector<BreakEvent> break_events_;             ///< with room for every watched joint
     std::vector<IslandIterations> island_iterations_;  ///< of bodies alive
@@ -173,40 +175,5 @@ class Scene {
     void write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular);
     void check_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular) const;
 };
-
-template <class Definition>
-ConstraintId Scene::add_joint(const Definition& definition)
-{
-    constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
-    auto& store = std::get<static_cast<std::size_t>(type)>(joints_.stores);
-    using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-    Type::validate(definition, check_joint_bodies(type, definition.body_a, definition.body_b));
-    joints_.make_room();
-    store.make_room();
-    const ConstraintId id = take_joint_slot(type, store.size());
-    store.push_back(definition, id.slot);
-    joints_.link(2 * id.slot, bodies_.first_ends[definition.body_a.slot]);
-    joints_.link(2 * id.slot + 1, bodies_.first_ends[definition.body_b.slot]);
-    joints_.version.reset();
-    return id;
-}
-
-template <class Definition>
-void Scene::set_joint(ConstraintId joint, const Definition& definition)
-{
-    constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
-    auto& store = std::get<static_cast<std::size_t>(type)>(joints_.stores);
-    using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-    const std::size_t index = index_of_joint(joint, type);
-    const Definition& now = store.definitions[index];
-    if (definition.body_a != now.body_a || definition.body_b != now.body_b)
-        refuse("set_joint.definition", "other bodies", "the bodies of the joint");
-    Type::validate(definition, check_joint_bodies(type, definition.body_a, definition.body_b));
-    if constexpr (requires { Type::equality_count; }) {
-        // What locks is laid out by itself.
-        if (Type::is_equality(definition) != Type::is_equality(now)) joints_.version.reset();
-    }
-    store.define(index, definition);
-}
 
 }  // namespace motley
