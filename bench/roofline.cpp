@@ -9,6 +9,7 @@
 #include "clock.h"
 #include "median.h"
 #include "motley/core/aligned_vector.h"
+#include "motley/core/constraint_types.h"
 #include "motley/core/lane_body.h"
 #include "motley/core/step_constants.h"
 #include "tie_net.h"
