@@ -86,6 +86,7 @@ void write_report(const ReportOptions& options)
 {
     require_gnuplot();
     Report report;
+    const int rounds = options.quick ? 1 : options.rounds;
     report.machine = machine_facts();
     for (const std::string& wanted : options.scenes) {
         if (std::none_of(std::begin(page_scenes), std::end(page_scenes),
@@ -98,14 +99,14 @@ void write_report(const ReportOptions& options)
             continue;
         SweepOptions sweep_options;
         sweep_options.agents = options.quick ? scene.quick_bodies : scene.bodies;
-        sweep_options.seconds = scene.seconds;
-        sweep_options.rounds = options.rounds;
+        sweep_options.seconds = options.quick ? scene.seconds / 2 : scene.seconds;
+        sweep_options.rounds = rounds;
         sweep_options.with_peers = options.with_peers;
         report.sweeps.push_back(sweep(scene.name, {}, sweep_options));
         fmt::print("{}\n", table_of(report.sweeps.back()));
     }
-    report.ways = measure_ways(options.rounds, true);
-    report.costs = measure_costs(options.rounds, true);
+    report.ways = measure_ways(rounds, true);
+    report.costs = measure_costs(rounds, true);
     report.limits = measure_machine(default_isa());
     report.kernels = measure_kernels(default_isa());
     report.machine.load_after = host_load();
