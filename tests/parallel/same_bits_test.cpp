@@ -30,10 +30,10 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 13381041482605015285ULL},
-            {"baumgarte", iterative, 17078524211299489192ULL},
-            {"no drift correction", none, 888322108131994858ULL},
-            {"projection", projection, 8821261560627049049ULL}};
+    return {{"soft_step", soft, 11094586000837920413ULL},
+            {"baumgarte", iterative, 577689457075719001ULL},
+            {"no drift correction", none, 8439568581126519827ULL},
+            {"projection", projection, 16973389768830643294ULL}};
 }
 
 /// The state's hash after every step.
@@ -89,8 +89,8 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {4391953273081205932ULL, 9928486930215834024ULL, 17432216991351669175ULL,
-                                    11970503643310706723ULL};
+    const std::uint64_t golden[] = {999422503252573740ULL, 3019618004808372688ULL, 12823961842061033711ULL,
+                                    10625837826666248344ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});
