@@ -45,7 +45,7 @@ class Part {
         units_.reserve(groups.size());
         for (RowGroup* group : groups) {
             Unit unit{.group = group};
-            for (std::size_t side = 0; side < 2; ++side) {
+            for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
                 const int body = group->bodies[side];
                 unit.bodies[side] = body < 0 ? -1 : place[static_cast<std::size_t>(body)];
             }
@@ -86,9 +86,9 @@ class Part {
     enum class Where : std::uint8_t { inside, low, high, slides };
     struct Unit {
         RowGroup* group;
-        std::array<int, 2> bodies{-1, -1};
-        int node = -1;             ///< of the rows of a joint
-        Column offset{}, scale{};  ///< scale: 1 / K_ii; 0 of a row that cannot move
+        std::array<int, RowGroup::most_bodies> bodies{-1, -1, -1};
+        int node = -1;                      ///< of the rows of a joint
+        Column offset{}, share{}, scale{};  ///< scale: 1 / K_ii; 0 of a row that cannot move
         Column w{}, map{}, step{}, start{}, best{};
         Square e{}, f{}, law{};  ///< law: D
         Column drive{};          ///< s
@@ -116,9 +116,13 @@ class Part {
         for (Unit& unit : units_) {
             RowGroup& group = *unit.group;
             unit.scale = Column::Zero(group.size());
-            for (std::size_t side = 0; side < 2; ++side) {
+            for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
                 if (unit.bodies[side] >= 0) unit.scale += group.jacobian[side].rowwise().squaredNorm();
             }
+            // Of the K that epsilon is a share of: not what a common spin adds, which has next to no inertia.
+            unit.share = unit.scale;
+            if (unit.bodies[2] >= 0) unit.share -= group.jacobian[2].rowwise().squaredNorm();
+            unit.share = (unit.scale.array() > 0).select(unit.share.cwiseQuotient(unit.scale), 1);
             if (group.softness.size() > 0) unit.scale += group.softness.diagonal();
             if (group.size() > 0) largest = std::max(largest, unit.scale.maxCoeff());
         }
@@ -128,7 +132,7 @@ class Part {
     Column speed(const Unit& unit, VectorXd& y) const
     {
         Column sum = Column::Zero(unit.group->size());
-        for (std::size_t side = 0; side < 2; ++side) {
+        for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
             if (unit.bodies[side] >= 0)
                 sum.noalias() += unit.group->jacobian[side] * of_body(y, unit.bodies[side]);
         }
@@ -136,7 +140,7 @@ class Part {
     }
     void push(const Unit& unit, const Column& lambda, VectorXd& y) const
     {
-        for (std::size_t side = 0; side < 2; ++side) {
+        for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
             if (unit.bodies[side] >= 0)
                 of_body(y, unit.bodies[side]).noalias() += unit.group->jacobian[side].transpose() * lambda;
         }
@@ -153,8 +157,12 @@ class Part {
             for (const int body : unit.bodies) {
                 if (unit.node >= 0 && body >= 0) pairs.emplace_back(body, unit.node);
             }
-            if (unit.node < 0 && unit.bodies[0] >= 0 && unit.bodies[1] >= 0)
-                pairs.emplace_back(unit.bodies[0], unit.bodies[1]);
+            for (std::size_t a = 0; unit.node < 0 && a < unit.bodies.size(); ++a) {
+                for (std::size_t b = 0; b < a; ++b) {
+                    if (unit.bodies[a] >= 0 && unit.bodies[b] >= 0)
+                        pairs.emplace_back(unit.bodies[a], unit.bodies[b]);
+                }
+            }
         }
         system_.lay_out(nodes_, bodies_, pairs);
     }
@@ -227,7 +235,7 @@ class Part {
         f.setZero(n, n);
         for (int i = 0; i < n; ++i) {
             const bool inside = unit.where[static_cast<std::size_t>(i)] == Where::inside;
-            e(i, i) = inside ? epsilon_ : 1;
+            e(i, i) = inside ? epsilon_ * unit.share(i) : 1;
             if (inside) f(i, i) = unit.scale(i);
         }
         for (const Cone& cone : group.cones) {
@@ -276,7 +284,7 @@ class Part {
     {
         const int n = unit.group->size();
         system_.at(unit.node, unit.node).topLeftCorner(n, n) = unit.e;
-        for (std::size_t side = 0; side < 2; ++side) {
+        for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
             if (unit.bodies[side] < 0) continue;
             system_.at(unit.node, unit.bodies[side]).topRows(n).noalias() +=
                 unit.f * unit.group->jacobian[side];
@@ -285,11 +293,11 @@ class Part {
     }
     void enter_contact(const Unit& unit)
     {
-        for (std::size_t a = 0; a < 2; ++a) {
+        for (std::size_t a = 0; a < RowGroup::most_bodies; ++a) {
             if (unit.bodies[a] < 0) continue;
             const Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, RowGroup::most_rows> left =
                 unit.group->jacobian[a].transpose() * unit.law;
-            for (std::size_t b = 0; b < 2; ++b) {
+            for (std::size_t b = 0; b < RowGroup::most_bodies; ++b) {
                 if (unit.bodies[b] >= 0)
                     system_.at(unit.bodies[a], unit.bodies[b]).noalias() += left * unit.group->jacobian[b];
             }
@@ -343,7 +351,7 @@ class Part {
         for (Unit& unit : units_) {
             for (int i = 0; i < unit.group->size(); ++i) {
                 if (unit.where[static_cast<std::size_t>(i)] == Where::inside && unit.scale(i) > 0)
-                    unit.offset(i) += epsilon_ / unit.scale(i) * unit.step(i);
+                    unit.offset(i) += epsilon_ * unit.share(i) / unit.scale(i) * unit.step(i);
             }
         }
     }
@@ -354,7 +362,7 @@ class Part {
         for (const Unit& unit : units_) {
             for (int i = 0; i < unit.group->size(); ++i) {
                 if (unit.where[static_cast<std::size_t>(i)] == Where::inside && unit.scale(i) > 0)
-                    left = std::max(left, std::abs(epsilon_ / unit.scale(i) * unit.step(i)));
+                    left = std::max(left, std::abs(epsilon_ * unit.share(i) / unit.scale(i) * unit.step(i)));
             }
         }
         return left > 0.5 * now.violation;
@@ -363,7 +371,7 @@ class Part {
     void iterate()
     {
         keep_best(look());
-        newton(15);
+        newton(is_linear_ ? 40 : 15);
         // Stuck at a kink of the map that is no solution: full steps lead away from it, rows that are all but redundant
         // pull until one of their bounds gives, and sweeps come to another face of the cones.
         for (int attempt = 0; attempt < 4 && !is_linear_ && least_ > rounding; ++attempt) {
@@ -438,14 +446,14 @@ class Part {
             };
             const auto w_of = [&](int i) {
                 double w = unit.offset(i) + soft(i);
-                for (std::size_t side = 0; side < 2; ++side) {
+                for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
                     if (unit.bodies[side] >= 0)
                         w += group.jacobian[side].row(i).dot(of_body(change, unit.bodies[side]));
                 }
                 return w;
             };
             const auto set = [&](int i, double lambda) {
-                for (std::size_t side = 0; side < 2; ++side) {
+                for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
                     if (unit.bodies[side] >= 0)
                         of_body(change, unit.bodies[side]) +=
                             (lambda - group.lambda(i)) * group.jacobian[side].row(i).transpose();
@@ -486,9 +494,12 @@ std::vector<int> parts_of(const Problem& problem)
         return i;
     };
     for (const RowGroup& group : problem.groups) {
-        if (group.bodies[0] < 0 || group.bodies[1] < 0) continue;
-        const int a = find(group.bodies[0]), b = find(group.bodies[1]);
-        leader[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+        const int any = *std::max_element(group.bodies.begin(), group.bodies.end());
+        for (const int body : group.bodies) {
+            if (body < 0) continue;
+            const int a = find(any), b = find(body);
+            leader[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+        }
     }
     for (std::size_t i = 0; i < leader.size(); ++i) leader[i] = find(static_cast<int>(i));
     return leader;
@@ -510,7 +521,7 @@ Solution solve(Problem& problem)
         part.push_back(static_cast<int>(i));
     }
     for (RowGroup& group : problem.groups) {
-        const int body = std::max(group.bodies[0], group.bodies[1]);
+        const int body = *std::max_element(group.bodies.begin(), group.bodies.end());
         if (body < 0) {
             group.lambda.setZero();  // between bodies that nothing moves
         } else {

@@ -24,9 +24,10 @@ struct RowGroup {
     using Square =
         Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_rows, most_rows>;
 
-    std::array<int, 2> bodies{-1, -1};  ///< whose velocities the rows take; -1 is nobody
-    std::array<Rows<6>, 2> jacobian{};  ///< over velocities scaled such that every body's mass is 1
-    Rows<1> offset{};                   ///< w without any impulse
+    static constexpr std::size_t most_bodies = 3;
+    std::array<int, most_bodies> bodies{-1, -1, -1};  ///< whose velocities the rows take; -1 is nobody
+    std::array<Rows<6>, most_bodies> jacobian{};  ///< over velocities scaled such that every body's mass is 1
+    Rows<1> offset{};                             ///< w without any impulse
     Rows<1> low{}, high{};
     Square softness{};  ///< Gamma, symmetric positive semi-definite; empty is zero
     std::vector<Cone> cones{};

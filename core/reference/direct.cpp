@@ -8,117 +8,18 @@
 #include <cmath>
 #include <limits>
 
-#include "complementarity.h"
+#include "direct_rows.h"
 #include "world_rows.h"
 
 namespace motley::reference {
-namespace {
-
-constexpr double unbounded = std::numeric_limits<double>::infinity();
 using Eigen::Index;
 using Eigen::VectorXd;
-
-/// S of a body, with S S^T = M^-1: over y = S^-1 v every body's mass is 1.
-struct Scale {
-    Eigen::Vector3d linear = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d angular = Eigen::Matrix3d::Zero();
-
-    explicit Scale(const Body& body)
-    {
-        const Matrix6 inverse_mass = body.inverse_mass();
-        linear = inverse_mass.diagonal().head<3>().cwiseSqrt();
-        // Cholesky, with nothing where the body does not turn.
-        for (Index i = 0; i < 3; ++i) {
-            for (Index k = 0; k <= i; ++k) {
-                const double rest =
-                    inverse_mass(3 + i, 3 + k) - angular.row(i).head(k).dot(angular.row(k).head(k));
-                if (i == k)
-                    angular(i, i) = std::sqrt(std::max(rest, 0.0));
-                else if (angular(k, k) > 0)
-                    angular(i, k) = rest / angular(k, k);
-            }
-        }
-    }
-};
-
-/// The rows of a problem as they come.
-class Assembly {
-  public:
-    explicit Assembly(const std::vector<Body>& bodies) : bodies_(bodies)
-    {
-        scales_.reserve(bodies.size());
-        for (const Body& body : bodies) scales_.emplace_back(body);
-        problem_.bodies = static_cast<int>(bodies.size());
-    }
-
-    /// Opens a group for `rows` rows between two bodies, which are at zero until they are filled. Returns where it is.
-    std::size_t open(int a, int b, Index rows)
-    {
-        RowGroup& group = problem_.groups.emplace_back();
-        for (const auto& [side, body] : {std::pair{0U, a}, std::pair{1U, b}}) {
-            const bool moves = bodies_[static_cast<std::size_t>(body)].motion == BodyMotion::dynamic_body;
-            group.bodies[side] = moves ? body : -1;
-            group.jacobian[side].setZero(rows, 6);
-        }
-        for (RowGroup::Rows<1>* column : {&group.offset, &group.low, &group.high, &group.lambda})
-            column->setZero(rows);
-        return problem_.groups.size() - 1;
-    }
-    /// Fills rows of a group, each within [low, high]; w is `offset` without any impulse.
-    void fill(std::size_t at, Index first, const Jacobian& rows, const VectorXd& offset, double low,
-              double high, const VectorXd& guess)
-    {
-        RowGroup& group = problem_.groups[at];
-        const Index count = rows.rows();
-        group.offset.segment(first, count) = offset;
-        group.low.segment(first, count).setConstant(low);
-        group.high.segment(first, count).setConstant(high);
-        group.lambda.segment(first, count) = guess;
-        for (std::size_t side = 0; side < 2; ++side) {
-            if (group.bodies[side] < 0) continue;
-            const Scale& scale = scales_[static_cast<std::size_t>(group.bodies[side])];
-            const auto from = static_cast<Index>(6 * side);
-            auto into = group.jacobian[side].middleRows(first, count);
-            into.leftCols<3>() = rows.middleCols<3>(from) * scale.linear.asDiagonal();
-            into.rightCols<3>() = rows.middleCols<3>(from + 3) * scale.angular;
-        }
-    }
-    /// Softens rows of a group by a share of their own J M^-1 J^T.
-    void soften(std::size_t at, Index first, Index count, double share)
-    {
-        if (share == 0) return;
-        RowGroup& group = problem_.groups[at];
-        if (group.softness.size() == 0) group.softness.setZero(group.size(), group.size());
-        for (const auto& jacobian : group.jacobian) {
-            const auto rows = jacobian.middleRows(first, count);
-            group.softness.block(first, first, count, count) += share * (rows * rows.transpose());
-        }
-    }
-    [[nodiscard]] RowGroup& group(std::size_t at) { return problem_.groups[at]; }
-
-    Solution solve() { return reference::solve(problem_); }
-    /// What a solution does to the velocity of a body.
-    [[nodiscard]] Vector6 change(const Solution& solution, std::size_t body) const
-    {
-        const Vector6 y = solution.change.segment<6>(6 * static_cast<Index>(body));
-        Vector6 v;
-        v << scales_[body].linear.cwiseProduct(y.head<3>()), scales_[body].angular * y.tail<3>();
-        return v;
-    }
-
-  private:
-    const std::vector<Body>& bodies_;
-    std::vector<Scale> scales_;
-    Problem problem_;
-};
-
-}  // namespace
 
 DirectResult World::step_directly(double dt, const SolverSettings& settings,
                                   const std::vector<ContactPoint>& points)
 {
     const double h = dt / settings.substeps;
-    const double warm = last_substep_ > 0 ? h / last_substep_ : 0;
+    const double warm = last_substep_ > 0 ? std::min(h / last_substep_, 1.0) : 0;
     begin_step();
     for (Joint& joint : joints) {
         for (VectorXd& impulse : joint.impulses) impulse *= warm;
@@ -130,11 +31,32 @@ DirectResult World::step_directly(double dt, const SolverSettings& settings,
     DirectResult result;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         for (Body& body : bodies) body.accelerate(gravity, h);
-        const DirectResult part = solve_substep_directly(h, settings, contacts);
+        const bool holds_locks = settings.drift_correction == DriftCorrection::baumgarte && !joints.empty();
+        const Islands islands = joints.empty() ? Islands{} : find_islands(contacts);
+        std::vector<Eigen::Vector3d> lost;
+        if (holds_locks) lost = angular_momenta(islands);
+        const std::vector<StiffRow> stiff =
+            joints.empty() ? std::vector<StiffRow>{} : find_stiff_rows(islands, h);
+        const DirectResult part = solve_substep_directly(h, settings, contacts, stiff);
         result.violation = std::max(result.violation, part.violation);
         result.unsolved += part.unsolved;
+        std::vector<Hold> holds;
+        const auto lose = [&](double sign) {
+            const std::vector<Eigen::Vector3d> now = angular_momenta(islands);
+            for (std::size_t i = 0; i < now.size(); ++i) lost[i] += sign * now[i];
+        };
+        if (holds_locks) {
+            holds = find_holds(h);
+            lose(-1);
+        }
         for (Body& body : bodies) {
             if (body.motion != BodyMotion::static_body) body.advance(body.velocity, h);
+        }
+        if (!holds.empty()) {
+            lose(1);
+            const std::vector<bool> held = hold_locks(holds, islands, h, !stiff.empty());
+            lose(-1);
+            give_back(islands, held, lost);
         }
         for (int i = 0; settings.drift_correction == DriftCorrection::projection && i < settings.projections;
              ++i)
@@ -146,7 +68,8 @@ DirectResult World::step_directly(double dt, const SolverSettings& settings,
 }
 
 DirectResult World::solve_substep_directly(double h, const SolverSettings& settings,
-                                           std::vector<ContactRow>& contacts)
+                                           std::vector<ContactRow>& contacts,
+                                           const std::vector<StiffRow>& stiff)
 {
     Assembly assembly(bodies);
     std::vector<BlockRow> blocks;
@@ -230,6 +153,7 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
         assembly.fill(at, 1, row.tangents, speed(a, b, row.tangents), -unbounded, unbounded, row.friction);
         assembly.group(at).cones.push_back({1, static_cast<int>(tangents), mu, 0, 1});
     }
+    stiffen(assembly, stiff, true);
     const Solution solution = assembly.solve();
     for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].velocity += assembly.change(solution, i);
     for (std::size_t i = 0; i < blocks.size(); ++i) {

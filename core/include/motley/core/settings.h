@@ -22,8 +22,8 @@ enum class Method {
 
 /// What `sequential_impulse` and `direct` do about the position error that velocity constraints leave.
 enum class DriftCorrection {
-    none,        ///< nothing: shows the drift
-    baumgarte,   ///< adds beta C / h to the velocity constraint
+    none,  ///< nothing: shows the drift
+    baumgarte,  ///< adds beta C / h to the velocity constraint; `direct` also holds what that promises where a substep ends
     projection,  ///< moves positions along J^T after the integration, weighted by inverse mass
 };
 

@@ -19,6 +19,8 @@ struct ContactPoint {
     Contact contact;  ///< the host's numbers; its handles are not read
 };
 
+class Assembly;
+
 class World {
   public:
     std::vector<Body> bodies;
@@ -31,7 +33,8 @@ class World {
     /// instead of one after another; what a sequential method converges to as its iterations grow. Rigid, with the drift
     /// correction of the settings: baumgarte, or a position solve of all rows at once. Redundant rows share their impulse
     /// with the least norm, contradictory ones are met in the least squares. Restitution comes after the substeps,
-    /// contact by contact, as in step(). Impulses of the step before are where the search begins.
+    /// contact by contact, as in step(). What bears heavy loads is stiffened against its own turning, and with baumgarte
+    /// locks are held at the end of each substep. Impulses of the step before are where the search begins.
     DirectResult step_directly(double dt, const SolverSettings& settings,
                                const std::vector<ContactPoint>& contacts);
 
@@ -86,8 +89,42 @@ class World {
                                        double restitution, double h, const SolverSettings& settings) const;
     void finish_contacts(std::vector<ContactRow>& contacts, double h, const SolverSettings& settings);
     void end_step(double h);
+    /// What hangs together through joints and contacts, and whether anything of it hangs on what cannot be moved.
+    struct Islands {
+        std::vector<int> of_body;  ///< -1 for bodies that nothing moves
+        std::vector<bool> floats;
+    };
+    using PairMatrix = Eigen::Matrix<double, 12, 12>;
+    /// A direction in which a joint is stiff for what it moves.
+    struct StiffRow {
+        int a, b, island;
+        double stiffness;      ///< over what an explicit substep follows, in masses of that direction
+        Jacobian jacobian;     ///< one row
+        Eigen::Vector3d turn;  ///< what it sees of a common spin
+    };
+    [[nodiscard]] Islands find_islands(const std::vector<ContactRow>& contacts) const;
     DirectResult solve_substep_directly(double h, const SolverSettings& settings,
-                                        std::vector<ContactRow>& contacts);
+                                        std::vector<ContactRow>& contacts,
+                                        const std::vector<StiffRow>& stiff);
+    [[nodiscard]] PairMatrix stiffness_of(const Joint& joint, double h) const;
+    [[nodiscard]] std::vector<StiffRow> find_stiff_rows(const Islands& islands, double h) const;
+    /// Adds what bears heavy loads to a problem of velocities or of positions.
+    void stiffen(Assembly& assembly, const std::vector<StiffRow>& rows, bool sees_velocities) const;
+    /// Where a lock shall be at the end of a substep.
+    struct Hold {
+        std::size_t joint, block;
+        double side;
+        Eigen::VectorXd target;
+    };
+    [[nodiscard]] std::vector<Hold> find_holds(double h) const;
+    /// By island, whether they are held.
+    std::vector<bool> hold_locks(const std::vector<Hold>& holds, const Islands& islands, double h,
+                                 bool stiff);
+    /// About the origin, by island.
+    [[nodiscard]] std::vector<Eigen::Vector3d> angular_momenta(const Islands& islands) const;
+    /// Gives islands that float and are held this angular momentum, as a common spin.
+    void give_back(const Islands& islands, const std::vector<bool>& held,
+                   const std::vector<Eigen::Vector3d>& lost);
     [[nodiscard]] double position_error() const;
     void project_directly(const std::vector<ContactRow>& contacts, const SolverSettings& settings);
 };

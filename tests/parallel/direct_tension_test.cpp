@@ -1,0 +1,262 @@
+// Method::direct where light links bear heavy loads. Independent evidence: conservation of energy, momentum and angular
+// momentum, and a chain in angles, written here, that cannot part at all.
+#include <Eigen/Dense>
+#include <array>
+#include <cstdio>
+#include <numbers>
+
+#include "rig.h"
+
+namespace motley {
+namespace {
+
+using testing::frame_time;
+
+constexpr double g = 9.81, length = 0.5, inertia_of_unit_mass = 0.0233;
+constexpr int links = 11;  ///< ten of 1 kg, and the load
+
+enum class Start { hanging, level };
+
+struct Chain {
+    Scene scene;
+    std::vector<BodyId> bodies;
+    std::vector<ConstraintId> joints;
+    std::vector<double> masses;
+
+    BodyId add(Vec3<double> position, double angle, double mass, Vec3<float> velocity, float spin)
+    {
+        BodyDefinition link;
+        link.position = position;
+        link.orientation = {0, 0, static_cast<float>(std::sin(angle / 2)),
+                            static_cast<float>(std::cos(angle / 2))};
+        link.mass = static_cast<float>(mass);
+        link.inertia = {0.005F * link.mass,
+                        0,
+                        0,
+                        static_cast<float>(inertia_of_unit_mass) * link.mass,
+                        0,
+                        static_cast<float>(inertia_of_unit_mass) * link.mass};
+        link.linear_velocity = velocity;
+        link.angular_velocity = {0, 0, spin};
+        masses.push_back(mass);
+        bodies.push_back(scene.add_body(link));
+        return bodies.back();
+    }
+    void tie(BodyId a, BodyId b)
+    {
+        const Vec3<float> at_a = a == scene.ground() ? Vec3<float>{} : Vec3<float>{0.25F, 0, 0};
+        joints.push_back(scene.add_joint(BallSocketDefinition{a, b, at_a, {-0.25F, 0, 0}}));
+    }
+    [[nodiscard]] double kinetic_energy() const
+    {
+        double sum = 0;
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            const BodyState state = scene.state(bodies[i]);
+            const auto v = convert<double>(state.linear_velocity),
+                       w = convert<double>(state.angular_velocity);
+            sum += masses[i] / 2 * (dot(v, v) + inertia_of_unit_mass * w.z * w.z);
+        }
+        return sum;
+    }
+    [[nodiscard]] double potential_energy() const
+    {
+        double sum = 0;
+        for (std::size_t i = 0; i < bodies.size(); ++i)
+            sum += masses[i] * g * scene.state(bodies[i]).position.y;
+        return sum;
+    }
+    [[nodiscard]] double separation() const
+    {
+        double most = 0;
+        for (const ConstraintId joint : joints)
+            most = std::max(most, std::abs(static_cast<double>(scene.joint_report(joint).error)));
+        return most;
+    }
+};
+
+/// From the ground at the origin. Hanging, it is pushed aside by 1 mm/s.
+Chain loaded_chain(Start start, double load)
+{
+    Chain chain;
+    BodyId before = chain.scene.ground();
+    for (int i = 0; i < links; ++i) {
+        const double middle = length * (i + 0.5), mass = i == links - 1 ? load : 1;
+        const BodyId body = start == Start::level
+                                ? chain.add({middle, 0, 0}, 0, mass, {}, 0)
+                                : chain.add({0, -middle, 0}, -std::numbers::pi / 2, mass, {0.001F, 0, 0}, 0);
+        chain.tie(before, body);
+        before = body;
+    }
+    return chain;
+}
+
+SolverSettings direct(Vec3<float> gravity)
+{
+    SolverSettings settings = testing::with_gravity(gravity);
+    settings.method = Method::direct;
+    return settings;
+}
+
+TEST(DirectTension, ChainsHoldAnyLoadAndGainNoEnergy)
+{
+    for (const Start start : {Start::hanging, Start::level}) {
+        for (const double load : {1.0, 30.0, 1e3, 1e6}) {
+            Chain chain = loaded_chain(start, load);
+            Solver solver(direct({0, static_cast<float>(-g), 0}));
+            const double before = chain.kinetic_energy() + chain.potential_energy();
+            const double height = (load + 10) * g * length * links;  // what the energy may be one per cent of
+            double separation = 0, gain = -height;
+            for (int step = 0; step < 600; ++step) {
+                const StepReport report = solver.step(chain.scene, frame_time);
+                ASSERT_EQ(report.status, StepStatus::done);
+                ASSERT_EQ(report.direct_unsolved, 0) << load << " kg, step " << step;
+                separation = std::max(separation, chain.separation());
+                gain = std::max(gain, chain.kinetic_energy() + chain.potential_energy() - before);
+            }
+            std::printf("%g kg, %s: separation %.2g m, energy grows by %.2g of what the fall can give\n",
+                        load, start == Start::hanging ? "hanging" : "from level", separation, gain / height);
+            EXPECT_LT(separation, 1e-6) << load;
+            EXPECT_LT(gain, 0.01 * height) << load;
+        }
+    }
+}
+
+TEST(DirectTension, FloatingChainsKeepMomentumAndAngularMomentum)
+{
+    // Links of 1 kg between two weights, spinning end over end and not quite as one.
+    for (const double load : {1.0, 100.0, 1e4}) {
+        Chain chain;
+        for (int i = 0; i < 12; ++i) {
+            const double middle = length * i - 2.75;
+            const auto across = static_cast<float>(2 * middle);
+            chain.add({middle, 0, 0}, 0, i == 0 || i == 11 ? load : 1, {0.1F, across + 0.05F * (i % 2), 0},
+                      2);
+            if (i > 0) chain.tie(chain.bodies[static_cast<std::size_t>(i - 1)], chain.bodies.back());
+        }
+        const auto momenta = [&] {
+            std::array<double, 3> sums{};
+            for (std::size_t i = 0; i < chain.bodies.size(); ++i) {
+                const BodyState state = chain.scene.state(chain.bodies[i]);
+                const auto v = convert<double>(state.linear_velocity);
+                sums[0] += chain.masses[i] * v.x;
+                sums[1] += chain.masses[i] * v.y;
+                sums[2] +=
+                    chain.masses[i] * (state.position.x * v.y - state.position.y * v.x +
+                                       inertia_of_unit_mass * static_cast<double>(state.angular_velocity.z));
+            }
+            return sums;
+        };
+        const std::array<double, 3> before = momenta();
+        const double energy = chain.kinetic_energy();
+        Solver solver(direct({}));
+        double gain = 0;
+        for (int step = 0; step < 300; ++step) {
+            ASSERT_EQ(solver.step(chain.scene, frame_time).direct_unsolved, 0);
+            gain = std::max(gain, chain.kinetic_energy() / energy - 1);
+        }
+        const std::array<double, 3> after = momenta();
+        // Velocities are floats between steps: half an ulp each, of 5.5 m/s, 300 times, in either direction.
+        const double rounding = 300 * 2.5e-7 * (2 * load + 10);
+        EXPECT_NEAR(after[0], before[0], rounding) << load;
+        EXPECT_NEAR(after[1], before[1], rounding) << load;
+        EXPECT_NEAR(after[2], before[2], 1e-5 * before[2]) << load;
+        EXPECT_LT(gain, 0.01) << load;
+        EXPECT_LT(chain.separation(), 1e-6) << load;
+    }
+}
+
+/// The same chain as the angles of its links against the horizontal, by Lagrange's equations:
+///   sum_k c_ik (cos(q_i - q_k) q_k'' + sin(q_i - q_k) q_k'^2) = -g cos(q_i) s_i.
+class AngleChain {
+  public:
+    using Vector = Eigen::Matrix<double, links, 1>;
+    Vector angle = Vector::Zero(), rate = Vector::Zero();
+
+    explicit AngleChain(double load)
+    {
+        Vector mass = Vector::Ones(), beyond;
+        mass(links - 1) = load;
+        for (int i = 0; i < links; ++i) {
+            beyond(i) = mass.tail(links - 1 - i).sum();
+            pull_(i) = length * (mass(i) / 2 + beyond(i));
+        }
+        for (int i = 0; i < links; ++i) {
+            for (int k = 0; k < links; ++k) {
+                const int outer = std::max(i, k);
+                c_(i, k) = i == k ? mass(i) * (inertia_of_unit_mass + length * length / 4) +
+                                        length * length * beyond(i)
+                                  : length * length * (mass(outer) / 2 + beyond(outer));
+            }
+        }
+    }
+    /// Runge and Kutta's method of order four.
+    void step(double h)
+    {
+        const Vector k1 = rate, a1 = acceleration(angle, k1);
+        const Vector k2 = rate + h / 2 * a1, a2 = acceleration(angle + h / 2 * k1, k2);
+        const Vector k3 = rate + h / 2 * a2, a3 = acceleration(angle + h / 2 * k2, k3);
+        const Vector k4 = rate + h * a3, a4 = acceleration(angle + h * k3, k4);
+        angle += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+        rate += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+    }
+    /// The middle of the load.
+    [[nodiscard]] Eigen::Vector2d load() const
+    {
+        Eigen::Vector2d at = Eigen::Vector2d::Zero();
+        for (int i = 0; i < links; ++i)
+            at += (i == links - 1 ? length / 2 : length) *
+                  Eigen::Vector2d(std::cos(angle(i)), std::sin(angle(i)));
+        return at;
+    }
+
+  private:
+    Eigen::Matrix<double, links, links> c_;
+    Vector pull_;
+
+    [[nodiscard]] Vector acceleration(const Vector& q, const Vector& w) const
+    {
+        Eigen::Matrix<double, links, links> m;
+        Vector right;
+        for (int i = 0; i < links; ++i) {
+            right(i) = -g * std::cos(q(i)) * pull_(i);
+            for (int k = 0; k < links; ++k) {
+                m(i, k) = c_(i, k) * std::cos(q(i) - q(k));
+                right(i) -= c_(i, k) * std::sin(q(i) - q(k)) * w(k) * w(k);
+            }
+        }
+        return m.llt().solve(right);
+    }
+};
+
+TEST(DirectTension, AFallingLoadGoesTheWayOfAChainInAngles)
+{
+    for (const double load : {1e3, 1e6}) {
+        AngleChain truth(load);
+        Chain chain = loaded_chain(Start::level, load);
+        double most_before = 1e9;
+        for (const int substeps : {4, 16}) {
+            chain = loaded_chain(Start::level, load);
+            truth.angle.setZero();
+            truth.rate.setZero();
+            SolverSettings settings = direct({0, static_cast<float>(-g), 0});
+            settings.substeps = substeps;
+            Solver solver(settings);
+            double most = 0;
+            for (int step = 0; step < 60; ++step) {
+                solver.step(chain.scene, frame_time);
+                const int fine = 1667;  // of 1e-5 s
+                for (int i = 0; i < fine; ++i) truth.step(static_cast<double>(frame_time) / fine);
+                const Vec3<double> at = chain.scene.state(chain.bodies.back()).position;
+                most = std::max(most, (Eigen::Vector2d(at.x, at.y) - truth.load()).norm());
+            }
+            std::printf("%g kg falling for a second, %d substeps: %.3g m off\n", load, substeps, most);
+            // v += h a, x += h v is ahead by h g t / 2, and what turns loses h w^2 of its energy: both go with h.
+            EXPECT_LT(most, 0.2 / substeps);
+            EXPECT_LT(most, most_before / 3);
+            most_before = most;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace motley
