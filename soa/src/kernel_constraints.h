@@ -279,6 +279,19 @@ struct Kernels {
         prefetch_bodies<kind_b, delta>(context.bodies[static_cast<int>(kind_b)], next.b);
     }
 
+    /// Takes back what makes no difference; see rest.h.
+    [[gnu::always_inline]] static void rest(const Bundle& bundle, const A& a_before, const B& b_before,
+                                            Impulse& impulse, A& a, B& b)
+    {
+        const auto changes = makes_a_difference(a_before, a, b_before, b);
+        auto held = load_row<Impulse>(bundle.impulse);
+        const Lanes* before = reinterpret_cast<const Lanes*>(&held);
+        Lanes* fields = reinterpret_cast<Lanes*>(&impulse);
+        for (int i = 0; i < fields_of<Impulse>; ++i) fields[i] = select(changes, fields[i], before[i]);
+        change_velocity_where(changes, a_before, a);
+        change_velocity_where(changes, b_before, b);
+    }
+
     template <bool relax>
     static void sweep(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
                       std::int32_t end)
@@ -292,6 +305,9 @@ struct Kernels {
                 const auto row = load_row<Row>(bundle.row);
                 Type::template solve<relax, Lanes>(context.step, swept<Type::recomputes_each_substep>(row),
                                                    load_row<Substep>(bundle.substep), impulse, a, b);
+                // As below: before is loaded again.
+                if (context.step.comes_to_rest) [[unlikely]]
+                    rest(bundle, bundle.load_a(), bundle.load_b(), impulse, a, b);
                 if (context.measure != Measure::nothing) [[unlikely]] {
                     // The bodies are loaded again: kept from above, they would cost every sweep registers.
                     store_row(residual_of(bundle.load_a(), a, bundle.load_b(), b), bundle.residual);
@@ -391,6 +407,9 @@ struct Kernels {
             const auto row = load_row<Row>(bundle.row);
             Type::template solve<relax, Lanes>(context.step, swept<Type::recomputes_each_substep>(row),
                                                load_row<Substep>(bundle.substep), impulse, a, b);
+            if (context.step.comes_to_rest) [[unlikely]]
+                rest(bundle, load_row<A>(body_a + bundle.lane), load_row<B>(body_b + bundle.lane), impulse, a,
+                     b);
             store_row(impulse, bundle.impulse);
             store_copy_velocity(a, body_a + bundle.lane);
             store_copy_velocity(b, body_b + bundle.lane);

@@ -30,10 +30,10 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 6515385902102635129ULL},
-            {"baumgarte", iterative, 7294046641496822510ULL},
-            {"no drift correction", none, 18193093497914501264ULL},
-            {"projection", projection, 12181773780268072262ULL}};
+    return {{"soft_step", soft, 9180750110544497500ULL},
+            {"baumgarte", iterative, 2251565287042826975ULL},
+            {"no drift correction", none, 1667910173542863413ULL},
+            {"projection", projection, 3165549389294790955ULL}};
 }
 
 /// The state's hash after every step.
@@ -89,8 +89,8 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {6806883733091745205ULL, 2630704882665883419ULL, 5945671955822757556ULL,
-                                    16516728064466341087ULL};
+    const std::uint64_t golden[] = {18361419068557799083ULL, 15112596188214284933ULL, 11580736359150062694ULL,
+                                    12199858723870145104ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});
