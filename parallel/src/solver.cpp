@@ -18,6 +18,7 @@
 #include "stage_runner.h"
 #include "sweeper.h"
 #include "tbb_executor.h"
+#include "watched_sweep.h"
 
 namespace motley {
 namespace {
@@ -461,7 +462,8 @@ FigureUse Solver::Impl::use_of_figures() const
 bool Solver::Impl::visits_patches_once() const
 {
     return layout.intake.patches.are_wanted() && settings.method == Method::soft_step &&
-           settings.relaxations > 0 && !tells_blocks_apart && layout.figures.touched_trees().empty();
+           settings.relaxations > 0 && !is_watched(layout.context) && !tells_blocks_apart &&
+           layout.figures.touched_trees().empty();
 }
 
 /// Soft steps take a lock's whole error away in one substep, and the speed that this took away again when they relax.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "measured_sweep.h"
+#include "watched_sweep.h"
 
 namespace motley {
 namespace {
@@ -57,11 +57,12 @@ void run_chunk(const KernelContext& context, const KernelTable& kernels, const S
 {
     const ConstraintKernels::Sweep sweep = chunk.kernels->*kernel;
     if (sweep == nullptr) return;
+    const bool solves = kernel == &ConstraintKernels::solve || kernel == &ConstraintKernels::relax;
     const auto run = [&](std::int32_t begin, std::int32_t end) {
-        if (context.measure == Measure::nothing) {
-            sweep(context, chunk.streams, begin, end);
+        if (solves && is_watched(context)) {
+            watched_sweep(context, kernels, chunk.streams, sweep, chunk.kernels->impulse_floats, begin, end);
         } else {
-            measured_sweep(context, kernels, chunk.kernels->impulse_floats, chunk.streams, sweep, begin, end);
+            sweep(context, chunk.streams, begin, end);
         }
     };
     if (at_least == Sweeper::every_block) {

@@ -148,13 +148,18 @@ struct BodyKernels {
     /// BodyStore::commit of sixteen rows from `first` on; false, and nothing done, unless each of them is a body that
     /// can move and is finite. Null for fixed bodies.
     bool (*commit)(const BodyArrays&, std::int32_t first) = nullptr;
-    /// Of sixteen bodies: as they are, into most_body_floats fields of sixteen floats; the energy of what has changed of their
-    /// velocities since, J, and 1/m; and the velocities of the first `count` back, null for fixed bodies.
+    // Of sixteen bodies, for watched_sweep.h:
+    /// As they are, into most_body_floats fields of sixteen floats.
     void (*keep)(const BodyArrays&, const std::int32_t* offsets, float* kept) = nullptr;
-    void (*find_change)(const BodyArrays&, const std::int32_t* offsets, const float* kept, float* energy,
+    /// The energy of what their velocities have changed since, J, and 1/m.
+    void (*find_energy)(const BodyArrays&, const std::int32_t* offsets, const float* kept, float* energy,
                         float* inverse_mass) = nullptr;
-    void (*bring_back_velocities)(const BodyArrays&, const std::int32_t* offsets, const float* kept,
-                                  int count) = nullptr;
+    /// Squares of the speeds of that change, and of those before it, m2/s2.
+    void (*find_speeds)(const BodyArrays&, const std::int32_t* offsets, const float* kept, float* changes,
+                        float* speeds) = nullptr;
+    /// The velocities of the first `count` back where `goes_on` is 0. Null for fixed bodies.
+    void (*bring_back)(const BodyArrays&, const std::int32_t* offsets, const float* kept,
+                       const float* goes_on, int count) = nullptr;
 };
 
 struct FigureBlock;
@@ -167,6 +172,9 @@ struct FigureKernels {
     Move store_velocities = nullptr;
     Move integrate_velocities = nullptr;
     Move integrate_positions = nullptr;
+    /// Of copies in lanes, as those of BodyKernels.
+    void (*find_speeds)(const float* copies, const float* kept, float* changes, float* speeds) = nullptr;
+    void (*bring_back)(float* copies, const float* kept, const float* goes_on) = nullptr;
     void (*factor)(const FigureBlock&) = nullptr;  ///< after equality_rows of each lock
     /// Velocities and impulses such that J v + rate C = 0 for every lock.
     void (*solve)(const FigureBlock&, float rate) = nullptr;

@@ -1,4 +1,4 @@
-// What moves bodies, by row and as copies of figures, and measures what sweeps do to them, for one instruction set: see constraint_kernels.cpp.
+// What moves bodies, by row and as copies of figures, and sees what sweeps do to them, for one instruction set: see constraint_kernels.cpp.
 #include "figure.h"
 #include "kernel_prelude.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 #include "kernel_copies.h"
 
-#include "kernel_measure.h"
+#include "kernel_watch.h"
 
 template <BodyKind kind>
 void enter_body(BodyKernels& kernels)
@@ -25,12 +25,13 @@ void enter_body(BodyKernels& kernels)
         kernels.integrate_velocities = integrate_velocities<kind>;
         kernels.integrate_listed = integrate_listed<kind>;
         kernels.commit = commit<kind>;
-        kernels.bring_back_velocities = bring_back_velocities<kind>;
+        kernels.bring_back = bring_back<kind>;
     }
     kernels.integrate_positions = integrate_positions<kind, false>;
     kernels.integrate_on = integrate_positions<kind, true>;
     kernels.keep = keep_bodies<kind>;
-    kernels.find_change = find_change<kind>;
+    kernels.find_energy = find_energy<kind>;
+    kernels.find_speeds = find_speeds<kind>;
     static_assert(fields_of<Body<kind>> <= most_body_floats);
 }
 
@@ -49,6 +50,8 @@ void enter_body_kernels<Isa::MOTLEY_ISA>(BodyKernels* kinds, FigureKernels& figu
     figures.store_velocities = store_copy_velocities;
     figures.integrate_velocities = integrate_copy_velocities;
     figures.integrate_positions = integrate_copy_positions;
+    figures.find_speeds = find_copy_speeds;
+    figures.bring_back = bring_copies_back;
 }
 
 }  // namespace motley

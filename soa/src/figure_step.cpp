@@ -1,19 +1,26 @@
 // The substeps of a block of copies, in the order of Solver's.
 #include "figure_step.h"
 
+#include "watched_sweep.h"
+
 namespace motley {
 namespace {
 
 /// Runs a kernel over the joints that the tree does not solve, in the order of their colours.
-void sweep(const KernelContext& context, const FigureBlock& block,
+void sweep(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
            ConstraintKernels::CopiesSweep ConstraintKernels::*kernel)
 {
+    const bool comes_to_rest = context.step.comes_to_rest && kernel != &ConstraintKernels::warm_start_copies;
     const auto& joints = block.shape->joints;
     for (std::size_t i = 0; i < joints.size(); ++i) {
         if (joints[i].in_tree) continue;
         const FigureBlock::Joint& joint = block.joints[i];
-        (joint.kernels->*kernel)(context, joint.streams, joint.block, block.body(joints[i].a),
-                                 block.body(joints[i].b));
+        float *a = block.body(joints[i].a), *b = block.body(joints[i].b);
+        if (comes_to_rest) {
+            sweep_to_rest(context, kernels, joint, joint.kernels->*kernel, a, b);
+        } else {
+            (joint.kernels->*kernel)(context, joint.streams, joint.block, a, b);
+        }
     }
 }
 
@@ -68,16 +75,16 @@ void step_figure(const KernelContext& context, const FigureKernels& kernels, con
     for (int substep = 0; substep < steps.substeps; ++substep) {
         kernels.integrate_velocities(context, block);
         if (has_tree) factor_tree(context, kernels, block);
-        if (has_others) sweep(context, block, &ConstraintKernels::warm_start_copies);
+        if (has_others) sweep(context, kernels, block, &ConstraintKernels::warm_start_copies);
         // Limits and motors shall see bodies that hold together.
         if (has_tree && has_others) kernels.solve(block, steps.exact_rate);
         for (int i = 0; i < sweeps(steps.iterations); ++i) {
-            if (has_others) sweep(context, block, &ConstraintKernels::solve_copies);
+            if (has_others) sweep(context, kernels, block, &ConstraintKernels::solve_copies);
             if (has_tree) kernels.solve(block, steps.exact_rate);
         }
         kernels.integrate_positions(context, block);
         for (int i = 0; i < sweeps(steps.relaxations); ++i) {
-            if (has_others) sweep(context, block, &ConstraintKernels::relax_copies);
+            if (has_others) sweep(context, kernels, block, &ConstraintKernels::relax_copies);
             if (has_tree) kernels.solve(block, 0);
         }
     }

@@ -13,7 +13,7 @@ enum class KernelShare { swept, rare };
 /// Of the types of one constraint header, by pair of body kinds: the entry of class_of, counted from the first of them.
 template <Isa isa, KernelShare share, class Types>
 void enter_constraint_kernels(ConstraintKernels* pairs);
-/// What moves bodies, measures what sweeps do to them, and brings copies of figures into lanes and back.
+/// What moves bodies, sees what sweeps do to them, and brings copies of figures into lanes and back.
 template <Isa isa>
 void enter_body_kernels(BodyKernels* kinds, FigureKernels& figures);
 /// FigureKernels::factor and solve.

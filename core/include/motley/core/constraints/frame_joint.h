@@ -149,8 +149,9 @@ struct FrameJoint {
         for (int i = 0; i < rows; ++i) change[i] = -(change[i] + soft.rate * substep.error[i]);
         solve_in_place(substep.mass, change);
         for (int i = 0; i < rows; ++i) {
-            change[i] = soft.mass_scale * change[i] - soft.impulse_scale * impulse.lambda[i];
-            impulse.lambda[i] = impulse.lambda[i] + change[i];
+            const Real held = impulse.lambda[i];
+            impulse.lambda[i] = held + (soft.mass_scale * change[i] - soft.impulse_scale * held);
+            change[i] = impulse.lambda[i] - held;  // what has been kept of it, to the last digit
         }
         push(substep, change, a, b, [](auto& body, const auto& linear, const auto& angular) {
             apply_wrench(body, linear, angular);
