@@ -23,8 +23,6 @@ struct AnchorResult {
     std::vector<Line> motley;  ///< on one thread and on two; empty where no setting is exact enough
     double bullet_seconds =
         -1;  ///< its solver alone, run in turn with them; negative where it is not installed
-    double box3d_seconds =
-        -1;  ///< what Box3D would take here, by its ratio to Bullet on the net of the anchors
     double host_load = 0;
 };
 
