@@ -2,7 +2,8 @@
 //
 // A joint is two files beside constraints/ball_socket.h, the plainest example: what a host says of it
 // (x_definition.h, a struct with the two bodies, fields with units and defaults), and its maths (x.h, a struct as below).
-// Its name is then put into JointTypes in constraint_types.h, and that is all: storage, handles, colouring, blocks,
+// x.h ends with the list of its types, `using XTypes = TypeList<X>;`, whose name is then put into constraint_types.h, and
+// x_definition.h into joint_definitions.h, and that is all: storage, handles, colouring, blocks,
 // kernels of every instruction set and pair of bodies, reports and break limits follow from the list. Beside it go its
 // formulas in double in core/reference/joint_models.cpp, and its cases in tests/joint_cases.h, without which the tests over
 // the type list do not compile.
