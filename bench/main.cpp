@@ -362,7 +362,8 @@ int main(int count, char** arguments)
     report_app->add_option("--rounds", report.rounds, "runs of each point, in turn with the others")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
-    report_app->add_flag("--quick", report.quick, "small scenes, run once: a page in three minutes, for a look");
+    report_app->add_flag("--quick", report.quick,
+                         "small scenes, run once: a page in three minutes, for a look");
     report_app->add_flag("!--without-peers", report.with_peers, "motley alone");
     CLI::App* extremes_app = app.add_subcommand(
         "extremes", "run scenes at the edge of what numbers can bear under every method: figures and bounds");

@@ -115,8 +115,8 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
     const std::size_t first = rows.size();
     find_rows(joint, h, settings, rows);
     const std::vector<Body>& then = joint.model->keeps_rows_of_start() ? start_ : bodies;
-    const Eigen::Matrix<double, 12, 12> inverse_mass = pair_inverse_mass(
-        then[static_cast<std::size_t>(joint.a)], then[static_cast<std::size_t>(joint.b)]);
+    const Eigen::Matrix<double, 12, 12> inverse_mass =
+        pair_inverse_mass(then[static_cast<std::size_t>(joint.a)], then[static_cast<std::size_t>(joint.b)]);
     for (std::size_t i = first; i < rows.size(); ++i) {
         BlockRow& row = rows[i];
         const Block& block = row.block;

@@ -28,7 +28,7 @@ struct StepConstants {
     float warm_start_scale = 0;  ///< this substep over the last one; 0 starts cold
     float restitution_threshold = 0;
     bool comes_to_rest = false;  ///< so many sweeps that changes below rounding add up; see rest.h
-    float projection_rate = 0;  ///< share of a contact's penetration removed by a projection
+    float projection_rate = 0;   ///< share of a contact's penetration removed by a projection
     Vec3<float> gravity{};
 };
 
