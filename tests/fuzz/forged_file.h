@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "motley/core/snapshot.h"
+#include "motley/core/joint_store.h"
 #include "motley/motley.h"
 
 namespace motley::testing {
