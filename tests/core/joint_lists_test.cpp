@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mixed_scene.h"
+#include "motley/core/joint_store.h"
 
 namespace motley {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "motley/core/snapshot.h"
 #include "motley/core/joint_store.h"
+#include "motley/core/snapshot.h"
 #include "motley/motley.h"
 
 namespace motley::testing {
