@@ -2,6 +2,7 @@
 // from the list follows for it too.
 #include <gtest/gtest.h>
 
+#include "level_rod.h"
 #include "motley/motley.h"
 
 namespace motley {

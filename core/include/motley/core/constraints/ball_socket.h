@@ -98,9 +98,7 @@ struct BallSocket {
         if constexpr (!relax) {
             change = Real(step.joint.mass_scale) * change - Real(step.joint.impulse_scale) * impulse.push;
         }
-        const auto held = impulse.push;
-        impulse.push = held + change;
-        change = impulse.push - held;  // what has been kept of it, to the last digit
+        impulse.push = impulse.push + change;
         apply_impulse(a, substep.arm_a, -change);
         apply_impulse(b, substep.arm_b, change);
     }
