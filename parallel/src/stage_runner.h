@@ -49,7 +49,7 @@ class StageRunner {
         open();
         // Two words captured: small enough that std::function does not allocate. Nothing leaves a call: threads that wait for
         // the caller would wait for ever, and the host's own need not know what to do with it.
-        const std::exception_ptr executors = run_on_executor([this, &own](int worker) noexcept {
+        std::exception_ptr executors = run_on_executor([this, &own](int worker) noexcept {
             if (worker < 0 || worker >= workers_) return;
             const StepFloats floats;
             if (worker != 0) {
