@@ -1,0 +1,57 @@
+// A host of a library that was built with contacts of planar bodies alone: MOTLEY_JOINTS=none, MOTLEY_MODELS=planar.
+#include <motley/motley.h>
+
+#include <cstdio>
+#include <string>
+
+namespace {
+
+/// Whether a call is refused with these words.
+template <class Call>
+bool refuses(const Call& call, const std::string& words)
+{
+    try {
+        call();
+    } catch (const motley::InvalidInput& error) {
+        std::printf("%s\n", error.what());
+        return std::string(error.what()) == words;
+    }
+    return false;
+}
+
+}  // namespace
+
+int main()
+{
+    motley::Scene scene;
+    motley::BodyDefinition person{.model = motley::BodyModel::planar, .mass = 80};
+    const motley::BodyId a = scene.add_body(person);
+    person.position.x = 0.39;
+    const motley::BodyId b = scene.add_body(person);
+
+    const bool refuses_joint = refuses(
+        [&] {
+            scene.add_joint(motley::BallSocketDefinition{a, b, {0.2F, 0, 0}, {-0.19F, 0, 0}});
+        },
+        "joint is motley::BallSocketDefinition; expected one that is built, MOTLEY_JOINTS: none");
+    person.model = motley::BodyModel::rigid;
+    const bool refuses_model =
+        refuses([&] { scene.add_body(person); },
+                "BodyDefinition.model is rigid; expected one that is built, MOTLEY_MODELS: planar");
+
+    // Two people who overlap by 1 cm are pushed apart alike.
+    motley::Contact touch;
+    touch.body_a = a;
+    touch.body_b = b;
+    touch.normal = {1, 0, 0};
+    touch.separation = -0.01F;
+    touch.arm_a = {0.2F, 0, 0};
+    touch.arm_b = {-0.2F, 0, 0};
+    touch.friction = 0.5F;
+    motley::Solver solver;
+    const motley::StepReport report = solver.step(scene, 1.0F / 60, {&touch, 1});
+    const double left = scene.state(a).position.x, right = scene.state(b).position.x;
+    const bool apart = report.status == motley::StepStatus::done && left < 0 && right > 0.39 &&
+                       left + right > 0.39 - 1e-6 && left + right < 0.39 + 1e-6;
+    return refuses_joint && refuses_model && apart ? 0 : 1;
+}
