@@ -49,9 +49,9 @@ struct HeapOfBoxes {
     std::vector<BodyId> boxes;
     std::vector<Contact> contacts;
 
-    explicit HeapOfBoxes(float ratio)
+    explicit HeapOfBoxes(float ratio, std::uint64_t seed = 7)
     {
-        Random random(7);
+        Random random(seed);
         const auto r = [&] { return static_cast<float>(random.symmetric()); };
         for (int i = 0; i < 27; ++i) {
             const int x = i % 3, z = i / 3 % 3, level = i / 9;
@@ -71,13 +71,15 @@ struct HeapOfBoxes {
         for (int i = 0; i < 27; ++i) {
             for (const float x : {-1.0F, 1.0F}) {
                 for (const float z : {-1.0F, 1.0F}) {
-                    touch(i < 9 ? -1 : i - 9, i, {0.1F * r(), 1, 0.1F * r()},
-                          {x * half.x, -half.y, z * half.z});
+                    const Vec3<float> up{0.1F * r(), 1, 0.1F * r()};
+                    touch(i < 9 ? -1 : i - 9, i, up, {x * half.x, -half.y, z * half.z});
                 }
             }
-            if (i % 3 > 0) touch(i - 1, i, {1, 0.1F * r(), 0.1F * r()}, {-half.x, 0.1F * r(), 0.2F * r()});
-            if (i / 3 % 3 > 0)
-                touch(i - 3, i, {0.1F * r(), 0.1F * r(), 1}, {0.4F * r(), 0.1F * r(), -half.z});
+            // One after another: arguments of a call are evaluated in an order that compilers choose.
+            const Vec3<float> along_x{1, 0.1F * r(), 0.1F * r()}, left{-half.x, 0.1F * r(), 0.2F * r()};
+            const Vec3<float> along_z{0.1F * r(), 0.1F * r(), 1}, back{0.4F * r(), 0.1F * r(), -half.z};
+            if (i % 3 > 0) touch(i - 1, i, along_x, left);
+            if (i / 3 % 3 > 0) touch(i - 3, i, along_z, back);
         }
     }
     /// Below 0 is the ground.

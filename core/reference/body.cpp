@@ -71,14 +71,26 @@ void Body::accelerate(const Eigen::Vector3d& gravity, double h)
     g.head<3>() = gravity;
     if (model == BodyModel::planar) g(2) = 0;
     velocity += h * (g + inverse_mass() * force);
-    if (model != BodyModel::rigid) return;
-    // I (w' - w) + h w' x I w' = 0 in the body frame, one Newton step from w; torque is added after it.
-    const Eigen::Vector3d torque_part = h * inverse_mass().bottomRightCorner<3, 3>() * force.tail<3>();
-    const Eigen::Vector3d w = orientation.conjugate() * Eigen::Vector3d(velocity.tail<3>() - torque_part);
-    const Eigen::Vector3d residual = h * w.cross(inertia * w);
-    const Eigen::Matrix3d derivative = inertia + h * (skew(w) * inertia - skew(inertia * w));
-    velocity.tail<3>() =
-        orientation * Eigen::Vector3d(w - derivative.partialPivLu().solve(residual)) + torque_part;
+}
+
+void Body::move_on(double seconds)
+{
+    if (motion == BodyMotion::static_body) return;
+    // What turns by more than a radian keeps its speed, and with it its energy.
+    if (motion == BodyMotion::kinematic_body || model != BodyModel::rigid ||
+        seconds * velocity.tail<3>().norm() >= 1) {
+        advance(velocity, seconds);
+        return;
+    }
+    const auto speed = [&](const Eigen::Quaterniond& turned, const Eigen::Vector3d& momentum) {
+        return Eigen::Vector3d(turned * (inertia.inverse() * (turned.conjugate() * momentum)));
+    };
+    const Eigen::Vector3d momentum = orientation * (inertia * (orientation.conjugate() * velocity.tail<3>()));
+    Body half_way = *this;
+    half_way.advance(velocity, seconds / 2);
+    velocity.tail<3>() = speed(half_way.orientation, momentum);
+    advance(velocity, seconds);
+    velocity.tail<3>() = speed(orientation, momentum);
 }
 
 }  // namespace motley::reference

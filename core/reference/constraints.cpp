@@ -26,6 +26,16 @@ Jacobian point_jacobian(const Body& a, const Body& b, const Eigen::Vector3d& loc
     return j;
 }
 
+Jacobian lock_jacobian(const Body& a, const Body& b, const Eigen::Vector3d& local_a,
+                       const Eigen::Vector3d& local_b)
+{
+    Jacobian j(3, 12);
+    const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d half = point_error(a, b, local_a, local_b) / 2;
+    j << -one, skew(arm(a, local_a) + half), one, -skew(arm(b, local_b) - half);
+    return j;
+}
+
 double distance_error(const Body& a, const Body& b, const Eigen::Vector3d& local_a,
                       const Eigen::Vector3d& local_b, double length)
 {
@@ -71,7 +81,7 @@ Jacobian frame_jacobian(const Body& a, const Body& b, const Frame& frame_a, cons
     const int linear_rows = static_cast<int>(linear), angular_rows = static_cast<int>(angular);
     Jacobian j = Jacobian::Zero(linear_rows + angular_rows, 12);
     if (linear == LinearLock::point) {
-        j.topRows<3>() = point_jacobian(a, b, frame_a.position, frame_b.position);
+        j.topRows<3>() = lock_jacobian(a, b, frame_a.position, frame_b.position);
     } else {
         const int first_axis = linear == LinearLock::line ? 1 : 0;
         for (int i = 0; i < linear_rows; ++i) {

@@ -49,9 +49,7 @@ DirectResult World::step_directly(double dt, const SolverSettings& settings,
             holds = find_holds(h);
             lose(-1);
         }
-        for (Body& body : bodies) {
-            if (body.motion != BodyMotion::static_body) body.advance(body.velocity, h);
-        }
+        for (Body& body : bodies) body.move_on(h);
         if (!holds.empty()) {
             lose(1);
             const std::vector<bool> held = hold_locks(holds, islands, h, !stiff.empty());

@@ -84,6 +84,7 @@ class Assembly {
         RowGroup& group = problem_.groups[at];
         if (group.softness.size() == 0) group.softness.setZero(group.size(), group.size());
         for (const auto& jacobian : group.jacobian) {
+            if (jacobian.rows() == 0) continue;  // of no body
             const auto rows = jacobian.middleRows(first, count);
             group.softness.block(first, first, count, count) += share * (rows * rows.transpose());
         }

@@ -85,6 +85,10 @@ World::Islands World::find_islands(const std::vector<ContactRow>& contacts) cons
     for_each_pair([&](int a, int b) {
         if (moves(a) != moves(b)) islands.floats[static_cast<std::size_t>(find(moves(a) ? a : b))] = false;
     });
+    for (const Joint& joint : joints) {
+        if (joint.model->acts_from_world() && moves(joint.a))
+            islands.floats[static_cast<std::size_t>(find(joint.a))] = false;
+    }
     return islands;
 }
 

@@ -44,7 +44,7 @@ class BallSocketModel : public JointModel {
                                             double) const override
     {
         const Eigen::Index rows = in_plane ? 2 : 3;
-        return {{.jacobian = point_jacobian(a, b, local_a_, local_b_).topRows(rows),
+        return {{.jacobian = lock_jacobian(a, b, local_a_, local_b_).topRows(rows),
                  .error = point_error(a, b, local_a_, local_b_).head(rows)}};
     }
 
@@ -255,6 +255,7 @@ class TransmissionModel : public JointModel {
         : axis_a_(axis_a.normalized()), axis_b_(axis_b.normalized()), ratio_(ratio), slides_(slides)
     {
     }
+    [[nodiscard]] bool acts_from_world() const override { return slides_; }
     [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool,
                                             double travelled) const override
     {
@@ -290,6 +291,7 @@ class TransmissionModel : public JointModel {
 class PulleyModel : public JointModel {
   public:
     explicit PulleyModel(const PulleyDefinition& pulley) : pulley_(pulley) {}
+    [[nodiscard]] bool acts_from_world() const override { return true; }
     [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool in_plane,
                                             double) const override
     {

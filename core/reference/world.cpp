@@ -392,9 +392,7 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
             for (BlockRow& row : rows) solve_block(row, h, settings, false);
             for (ContactRow& row : contacts) solve_contact(row, h, settings, false);
         }
-        for (Body& body : bodies) {
-            if (body.motion != BodyMotion::static_body) body.advance(body.velocity, h);
-        }
+        for (Body& body : bodies) body.move_on(h);
         if (!soft_step && settings.drift_correction == DriftCorrection::projection) {
             for (int i = 0; i < settings.projections; ++i) project(contacts, settings);
         }

@@ -62,11 +62,10 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
     StepConstants step;
     step.substep = dt / static_cast<float>(settings.substeps);
     step.inverse_substep = 1 / step.substep;
+    step.whole_rate = 1 / std::max(step.substep, last_substep);
     step.gravity = settings.gravity;
     step.restitution_threshold = settings.restitution_threshold;
     step.push_out_speed = settings.push_out_speed;
-    // 30 sweeps leave impulses and velocities 1e-6 apart. Looking costs a sweep in cache 10 to 40 %.
-    step.comes_to_rest = std::max(settings.iterations, settings.relaxations) > 30;
     // An impulse is a force times the substep, so a cached one is scaled when the substep changes; but never up: what
     // mended an error in a short substep is no force, and would throw things in a long one.
     step.warm_start_scale =

@@ -15,10 +15,10 @@
 #include "motley/core/joint_store.h"
 #include "motley/core/step_constants.h"
 #include "motley/reference/scene_step.h"
+#include "renewal.h"
 #include "stage_runner.h"
 #include "sweeper.h"
 #include "tbb_executor.h"
-#include "watched_sweep.h"
 
 namespace motley {
 namespace {
@@ -113,6 +113,7 @@ struct Solver::Impl {
     Layout layout;
     Sweeper sweeper;
     Convergence convergence;
+    Renewal renewal;
     BusyFlag busy;
 
     Impl(const SolverSettings& s, Isa i, const SolverOptions& options)
@@ -123,7 +124,8 @@ struct Solver::Impl {
           own_executor(options.executor ? nullptr : make_executor(options.threads)),
           runner(options.executor ? options.executor : own_executor.get()),
           layout(kernel_table(i)),
-          sweeper(runner, layout)
+          sweeper(runner, layout),
+          renewal(sweeper, layout)
     {
     }
 
@@ -132,6 +134,7 @@ struct Solver::Impl {
     std::string take_in(Scene& scene, std::span<const Contact> contacts, StepReport& report);
     std::string lay_out(Scene& scene, std::span<const Contact> contacts);
     int iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations);
+    [[nodiscard]] bool sweeps_long() const;
     void measure_residual(StepReport& report);
     [[nodiscard]] FigureSteps figure_steps() const;
     [[nodiscard]] FigureUse use_of_figures() const;
@@ -293,12 +296,14 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     const bool can_replay = layout.has_constant_responses();
     layout.context.replay = can_replay ? Replay::next_time : Replay::nothing;
     // Where nothing comes between, positions and the next velocities are one pass over the bodies.
-    const bool runs_on = !projects && !(soft && settings.relaxations > 0);
+    const bool relaxes = soft && settings.relaxations > 0;
+    const bool runs_on = !projects && !relaxes;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool is_last = substep + 1 == settings.substeps;
         if (substep == 0 || !runs_on) sweeper.integrate(&BodyKernels::integrate_velocities);
         clock.charge(Stage::integrate_velocities);
-        sweeper.prepare_touched_trees();
+        if (substep == 0 || !relaxes) sweeper.prepare_touched_trees();
+        sweeper.begin_touched_trees();
         if (substep == 0 || !can_replay) sweeper.sweep(&ConstraintKernels::warm_start);
         if (can_replay) layout.context.replay = Replay::last_substep;
         sweeper.solve_touched_trees(exact_rate());
@@ -320,6 +325,7 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
         }
         for (int i = 0; projects && i < settings.projections; ++i) sweeper.sweep(&ConstraintKernels::project);
         clock.charge(Stage::integrate_positions);
+        if (relaxes) sweeper.prepare_touched_trees();
         if (once != 0) sweeper.sweep_across(&ConstraintKernels::relax);
         if (soft) report.sweeps += once + iterate(&ConstraintKernels::relax, settings.relaxations - once);
         clock.charge(Stage::relax);
@@ -405,10 +411,17 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
 int Solver::Impl::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations)
 {
     const float rate = kernel == &ConstraintKernels::solve ? exact_rate() : 0;
+    // Impulses of trees are not among those that a warm start applies.
+    const bool renews = sweeps_long() && layout.figures.touched_trees().empty();
+    if (renews) renewal.begin();
+    const auto renew_after = [&](int done, int most) {
+        if (renews && (done % Renewal::sweeps == 0 || done == most)) renewal.renew();
+    };
     if (!picks_blocks) {
-        for (int i = 0; i < iterations; ++i) {
+        for (int done = 1; done <= iterations; ++done) {
             sweeper.sweep(kernel);
             sweeper.solve_touched_trees(rate);
+            renew_after(done, iterations);
         }
         return iterations;
     }
@@ -425,6 +438,7 @@ int Solver::Impl::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, i
         sweeper.sweep(kernel, done <= iterations ? 0 : done);
         sweeper.solve_touched_trees(rate);
         if (measured) convergence.judge(layout.sweeps(), settings.tolerance);
+        renew_after(done, most);
     }
     layout.context.measure = Measure::nothing;
     return done;
@@ -455,14 +469,21 @@ FigureUse Solver::Impl::use_of_figures() const
     const bool projects = settings.method == Method::sequential_impulse &&
                           settings.drift_correction == DriftCorrection::projection;
     const bool possible = settings.method != Method::direct && !projects;
-    return {possible && !tells_blocks_apart, possible && settings.exact_joints};
+    // Nor do copies have their velocities made anew.
+    const bool in_lockstep = !tells_blocks_apart && (settings.exact_joints || !sweeps_long());
+    return {possible && in_lockstep, possible && settings.exact_joints};
+}
+
+bool Solver::Impl::sweeps_long() const
+{
+    return std::max(settings.iterations, settings.relaxations) > Renewal::sweeps;
 }
 
 /// Measures, island by island or of all, want bodies as they are between solving and relaxing; so do trees.
 bool Solver::Impl::visits_patches_once() const
 {
     return layout.intake.patches.are_wanted() && settings.method == Method::soft_step &&
-           settings.relaxations > 0 && !is_watched(layout.context) && !tells_blocks_apart &&
+           settings.relaxations > 0 && !sweeps_long() && !tells_blocks_apart &&
            layout.figures.touched_trees().empty();
 }
 
@@ -470,7 +491,7 @@ bool Solver::Impl::visits_patches_once() const
 float Solver::Impl::exact_rate() const
 {
     const StepConstants& step = layout.context.step;
-    return settings.method == Method::soft_step ? step.inverse_substep : step.joint.rate;
+    return settings.method == Method::soft_step ? step.whole_rate : step.joint.rate;
 }
 
 FigureSteps Solver::Impl::figure_steps() const

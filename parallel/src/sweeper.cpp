@@ -59,7 +59,7 @@ void run_chunk(const KernelContext& context, const KernelTable& kernels, const S
     if (sweep == nullptr) return;
     const bool solves = kernel == &ConstraintKernels::solve || kernel == &ConstraintKernels::relax;
     const auto run = [&](std::int32_t begin, std::int32_t end) {
-        if (solves && is_watched(context)) {
+        if (solves && context.measure != Measure::nothing) {
             watched_sweep(context, kernels, chunk.streams, sweep, chunk.kernels->impulse_floats, begin, end);
         } else {
             sweep(context, chunk.streams, begin, end);
@@ -235,6 +235,11 @@ void Sweeper::prepare_touched_trees()
 {
     for_each_touched_tree(
         [&](const FigureBlock& block) { prepare_tree(layout_.context, layout_.kernels().figures, block); });
+}
+
+void Sweeper::begin_touched_trees()
+{
+    for_each_touched_tree([](const FigureBlock& block) { begin_tree(block); });
 }
 
 void Sweeper::solve_touched_trees(float rate)

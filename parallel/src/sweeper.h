@@ -37,6 +37,7 @@ class Sweeper {
     void step_lone_figures(const FigureSteps& steps);
     /// What is left to do for figures that something touches: their trees, where they have any.
     void prepare_touched_trees();
+    void begin_touched_trees();
     void solve_touched_trees(float rate);
     /// Adds what a step has moved to where the bodies are. Returns how many bodies it had to contain, and sets the first
     /// one's slot.

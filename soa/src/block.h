@@ -154,12 +154,9 @@ struct BodyKernels {
     /// The energy of what their velocities have changed since, J, and 1/m.
     void (*find_energy)(const BodyArrays&, const std::int32_t* offsets, const float* kept, float* energy,
                         float* inverse_mass) = nullptr;
-    /// Squares of the speeds of that change, and of those before it, m2/s2.
-    void (*find_speeds)(const BodyArrays&, const std::int32_t* offsets, const float* kept, float* changes,
-                        float* speeds) = nullptr;
-    /// The velocities of the first `count` back where `goes_on` is 0. Null for fixed bodies.
+    /// The velocities of the first `count` as they were kept. Null for fixed bodies.
     void (*bring_back)(const BodyArrays&, const std::int32_t* offsets, const float* kept,
-                       const float* goes_on, int count) = nullptr;
+                       int count) = nullptr;
 };
 
 struct FigureBlock;
@@ -172,9 +169,6 @@ struct FigureKernels {
     Move store_velocities = nullptr;
     Move integrate_velocities = nullptr;
     Move integrate_positions = nullptr;
-    /// Of copies in lanes, as those of BodyKernels.
-    void (*find_speeds)(const float* copies, const float* kept, float* changes, float* speeds) = nullptr;
-    void (*bring_back)(float* copies, const float* kept, const float* goes_on) = nullptr;
     void (*factor)(const FigureBlock&) = nullptr;  ///< after equality_rows of each lock
     /// Velocities and impulses such that J v + rate C = 0 for every lock.
     void (*solve)(const FigureBlock&, float rate) = nullptr;

@@ -31,7 +31,6 @@ void enter_body(BodyKernels& kernels)
     kernels.integrate_on = integrate_positions<kind, true>;
     kernels.keep = keep_bodies<kind>;
     kernels.find_energy = find_energy<kind>;
-    kernels.find_speeds = find_speeds<kind>;
     static_assert(fields_of<Body<kind>> <= most_body_floats);
 }
 
@@ -50,8 +49,6 @@ void enter_body_kernels<Isa::MOTLEY_ISA>(BodyKernels* kinds, FigureKernels& figu
     figures.store_velocities = store_copy_velocities;
     figures.integrate_velocities = integrate_copy_velocities;
     figures.integrate_positions = integrate_copy_positions;
-    figures.find_speeds = find_copy_speeds;
-    figures.bring_back = bring_copies_back;
 }
 
 }  // namespace motley

@@ -18,9 +18,12 @@ struct FigureSteps {
 void step_figure(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
                  std::span<const ConstraintData> data, const FigureSteps& steps);
 
-/// Of blocks that something else touches, what is left to do beside ordinary sweeps: the tree. Before the first sweep of
-/// a substep, and after each.
+// Of blocks that something else touches, what is left to do beside ordinary sweeps: the tree.
+/// Factors where the bodies are: before the first substep, and again where bodies have moved before anything solves.
 void prepare_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block);
+/// Before the first sweep of a substep: its impulses start from nothing.
+void begin_tree(const FigureBlock& block);
+/// After each sweep.
 void solve_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
                 float rate);
 

@@ -93,10 +93,8 @@ inline void integrate_copy_positions(const KernelContext& context, const FigureB
     const Lanes h(context.step.substep);
     for_each_copy(figure, [&](BodyKind, float* lanes, const std::int32_t*, int) {
         auto body = load_row<Mover>(lanes);
-        advance(body, h);
-        // A turned body has turned inertia.
-        body.inverse_inertia = rotate_tensor(
-            body.delta_rotation, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes));
+        body.delta = body.delta + h * body.linear;
+        tumble(body, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), h);
         store_row(body, lanes);
     });
 }

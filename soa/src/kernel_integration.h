@@ -2,27 +2,6 @@
 
 // ---- v += h a ----------------------------------------------------------------------------------------
 
-/// Solves I (w' - w) + h w' x (I w') = 0 by one Newton step from w: implicit, so it cannot pump energy into a
-/// tumbling body as the explicit gyroscopic term does. (E. Catto, Numerical Methods, GDC 2015)
-inline Vec3<Lanes> gyrate(const Sym3<Lanes>& inertia, const Vec3<Lanes>& w, const Lanes& h)
-{
-    const Vec3<Lanes> l = inertia * w;
-    const Vec3<Lanes> f = h * cross(w, l);
-    // Columns of I + h ([w]x I - [I w]x).
-    const Vec3<Lanes> ix{inertia.xx, inertia.xy, inertia.xz}, iy{inertia.xy, inertia.yy, inertia.yz};
-    const Vec3<Lanes> iz{inertia.xz, inertia.yz, inertia.zz};
-    const Lanes zero(0);
-    const Vec3<Lanes> cx = ix + h * (cross(w, ix) - Vec3<Lanes>{zero, l.z, -l.y});
-    const Vec3<Lanes> cy = iy + h * (cross(w, iy) - Vec3<Lanes>{-l.z, zero, l.x});
-    const Vec3<Lanes> cz = iz + h * (cross(w, iz) - Vec3<Lanes>{l.y, -l.x, zero});
-    // Cramer's rule on columns scaled by the inertia's size, so that small bodies do not underflow.
-    const Lanes scale = inverse_or_zero(inertia.xx + inertia.yy + inertia.zz);
-    const Vec3<Lanes> x = scale * cx, y = scale * cy, z = scale * cz, r = scale * f;
-    const Vec3<Lanes> yz = cross(y, z);
-    const Lanes d = inverse_or_zero(dot(x, yz));
-    return w - Vec3<Lanes>{d * dot(r, yz), d * dot(x, cross(r, z)), d * dot(x, cross(y, r))};
-}
-
 inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* offsets,
                        Body<BodyKind::particle>& body)
 {
@@ -49,8 +28,7 @@ inline void accelerate(const StepConstants& step, const Lanes (&a)[4], const Lan
     const Lanes h(step.substep);
     const Vec3<float>& g = step.gravity;
     body.linear = body.linear + h * Vec3<Lanes>{a[0] + Lanes(g.x), a[1] + Lanes(g.y), a[2] + Lanes(g.z)};
-    const Vec3<Lanes> turned = gyrate(inverse(body.inverse_inertia), body.angular, h);
-    body.angular = turned + h * (body.inverse_inertia * Vec3<Lanes>{t[0], t[1], t[2]});
+    body.angular = body.angular + h * (body.inverse_inertia * Vec3<Lanes>{t[0], t[1], t[2]});
 }
 inline void accelerate(const KernelContext& context, const BodyArrays& arrays, const std::int32_t* offsets,
                        Body<BodyKind::rigid>& body)
@@ -154,14 +132,37 @@ void integrate_velocities(const KernelContext& context, std::int32_t begin, std:
 
 // ---- x += h v ----------------------------------------------------------------------------------------
 
+/// Turns a body by the velocity that it has half way, and carries its angular momentum L = I w through the turn: its speed is
+/// what its turned inertia makes of that. So L is kept to rounding, the turn is right to second order, and a tumbling body
+/// cannot gain energy without bound. One that turns by more than a radian a substep, which no substep can follow, or has no inverse
+/// inertia keeps its speed instead, and with it its energy.
+inline void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inertia, const Lanes& h)
+{
+    const Vec3<Lanes> speed = body.angular;
+    const Sym3<Lanes>& i = body.inverse_inertia;
+    const auto turns = (i.xx + i.yy + i.zz > Lanes(0)) & (h * h * dot(speed, speed) < Lanes(1));
+    const Vec3<Lanes> momentum = inverse(i) * speed;
+    const Quat<Lanes> half_way = rotation_by(Lanes(0.5F) * h * speed) * body.delta_rotation;
+    const auto speed_of = [&](const Sym3<Lanes>& inverse_inertia) {
+        const Vec3<Lanes> w = inverse_inertia * momentum;
+        return Vec3<Lanes>{select(turns, w.x, speed.x), select(turns, w.y, speed.y),
+                           select(turns, w.z, speed.z)};
+    };
+    const Vec3<Lanes> then = speed_of(rotate_tensor(half_way, start_inverse_inertia));
+    body.delta_rotation = normalised(rotation_by(h * then) * body.delta_rotation);
+    body.inverse_inertia = rotate_tensor(body.delta_rotation, start_inverse_inertia);
+    body.angular = speed_of(body.inverse_inertia);
+}
+
 template <BodyKind kind>
-void advance(Body<kind>& body, const Lanes& h)
+void advance(const BodyArrays& arrays, const std::int32_t* offsets, Body<kind>& body, const Lanes& h)
 {
     body.delta = body.delta + h * body.linear;
     if constexpr (kind == BodyKind::planar) body.delta_yaw = body.delta_yaw + h * body.yaw_rate;
-    if constexpr (kind == BodyKind::rigid || kind == BodyKind::fixed) {
+    if constexpr (kind == BodyKind::rigid)
+        tumble(body, load_tensor(arrays.start_inverse_inertia, offsets), h);
+    if constexpr (kind == BodyKind::fixed)
         body.delta_rotation = normalised(rotation_by(h * body.angular) * body.delta_rotation);
-    }
 }
 
 /// `runs_on`: and the velocities of the next substep.
@@ -170,8 +171,7 @@ template <BodyKind kind, bool runs_on>
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
     Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
-    advance(body, Lanes(context.step.substep));
-    turn_inertia(arrays, index.offsets, body);
+    advance(arrays, index.offsets, body, Lanes(context.step.substep));
     if constexpr (kind == BodyKind::fixed) {
         const Quat<Lanes>& q = body.delta_rotation;
         store_quads(arrays.delta, offset_floats, index.offsets,
@@ -179,10 +179,9 @@ template <BodyKind kind, bool runs_on>
         store_quads(arrays.delta + 4, offset_floats, index.offsets, {q.x, q.y, q.z, q.w}, index.count);
     } else {
         store_delta(arrays, index.offsets, body, index.count);
-        if constexpr (runs_on) {
-            change_velocity(context, arrays, index, body);
+        if constexpr (runs_on) change_velocity(context, arrays, index, body);
+        if constexpr (runs_on || kind == BodyKind::rigid)
             store_velocity(arrays, index.offsets, body, index.count);
-        }
     }
 }
 

@@ -15,4 +15,3 @@
 #include "motley/core/joint_pose.h"
 #include "motley/core/lane_body.h"
 #include "motley/core/lane_residual.h"
-#include "motley/core/rest.h"

@@ -21,55 +21,10 @@ void find_energy(const BodyArrays& arrays, const std::int32_t* offsets, const fl
     }
 }
 
+/// Velocities as they were kept.
 template <BodyKind kind>
-void store_speeds(const Body<kind>& before, const Body<kind>& now, float* changes, float* speeds)
+void bring_back(const BodyArrays& arrays, const std::int32_t* offsets, const float* kept, int count)
 {
-    store_lanes(square_of_speeds(change_between(before, now)), changes);
-    store_lanes(square_of_speeds(before), speeds);
-}
-template <BodyKind kind>
-void find_speeds(const BodyArrays& arrays, const std::int32_t* offsets, const float* kept, float* changes,
-                 float* speeds)
-{
-    for (int lane = 0; lane < block_lanes; lane += Lanes_width) {
-        store_speeds(load_row<Body<kind>>(kept + lane),
-                     load_body(arrays, offsets + lane, static_cast<Body<kind>*>(nullptr)), changes + lane,
-                     speeds + lane);
-    }
-}
-inline void find_copy_speeds(const float* copies, const float* kept, float* changes, float* speeds)
-{
-    for (int lane = 0; lane < block_lanes; lane += Lanes_width) {
-        store_speeds(load_row<Mover>(kept + lane), load_row<Mover>(copies + lane), changes + lane,
-                     speeds + lane);
-    }
-}
-
-/// The velocity that was kept where `goes_on` is 0.
-template <BodyKind kind>
-Body<kind> going_on(const Body<kind>& now, const Body<kind>& before, const float* goes_on)
-{
-    Body<kind> body = now;
-    const auto goes = load_lanes(goes_on) > Lanes(0);
-    for_each_component(body, before,
-                       [&](Lanes& new_one, const Lanes& old) { new_one = select(goes, new_one, old); });
-    return body;
-}
-template <BodyKind kind>
-void bring_back(const BodyArrays& arrays, const std::int32_t* offsets, const float* kept,
-                const float* goes_on, int count)
-{
-    for (int lane = 0; lane < count; lane += Lanes_width) {
-        const Body<kind> now = load_body(arrays, offsets + lane, static_cast<Body<kind>*>(nullptr));
-        store_velocity(arrays, offsets + lane,
-                       going_on(now, load_row<Body<kind>>(kept + lane), goes_on + lane), count - lane);
-    }
-}
-inline void bring_copies_back(float* copies, const float* kept, const float* goes_on)
-{
-    for (int lane = 0; lane < block_lanes; lane += Lanes_width) {
-        store_copy_velocity(
-            going_on(load_row<Mover>(copies + lane), load_row<Mover>(kept + lane), goes_on + lane),
-            copies + lane);
-    }
+    for (int lane = 0; lane < count; lane += Lanes_width)
+        store_velocity(arrays, offsets + lane, load_row<Body<kind>>(kept + lane), count - lane);
 }

@@ -41,6 +41,8 @@ struct SlidingRod {
 
 // Below this friction is against the slip, in degrees. A step in float leaves some 1e-5.
 constexpr double most_degrees = 0.05;
+/// s: so short that no row turns, nor a spin by the turn of its body.
+constexpr float instant = 1e-4F;
 
 class SlidingRodAtATilt : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Tilts, SlidingRodAtATilt, ::testing::Values(0.3, 0.6, 0.9));
@@ -99,7 +101,7 @@ TEST_P(SlidingRodAtATilt, IsBrakedAgainstItsSlipItsSpinAndItsRollByAManifold)
     contact.torsional_radius = 0.005F;
     contact.rolling_radius = 0.005F;
     const ConstraintId joint = rod.scene.add_joint(contact);
-    ASSERT_EQ(Solver(plain_sweeps(100)).step(rod.scene, frame_time).status, StepStatus::done);
+    ASSERT_EQ(Solver(plain_sweeps(100)).step(rod.scene, instant).status, StepStatus::done);
     const JointReport report = rod.scene.joint_report(joint);
     const Vector up{0, 1, 0}, force = convert<double>(report.force), torque = convert<double>(report.torque),
                               spin = convert<double>(rod.scene.state(rod.rod).angular_velocity);
@@ -123,7 +125,7 @@ TEST(Servo, WithoutStrengthEnoughPullsAgainstTheVelocityThatIsLeft)
     const ConstraintId joint = rod.scene.add_joint(servo);
     SolverSettings settings = plain_sweeps(100);
     settings.gravity = {};
-    ASSERT_EQ(Solver(settings).step(rod.scene, frame_time).status, StepStatus::done);
+    ASSERT_EQ(Solver(settings).step(rod.scene, instant).status, StepStatus::done);
     const Vector force = convert<double>(rod.scene.joint_report(joint).force);
     const Vector left = velocity_at(rod.scene.state(rod.rod), rod.arm);
     ASSERT_GT(length(left), 0.1);
@@ -133,8 +135,7 @@ TEST(Servo, WithoutStrengthEnoughPullsAgainstTheVelocityThatIsLeft)
 
 TEST(Servo, WithoutStrengthEnoughTurnsAgainstTheSpinThatIsLeft)
 {
-    // Frames apart by a radian, so that rows and torques are not the same. A step so short that no row turns.
-    constexpr float instant = 1e-4F;
+    // Frames apart by a radian, so that rows and torques are not the same.
     for (const double apart : {0.0, 1.0}) {
         SlidingRod rod(0.6, {3, 2, -1});
         AngularServoDefinition servo{rod.scene.ground(), rod.rod};
@@ -154,14 +155,14 @@ TEST(Servo, WithoutStrengthEnoughTurnsAgainstTheSpinThatIsLeft)
     }
 }
 
-/// Residuals over the fastest free slip, after so many sweeps.
+/// Residuals over the fastest free slip, after so many sweeps, in a step so short that no box turns.
 double share_left(float ratio, int iterations, Method method = Method::sequential_impulse)
 {
     HeapOfBoxes heap(ratio);
     const double free = heap.fastest();
     SolverSettings settings = plain_sweeps(iterations);
     settings.method = method;
-    EXPECT_EQ(Solver(settings).step(heap.scene, frame_time, heap.contacts).status, StepStatus::done);
+    EXPECT_EQ(Solver(settings).step(heap.scene, 1e-6F, heap.contacts).status, StepStatus::done);
     const double left = heap.residual() / free;
     std::printf("masses 1 to %g, method %d, %5d sweeps: %.2g of %.2g m/s left\n", static_cast<double>(ratio),
                 static_cast<int>(method), iterations, left, free);

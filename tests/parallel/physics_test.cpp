@@ -389,7 +389,7 @@ TEST(Conservation, JointsChangeNeitherMomentumNorAngularMomentumByMoreThanRoundi
 
 TEST(Conservation, ATumblingBodyNeverGainsEnergy)
 {
-    // Dzhanibekov: spin about the intermediate axis flips for ever; the implicit gyroscopic term must not pump.
+    // Dzhanibekov: spin about the intermediate axis flips for ever; what carries angular momentum must not pump.
     Scene scene;
     BodyDefinition body = ball(BodyModel::rigid, {});
     body.inertia = {1, 0, 0, 2, 0, 2.9F};

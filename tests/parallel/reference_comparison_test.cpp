@@ -140,6 +140,11 @@ TYPED_TEST(EveryJoint, LanesAgreeWithTheReferenceForEveryPairAndMethod)
         });
 }
 
+template <class Definition>
+constexpr bool locks_point = std::is_same_v<Definition, BallSocketDefinition>;
+template <AngularLock angular>
+constexpr bool locks_point<FrameJointDefinition<LinearLock::point, angular>> = true;
+
 TYPED_TEST(EveryJoint, JTimesVIsTheDerivativeOfC)
 {
     // Central differences along the bodies' own motion: they leave epsilon^2 and 1e-16 / epsilon.
@@ -160,7 +165,13 @@ TYPED_TEST(EveryJoint, JTimesVIsTheDerivativeOfC)
             for (std::size_t i = 0; i < now.size(); ++i) {
                 // Both ends of a range lie on one row: next to the middle the nearer one may change.
                 if (before[i].side != after[i].side) continue;
-                const Eigen::VectorXd difference = (after[i].error - before[i].error) / (2 * epsilon);
+                Eigen::VectorXd difference = (after[i].error - before[i].error) / (2 * epsilon);
+                // Both impulses of a locked point act in the middle between the anchors: its rows are seen by who turns with
+                // the mean of both spins.
+                if constexpr (locks_point<TypeParam>) {
+                    const Eigen::Vector3d spin = (a.velocity.tail<3>() + b.velocity.tail<3>()) / 2;
+                    difference.topRows(3) -= spin.cross(Eigen::Vector3d(now[i].error.topRows(3)));
+                }
                 const Eigen::VectorXd analytic = now[i].side * (now[i].jacobian * velocity);
                 // A motor has no C, and no end is at infinity.
                 if (now[i].kind == reference::Block::Kind::motor || !now[i].error.allFinite()) continue;

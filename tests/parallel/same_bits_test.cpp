@@ -30,10 +30,10 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 11094586000837920413ULL},
-            {"baumgarte", iterative, 577689457075719001ULL},
-            {"no drift correction", none, 8439568581126519827ULL},
-            {"projection", projection, 16973389768830643294ULL}};
+    return {{"soft_step", soft, 17628588635836109796ULL},
+            {"baumgarte", iterative, 1679848397350824560ULL},
+            {"no drift correction", none, 2148422154256455566ULL},
+            {"projection", projection, 13604459780252104017ULL}};
 }
 
 /// The state's hash after every step.
@@ -89,8 +89,8 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {2869218331416452890ULL, 8129287896462912930ULL, 14822947874948856552ULL,
-                                    15110546540230627466ULL};
+    const std::uint64_t golden[] = {14700026297281566102ULL, 7021944756437310376ULL, 14786839451368715601ULL,
+                                    8269466734413825494ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});

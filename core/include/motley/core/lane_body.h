@@ -3,6 +3,8 @@
 // a constraint is written once for all pairs.
 #pragma once
 
+#include <type_traits>
+
 #include "motley/core/body_store.h"
 #include "motley/core/scalar.h"
 #include "motley/core/vector.h"
@@ -328,6 +330,16 @@ Vector anchor_error(const Vector& start_error, const Vector& start_arm_a, const 
 {
     return start_error + (translation<Vector>(b) - translation<Vector>(a)) + (arm_b - start_arm_b) -
            (arm_a - start_arm_a);
+}
+
+/// Arms of two anchors that are `apart` (p_b - p_a) to the point in the middle between them. Where both impulses of a joint act at
+/// one point they have no moment together, so angular momentum is kept however far the anchors are apart.
+template <class Vector>
+void meet_half_way(Vector& arm_a, Vector& arm_b, const Vector& apart)
+{
+    using Real = std::remove_cvref_t<decltype(apart.x)>;
+    arm_a = arm_a + Real(0.5F) * apart;
+    arm_b = arm_b - Real(0.5F) * apart;
 }
 
 // ---- inverses of effective masses: zero where a direction cannot move, never a division by zero

@@ -22,13 +22,15 @@ Softness soft(float hertz, float damping_ratio, float substep);
 struct StepConstants {
     float substep = 0;          ///< s
     float inverse_substep = 0;  ///< 1/s
+    /// 1/s, at which soft steps take away a lock's whole error. Of what a longer substep left, only as much as that one would have
+    /// taken in this time: all at once would be a blow.
+    float whole_rate = 0;
     Softness joint, contact, static_contact;
     float push_out_speed = 0;    ///< m/s; infinite speed is the largest float
     float slop = 0;              ///< m of penetration left alone
     float warm_start_scale = 0;  ///< this substep over the last one; 0 starts cold
     float restitution_threshold = 0;
-    bool comes_to_rest = false;  ///< so many sweeps that changes below rounding add up; see rest.h
-    float projection_rate = 0;   ///< share of a contact's penetration removed by a projection
+    float projection_rate = 0;  ///< share of a contact's penetration removed by a projection
     Vec3<float> gravity{};
 };
 

@@ -28,8 +28,10 @@ struct Body {
     [[nodiscard]] Matrix6 inverse_mass() const;
     /// The pose after moving with a generalised velocity for a time, exactly for constant velocity.
     void advance(const Vector6& generalised_velocity, double seconds);
-    /// v += h (g + M^-1 f), with the gyroscopic term by one implicit Newton step in the body frame.
+    /// v += h (g + M^-1 f).
     void accelerate(const Eigen::Vector3d& gravity, double seconds);
+    /// x += h v, turned by the velocity half way; the speed after it is what keeps the angular momentum.
+    void move_on(double seconds);
 };
 
 /// [u]x: the matrix of the cross product, skew(u) v = u x v.

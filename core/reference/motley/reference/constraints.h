@@ -18,6 +18,10 @@ Eigen::Vector3d point_error(const Body& a, const Body& b, const Eigen::Vector3d&
 /// [-I, [r_a]x, I, -[r_b]x].
 Jacobian point_jacobian(const Body& a, const Body& b, const Eigen::Vector3d& local_a,
                         const Eigen::Vector3d& local_b);
+/// The same with both arms to the point in the middle between the anchors: what joints that lock a point push along. Equal and
+/// opposite impulses have no moment there. J v is the rate of C as seen by who turns with the mean of both spins.
+Jacobian lock_jacobian(const Body& a, const Body& b, const Eigen::Vector3d& local_a,
+                       const Eigen::Vector3d& local_b);
 
 /// C = |p_b - p_a| - length; the axis is x where the points coincide.
 double distance_error(const Body& a, const Body& b, const Eigen::Vector3d& local_a,

@@ -81,9 +81,11 @@ struct BallSocket {
     {
         substep.arm_a = turned(a, row.start_arm_a);
         substep.arm_b = turned(b, row.start_arm_b);
+        const auto error = anchor_error(row.start_error, row.start_arm_a, row.start_arm_b, substep.arm_a,
+                                        substep.arm_b, a, b);
+        meet_half_way(substep.arm_a, substep.arm_b, error);
         substep.mass = inverse(inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b));
-        substep.bias = Real(step.joint.rate) * anchor_error(row.start_error, row.start_arm_a, row.start_arm_b,
-                                                            substep.arm_a, substep.arm_b, a, b);
+        substep.bias = Real(step.joint.rate) * error;
         apply_impulse(a, substep.arm_a, -impulse.push);
         apply_impulse(b, substep.arm_b, impulse.push);
     }
@@ -108,10 +110,11 @@ struct BallSocket {
     template <class Real, class Row, class A, class B>
     static void equality_rows(const Row& row, const A& a, const B& b, EqualityRow<Real>* rows)
     {
-        const Vec3<Real> arm_a = turned(a, row.start_arm_a), arm_b = turned(b, row.start_arm_b);
+        Vec3<Real> arm_a = turned(a, row.start_arm_a), arm_b = turned(b, row.start_arm_b);
         const Vec3<Real> error =
             anchor_error(row.start_error, row.start_arm_a, row.start_arm_b, arm_a, arm_b, a, b);
         const Real zero(0), one(1);
+        meet_half_way(arm_a, arm_b, error);
         rows[0] = {{one, zero, zero}, {zero, arm_a.z, -arm_a.y}, {zero, arm_b.z, -arm_b.y}, error.x};
         rows[1] = {{zero, one, zero}, {-arm_a.z, zero, arm_a.x}, {-arm_b.z, zero, arm_b.x}, error.y};
         rows[2] = {{zero, zero, one}, {arm_a.y, -arm_a.x, zero}, {arm_b.y, -arm_b.x, zero}, error.z};
@@ -120,11 +123,13 @@ struct BallSocket {
     template <class Real, class Row, class Substep, class A, class B>
     static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
     {
-        const auto arm_a = turned(a, row.start_arm_a);
-        const auto arm_b = turned(b, row.start_arm_b);
+        auto arm_a = turned(a, row.start_arm_a);
+        auto arm_b = turned(b, row.start_arm_b);
+        const auto error =
+            anchor_error(row.start_error, row.start_arm_a, row.start_arm_b, arm_a, arm_b, a, b);
+        meet_half_way(arm_a, arm_b, error);
         const auto mass = inverse(inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b));
-        const auto push =
-            -(mass * anchor_error(row.start_error, row.start_arm_a, row.start_arm_b, arm_a, arm_b, a, b));
+        const auto push = -(mass * error);
         apply_displacement(a, arm_a, -push);
         apply_displacement(b, arm_b, push);
     }

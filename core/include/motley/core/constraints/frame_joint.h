@@ -264,11 +264,16 @@ struct FrameJoint {
         Quat<Real> frame_a{};
         if constexpr (has_axes || has_turns) frame_a = turn_of(a) * row.start_frame_a;
         if constexpr (has_arms) {
-            const Vec3<Real> arm_a = rotate(turn_of(a), row.start.arm_a);
+            substep.arm.a = rotate(turn_of(a), row.start.arm_a);
             substep.arm.b = rotate(turn_of(b), row.start.arm_b);
-            const Vec3<Real> d = anchor_error(row.start.separation, row.start.arm_a, row.start.arm_b, arm_a,
-                                              substep.arm.b, a, b);
-            substep.arm.a = linear_lock == LinearLock::point ? arm_a : arm_a + d;
+            const Vec3<Real> d = anchor_error(row.start.separation, row.start.arm_a, row.start.arm_b,
+                                              substep.arm.a, substep.arm.b, a, b);
+            // Both impulses act at one point: the middle between the anchors, or the point of b on a's line or plane.
+            if constexpr (linear_lock == LinearLock::point) {
+                meet_half_way(substep.arm.a, substep.arm.b, d);
+            } else {
+                substep.arm.a = substep.arm.a + d;
+            }
             linear_rows_of(frame_a, d, e, substep.error);
             for (int i = 0; i < linear_rows; ++i) {
                 if constexpr (has_axes) substep.linear.axis[i] = e[i];
