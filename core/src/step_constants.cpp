@@ -38,7 +38,8 @@ void SolverSettings::validate() const
     check("SolverSettings.gravity.x", gravity.x, -big, big, "a finite value from -1e9 to 1e9 (m/s2)");
     check("SolverSettings.gravity.y", gravity.y, -big, big, "a finite value from -1e9 to 1e9 (m/s2)");
     check("SolverSettings.gravity.z", gravity.z, -big, big, "a finite value from -1e9 to 1e9 (m/s2)");
-    check("SolverSettings.contact_hertz", contact_hertz, 1e-3F, 1e6, "0.001 to 1e6 (Hz)");
+    if (contact_hertz != 0)
+        check("SolverSettings.contact_hertz", contact_hertz, 1e-3F, 1e6, "0 or 0.001 to 1e6 (Hz)");
     check("SolverSettings.contact_damping_ratio", contact_damping_ratio, 0, 1e6, "0 to 1e6");
     check("SolverSettings.joint_hertz", joint_hertz, 1e-3F, 1e6, "0.001 to 1e6 (Hz)");
     check("SolverSettings.joint_damping_ratio", joint_damping_ratio, 0, 1e6, "0 to 1e6");
@@ -71,10 +72,15 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
     step.warm_start_scale =
         settings.warm_start && last_substep > 0 ? std::min(1.0F, step.substep / last_substep) : 0.0F;
     if (settings.method == Method::soft_step) {
-        step.joint = soft(settings.joint_hertz, settings.joint_damping_ratio, step.substep);
-        step.contact = soft(settings.contact_hertz, settings.contact_damping_ratio, step.substep);
+        // What a longer substep left is not taken away at a blow either.
+        const float stiffest = 0.25F / std::max(step.substep, last_substep);
+        step.joint =
+            soft(std::min(settings.joint_hertz, stiffest), settings.joint_damping_ratio, step.substep);
+        const float contact_hertz =
+            settings.contact_hertz > 0 ? settings.contact_hertz : std::max(30.0F, 0.5F * stiffest);
+        step.contact = soft(contact_hertz, settings.contact_damping_ratio, step.substep);
         // What cannot give way is made twice as stiff, or a crowd would sink into its walls first.
-        step.static_contact = soft(2 * settings.contact_hertz, settings.contact_damping_ratio, step.substep);
+        step.static_contact = soft(2 * contact_hertz, settings.contact_damping_ratio, step.substep);
     } else {
         const bool baumgarte = settings.drift_correction == DriftCorrection::baumgarte;
         const Softness rigid{baumgarte ? settings.baumgarte * step.inverse_substep : 0.0F, 1, 0};

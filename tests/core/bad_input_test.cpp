@@ -605,7 +605,7 @@ TEST(BadInput, EverySettingIsChecked)
     refused("gravity.x", [](auto& s) { s.gravity.x = nan; });
     refused("gravity.y", [](auto& s) { s.gravity.y = nan; });
     refused("gravity.z", [](auto& s) { s.gravity.z = infinity; });
-    refused("contact_hertz", [](auto& s) { s.contact_hertz = 0; });
+    refused("contact_hertz", [](auto& s) { s.contact_hertz = -1; });
     refused("contact_damping_ratio", [](auto& s) { s.contact_damping_ratio = -1; });
     refused("push_out_speed", [](auto& s) { s.push_out_speed = 0; });
     refused("joint_hertz", [](auto& s) { s.joint_hertz = nan; });

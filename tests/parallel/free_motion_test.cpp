@@ -345,7 +345,7 @@ TEST(FreeFigure, TurnsAsTheForcesInItsJointsSay)
 {
     for (const bool exact : {false, true}) {
         double before = 0;
-        for (const int substeps : {1, 2, 4, 8}) {
+        for (const int substeps : {1, 2, 4, 8, 16, 32}) {
             const double angle = after_a_flight(exact, substeps);
             std::printf("exact %d, %d substeps: %.2g rad\n", exact, substeps, angle);
             if (substeps == 4) {
@@ -353,7 +353,7 @@ TEST(FreeFigure, TurnsAsTheForcesInItsJointsSay)
             }
             // Exact joints are of second order, but for what floats round; sweeps leave an error to the next substep.
             if (substeps > 1) {
-                EXPECT_LT(angle, exact ? before / 3.5 + 2e-5 : before);
+                EXPECT_LT(angle, exact ? before / 3.5 + 2e-5 : before / 1.4);
             }
             before = angle;
         }

@@ -226,6 +226,29 @@ TEST(Contact, AStandingBallIsHeldByItsWeight)
     }
 }
 
+TEST(Contact, SagsLessTheShorterTheSubstep)
+{
+    // Closed form: a rigid floor is not entered at all. By default nothing but the substep makes a contact soft.
+    double before = 0;
+    for (const int substeps : {1, 4, 16, 64}) {
+        Scene scene;
+        const BodyId body = scene.add_body(ball(BodyModel::rigid, {0, 0.5, 0}, 4));
+        SolverSettings settings = soft({0, -10, 0});
+        settings.substeps = substeps;
+        Solver solver(settings);
+        for (int step = 0; step < 120; ++step) {
+            const Contact contact = on_floor(scene, body, 0.5);
+            solver.step(scene, 1.0F / 60, {&contact, 1});
+        }
+        const double sag = 0.5 - scene.state(body).position.y;
+        EXPECT_GE(sag, 0);
+        if (substeps > 1) {
+            EXPECT_LT(sag, before / 8) << substeps;
+        }
+        before = sag;
+    }
+}
+
 TEST(Contact, HeadOnImpactLeavesWithRestitution)
 {
     // Newton's law of impact: v' = -e v, the normal impulse (1 + e) m v.

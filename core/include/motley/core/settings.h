@@ -59,12 +59,15 @@ struct SolverSettings {
     BadContacts bad_contacts = BadContacts::refuse;
     Vec3<float> gravity{0, 0, 0};  ///< m/s2; planar bodies ignore z
 
-    float contact_hertz = 30;          ///< soft_step: stiffness of contacts, > 0, capped at 0.25 / substep
+    /// soft_step: stiffness of contacts, > 0, capped at 0.25 / substep; 0: half of that cap and 30 at least, so that shorter substeps
+    /// come to the rigid truth. Against what cannot move it is doubled.
+    float contact_hertz = 0;
     float contact_damping_ratio = 10;  ///< >= 0
     /// m/s or rad/s, > 0: the fastest that penetration is resolved, and that a joint beyond its limit comes back. Bounds no
     /// force: what presses on a contact or a limit is held.
     float push_out_speed = 3;
-    float joint_hertz = 60;           ///< soft_step: stiffness of joints, > 0, capped at 0.25 / substep
+    /// soft_step: stiffness of joints, > 0, capped at 0.25 / substep: by default the stiffest that a substep can follow.
+    float joint_hertz = 1e6F;
     float joint_damping_ratio = 2;    ///< >= 0
     float restitution_threshold = 1;  ///< m/s, >= 0: slower impacts do not bounce
 
