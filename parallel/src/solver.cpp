@@ -359,6 +359,11 @@ void Solver::Impl::finish(Scene& scene, StepReport& report)
     scene.last_substep = layout.context.step.substep;
     scene.find_break_events();
     layout.report(report);
+    if (report.joints_refused_exactly > 0) {
+        const BodyStore& bodies = scene.bodies();
+        report.first_light_body =
+            bodies.id_of_slot(bodies.rows(BodyKind::rigid).slot[layout.figures.refused().light_row]);
+    }
 }
 
 bool Solver::Impl::anything_bounces(const Scene& scene) const

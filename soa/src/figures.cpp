@@ -2,6 +2,7 @@
 #include "figures.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "disjoint_sets.h"
@@ -29,7 +30,33 @@ std::uint32_t rigid_row_of(const Placement& joint)
 struct Member {
     std::vector<const Figures::Candidate*> joints;
     std::vector<BodyRow> bodies;
+    bool is_refused = false;  ///< to be solved exactly
 };
+
+/// The row of a body that joins others more than so many times as heavy, of a figure that nothing holds; 0 if there is none. What
+/// moves without it and what only it lets move differ by less than a float resolves: the joints would hold, and momentum be lost.
+constexpr double most_mass_ratio = 2000;
+std::uint32_t light_between_heavy(const Member& member, const BodyRows& rigid)
+{
+    std::map<std::uint32_t, int> locks_on;
+    for (const Figures::Candidate* joint : member.joints) {
+        if (joint->equalities == 0) continue;
+        for (const BodyRow body : {joint->placement.a, joint->placement.b}) {
+            if (!is_rigid(body)) return 0;
+            ++locks_on[body.row()];
+        }
+    }
+    const auto inverse_mass = [&](std::uint32_t row) {
+        constexpr std::size_t row_floats = 8, inverse_mass_in_row = 3;
+        return static_cast<double>(rigid.velocity[row_floats * row + inverse_mass_in_row]);
+    };
+    double of_heaviest = std::numeric_limits<double>::infinity();
+    for (const auto& [row, locks] : locks_on) of_heaviest = std::min(of_heaviest, inverse_mass(row));
+    for (const auto& [row, locks] : locks_on) {
+        if (locks > 1 && inverse_mass(row) > most_mass_ratio * of_heaviest) return row;
+    }
+    return 0;
+}
 
 /// The shape of a component as numbers: equal ones are copies.
 std::vector<std::uint32_t> signature_of(Member& member)
@@ -42,7 +69,7 @@ std::vector<std::uint32_t> signature_of(Member& member)
         return entry->second;
     };
     std::vector<std::uint32_t> signature;
-    signature.reserve(4 * member.joints.size());
+    signature.reserve(4 * member.joints.size() + 1);
     for (const Figures::Candidate* joint : member.joints) {
         const Placement& p = joint->placement;
         signature.push_back(p.colour | std::uint32_t{p.type} << 8 |
@@ -53,6 +80,7 @@ std::vector<std::uint32_t> signature_of(Member& member)
         signature.push_back(name(p.a));
         signature.push_back(name(p.b));
     }
+    signature.push_back(static_cast<std::uint32_t>(member.is_refused));
     return signature;
 }
 
@@ -125,14 +153,24 @@ Placement gap_beside(Placement placement)
 
 }  // namespace
 
-void Figures::find(std::span<const Candidate> joints, std::size_t rigid_rows, const KernelTable& kernels,
+void Figures::find(std::span<const Candidate> joints, const BodyRows& rigid, const KernelTable& kernels,
                    bool exact, std::vector<Placement>& placed)
 {
+    const std::size_t rigid_rows = rigid.size();
+    refused_ = {};
     shapes_.clear();
     blocks_.clear();
     lone_.clear();
     touched_trees_.clear();
     std::vector<Member> members = members_of(joints, rigid_rows, kernels, exact ? rigid_rows : most_bodies);
+    for (Member& member : members) {
+        const std::uint32_t light_row = exact ? light_between_heavy(member, rigid) : 0;
+        if (light_row == 0) continue;
+        member.is_refused = true;
+        refused_.joints += std::count_if(member.joints.begin(), member.joints.end(),
+                                         [](const Candidate* joint) { return joint->equalities > 0; });
+        refused_.light_row = light_row;
+    }
     std::map<std::vector<std::uint32_t>, std::vector<std::size_t>> groups;
     for (std::size_t i = 0; i < members.size(); ++i) groups[signature_of(members[i])].push_back(i);
 
@@ -143,7 +181,7 @@ void Figures::find(std::span<const Candidate> joints, std::size_t rigid_rows, co
     std::vector<std::int64_t> first_float;
     for (const auto& [signature, copies] : groups) {
         std::unique_ptr<FigureShape> shape = shape_of(members[copies.front()], signature);
-        const bool has_tree = exact && shape->plant_tree();
+        const bool has_tree = exact && !members[copies.front()].is_refused && shape->plant_tree();
         if (!has_tree && shape->bodies.size() > most_bodies) continue;
         for (std::size_t first = 0; first < copies.size(); first += block_lanes) {
             const std::size_t count = std::min<std::size_t>(block_lanes, copies.size() - first);

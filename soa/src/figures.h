@@ -22,9 +22,15 @@ class Figures {
     };
     /// Sorts the joints into `placed`: those of figures first, sixteen copies of a joint in line with gaps where a block has
     /// fewer copies, so that each has a block of its own; then the rest as they were. `exact`: figures whose locks
-    /// form trees get one, and are figures however few they are.
-    void find(std::span<const Candidate> joints, std::size_t rigid_rows, const KernelTable& kernels,
+    /// form trees get one, and are figures however few they are; but those in which a light body joins heavy ones.
+    void find(std::span<const Candidate> joints, const BodyRows& rigid, const KernelTable& kernels,
               bool exact, std::vector<Placement>& placed);
+    /// The joints that got no tree for that, and the row of such a light body.
+    struct Refused {
+        std::int64_t joints = 0;
+        std::uint32_t light_row = 0;
+    };
+    [[nodiscard]] const Refused& refused() const { return refused_; }
     /// Once `placed` has been filled into its blocks.
     void bind(BatchSet& batches, const KernelTable& kernels);
 
@@ -46,6 +52,7 @@ class Figures {
     [[nodiscard]] std::int64_t lone_joints() const { return is_empty() ? 0 : lone_joints_; }
 
   private:
+    Refused refused_;
     std::vector<std::unique_ptr<FigureShape>> shapes_;
     std::vector<FigureBlock> blocks_;
     std::vector<std::vector<FigureBlock::Joint>> joints_;  ///< of each block
