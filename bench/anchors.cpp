@@ -28,7 +28,7 @@ DialGrid grid_of(const Dials& dials)
     grid.substeps = {s.substeps};
     grid.iterations = {s.iterations};
     grid.relaxations = {s.relaxations};
-    grid.hertz = {s.joint_hertz};
+    grid.hertz = {s.contact_hertz > 0 ? s.joint_hertz : 0};
     grid.exact = {s.exact_joints ? 1 : 0};
     grid.threads = {1, 2};
     return grid;
@@ -41,7 +41,7 @@ std::optional<Dials> pick(const Anchor& anchor, const SweepOptions& options)
     grid.methods = {Method::soft_step};
     grid.substeps = {1, 2, 3, 4, 5};
     grid.iterations = {1};
-    grid.hertz = {60};
+    grid.hertz = {0};
     const SweepResult found = sweep(anchor.scene, grid, options);
     const SweepPoint* best = fastest_within(found, anchor.most_error).front().second;
     return best == nullptr ? std::nullopt : best->dials;

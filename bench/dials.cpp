@@ -18,7 +18,7 @@ void expand_method(const DialGrid& grid, Method method, const SolverOptions& sol
     for (const int substeps : grid.substeps.empty() ? default_substeps : grid.substeps) {
         for (const int iteration : iterations) {
             for (const int relaxation : soft ? grid.relaxations : one) {
-                for (const float hertz : soft ? grid.hertz : std::vector<float>{60}) {
+                for (const float hertz : soft ? grid.hertz : std::vector<float>{0}) {
                     for (const DriftCorrection drift :
                          soft ? std::vector{DriftCorrection::baumgarte} : grid.drift_corrections) {
                         for (const int warm : direct ? one : grid.warm_starts) {
@@ -28,8 +28,10 @@ void expand_method(const DialGrid& grid, Method method, const SolverOptions& sol
                                 s.substeps = substeps;
                                 s.iterations = iteration;
                                 s.relaxations = relaxation;
-                                s.joint_hertz = hertz;
-                                s.contact_hertz = hertz / 2;
+                                if (hertz != 0) {
+                                    s.joint_hertz = hertz;
+                                    s.contact_hertz = hertz / 2;
+                                }
                                 s.drift_correction = drift;
                                 s.warm_start = warm != 0;
                                 s.tolerance = tolerance;
@@ -79,7 +81,8 @@ std::string label_of(const Dials& dials)
     std::string label;
     if (s.method == Method::soft_step) {
         label = fmt::format("soft {} x {}+{}", s.substeps, s.iterations, s.relaxations);
-        label += s.joint_hertz >= 1e5F ? ", stiffest" : fmt::format(", {:g} Hz", s.joint_hertz);
+        if (s.contact_hertz > 0)
+            label += s.joint_hertz >= 1e5F ? ", stiffest" : fmt::format(", {:g} Hz", s.joint_hertz);
     } else if (s.method == Method::sequential_impulse) {
         label = fmt::format("impulse {} x {}, {}", s.substeps, s.iterations, name_of(s.drift_correction));
     } else {

@@ -224,7 +224,8 @@ struct SweepCommand {
         dial("--substeps", grid.substeps, "substeps a step; several: 1,2,4");
         dial("--iterations", grid.iterations, "sweeps a substep");
         dial("--relaxations", grid.relaxations, "soft_step: sweeps without bias a substep");
-        dial("--hertz", grid.hertz, "soft_step: stiffness of joints; contacts have half of it");
+        dial("--hertz", grid.hertz,
+             "soft_step: stiffness of joints; contacts have half of it; 0: as by default");
         dial("--exact", grid.exact, "soft_step: joints solved all at once: 1, 0 or both: 0,1");
         dial("--warm-start", grid.warm_starts, "1, 0 or both: 0,1");
         dial("--tolerance", grid.tolerances, "m/s at which an island's sweeps end; 0: never");

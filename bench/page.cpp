@@ -233,7 +233,7 @@ std::string accuracy_section(const std::vector<SweepResult>& sweeps)
             const bool plain = s.method == Method::direct
                                    ? s.drift_correction == DriftCorrection::projection
                                    : s.method == Method::soft_step && s.relaxations == 1 &&
-                                         s.iterations == 1 && s.joint_hertz > 1e5F;
+                                         s.iterations == 1 && s.contact_hertz == 0;
             if (plain)
                 text += fmt::format(
                     "<tr><td>{}</td><td>{}</td><td>{:.4f}</td><td>{:.3g}</td><td>{:.3g}</td></tr>\n",

@@ -17,7 +17,8 @@ struct DialGrid {
     std::vector<int> substeps{};    ///< empty: 1 to 16; of direct 1 and 4
     std::vector<int> iterations{};  ///< empty: 1 and 2 of soft_step, 4 to 32 of sequential_impulse
     std::vector<int> relaxations{0, 1};
-    std::vector<float> hertz{60, 1e6F};  ///< of joints, and half of it of contacts; capped at 0.25 / substep
+    /// Of joints, and half of it of contacts; capped at 0.25 / substep. 0: as by default.
+    std::vector<float> hertz{0, 1e6F};
     std::vector<DriftCorrection> drift_corrections{DriftCorrection::baumgarte, DriftCorrection::projection};
     std::vector<int> warm_starts{1};  ///< 0 or 1
     std::vector<int> exact{0, 1};     ///< SolverSettings::exact_joints, of soft_step and scenes of joints

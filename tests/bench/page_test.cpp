@@ -31,9 +31,9 @@ SweepResult small_result()
         dials.settings.substeps = substeps;
         return dials;
     };
-    result.points = {point("motley", "soft 1 x 1+1, 60 Hz", 1e-3, 0.1),
+    result.points = {point("motley", "soft 1 x 1+1", 1e-3, 0.1),
                      point("Peer 1", "fast", 2e-3, 0.5),
-                     point("motley", "soft 4 x 1+1, 60 Hz", 4e-3, 0.02),
+                     point("motley", "soft 4 x 1+1", 4e-3, 0.02),
                      point("Peer 1", "fine", 8e-3, 0.001),
                      point("motley", "impulse 1 x 8, Baumgarte", 2e-3, 0.02),
                      point("Peer 1", "lost", 1e-3, std::numeric_limits<double>::infinity())};
