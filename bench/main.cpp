@@ -70,9 +70,11 @@ struct SolverCommand {
         app.add_option("--relaxations", settings.relaxations, "soft_step: sweeps without bias a substep")
             ->check(CLI::Range(0, 10000))
             ->capture_default_str();
-        app.add_option("--contact-hertz", settings.contact_hertz, "soft_step: stiffness of contacts")
+        app.add_option("--contact-hertz", settings.contact_hertz,
+                       "soft_step: stiffness of contacts; 0: half of what a substep can follow, 30 at least")
             ->capture_default_str();
-        app.add_option("--joint-hertz", settings.joint_hertz, "soft_step: stiffness of joints")
+        app.add_option("--joint-hertz", settings.joint_hertz,
+                       "soft_step: stiffness of joints, as far as a substep can follow")
             ->capture_default_str();
         app.add_flag("--exact", settings.exact_joints, "soft_step: joints solved all at once");
         app.add_option("--isa", isa,

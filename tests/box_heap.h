@@ -9,10 +9,6 @@ namespace motley::testing {
 
 using Vector = Vec3<double>;
 
-inline double length(const Vector& v)
-{
-    return std::sqrt(dot(v, v));
-}
 /// What of v is across a unit vector.
 inline Vector across(const Vector& v, const Vector& n)
 {
@@ -49,9 +45,9 @@ struct HeapOfBoxes {
     std::vector<BodyId> boxes;
     std::vector<Contact> contacts;
 
-    explicit HeapOfBoxes(float ratio, std::uint64_t seed = 7)
+    explicit HeapOfBoxes(float ratio)
     {
-        Random random(seed);
+        Random random(7);
         const auto r = [&] { return static_cast<float>(random.symmetric()); };
         for (int i = 0; i < 27; ++i) {
             const int x = i % 3, z = i / 3 % 3, level = i / 9;

@@ -28,6 +28,21 @@ inline BodyDefinition box(Vec3<double> position, float mass = 2)
     return body;
 }
 
+inline double length(const Vec3<double>& v)
+{
+    return std::sqrt(dot(v, v));
+}
+
+/// kg m2/s about a point: m (x - point) x v + R I R^T w, of a body with principal moments I.
+inline Vec3<double> angular_momentum(const BodyState& state, double mass, const Vec3<double>& moments,
+                                     const Vec3<double>& point = {})
+{
+    const Quat<double> q = state.orientation, back{-q.x, -q.y, -q.z, q.w};
+    const Vec3<double> w = rotate(back, convert<double>(state.angular_velocity));
+    return mass * cross(state.position - point, convert<double>(state.linear_velocity)) +
+           rotate(q, Vec3<double>{moments.x * w.x, moments.y * w.y, moments.z * w.z});
+}
+
 /// A frame's rotation with its x along `axis`: 0 x, 1 y, 2 z.
 inline Quat<float> axis_along(int axis)
 {

@@ -149,8 +149,7 @@ void World::aim(BlockRow& row, const Eigen::VectorXd& error, double h, const Sol
     } else if (contact) {
         row.soft = contact_softness(row.joint->a, row.joint->b, h, settings);
     } else {
-        const double stiffest = 0.25 / std::max(h, last_substep_);
-        row.soft = soft_step ? softness(std::min(static_cast<double>(settings.joint_hertz), stiffest),
+        row.soft = soft_step ? softness(std::min(static_cast<double>(settings.joint_hertz), stiffest(h)),
                                         settings.joint_damping_ratio, h)
                              : Soft{beta / h, 1, 0};
     }
@@ -206,9 +205,8 @@ World::Soft World::contact_softness(int a, int b, double h, const SolverSettings
     if (settings.method != Method::soft_step) return {beta / h, 1, 0};
     const bool on_fixed = bodies[static_cast<std::size_t>(a)].motion != BodyMotion::dynamic_body ||
                           bodies[static_cast<std::size_t>(b)].motion != BodyMotion::dynamic_body;
-    const double longest = std::max(h, last_substep_);
     const double hertz = settings.contact_hertz > 0 ? static_cast<double>(settings.contact_hertz)
-                                                    : std::max(30.0, 0.125 / longest);
+                                                    : std::max(30.0, stiffest(h) / 2);
     return softness((on_fixed ? 2 : 1) * hertz, settings.contact_damping_ratio, h);
 }
 

@@ -63,7 +63,6 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
     StepConstants step;
     step.substep = dt / static_cast<float>(settings.substeps);
     step.inverse_substep = 1 / step.substep;
-    step.whole_rate = 1 / std::max(step.substep, last_substep);
     step.gravity = settings.gravity;
     step.restitution_threshold = settings.restitution_threshold;
     step.push_out_speed = settings.push_out_speed;
@@ -72,8 +71,10 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
     step.warm_start_scale =
         settings.warm_start && last_substep > 0 ? std::min(1.0F, step.substep / last_substep) : 0.0F;
     if (settings.method == Method::soft_step) {
-        // What a longer substep left is not taken away at a blow either.
-        const float stiffest = 0.25F / std::max(step.substep, last_substep);
+        // Nor is an error that a longer substep left mended faster than that one would have: it would be a blow.
+        const float longer_substep = std::max(step.substep, last_substep);
+        const float stiffest = 0.25F / longer_substep;
+        step.exact_rate = 1 / longer_substep;
         step.joint =
             soft(std::min(settings.joint_hertz, stiffest), settings.joint_damping_ratio, step.substep);
         const float contact_hertz =
@@ -85,6 +86,7 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
         const bool baumgarte = settings.drift_correction == DriftCorrection::baumgarte;
         const Softness rigid{baumgarte ? settings.baumgarte * step.inverse_substep : 0.0F, 1, 0};
         step.joint = step.contact = step.static_contact = rigid;
+        step.exact_rate = rigid.rate;
         step.slop = settings.penetration_slop;
         step.projection_rate = settings.baumgarte;
     }

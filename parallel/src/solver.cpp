@@ -138,7 +138,6 @@ struct Solver::Impl {
     void measure_residual(StepReport& report);
     [[nodiscard]] FigureSteps figure_steps() const;
     [[nodiscard]] FigureUse use_of_figures() const;
-    [[nodiscard]] float exact_rate() const;
     [[nodiscard]] bool visits_patches_once() const;
     [[nodiscard]] bool anything_bounces(const Scene& scene) const;
     void move_bodies(Scene& scene, StepReport& report);
@@ -302,11 +301,12 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
         const bool is_last = substep + 1 == settings.substeps;
         if (substep == 0 || !runs_on) sweeper.integrate(&BodyKernels::integrate_velocities);
         clock.charge(Stage::integrate_velocities);
+        // Where bodies relax, their trees have been factored after the last move: see step_figure().
         if (substep == 0 || !relaxes) sweeper.prepare_touched_trees();
         sweeper.begin_touched_trees();
         if (substep == 0 || !can_replay) sweeper.sweep(&ConstraintKernels::warm_start);
         if (can_replay) layout.context.replay = Replay::last_substep;
-        sweeper.solve_touched_trees(exact_rate());
+        sweeper.solve_touched_trees(layout.context.step.exact_rate);
         clock.charge(Stage::warm_start);
         const int iterations = iterate(&ConstraintKernels::solve, settings.iterations - once) + once;
         if (once != 0) {
@@ -359,11 +359,6 @@ void Solver::Impl::finish(Scene& scene, StepReport& report)
     scene.last_substep = layout.context.step.substep;
     scene.find_break_events();
     layout.report(report);
-    if (report.joints_refused_exactly > 0) {
-        const BodyStore& bodies = scene.bodies();
-        report.first_light_body =
-            bodies.id_of_slot(bodies.rows(BodyKind::rigid).slot[layout.figures.refused().light_row]);
-    }
 }
 
 bool Solver::Impl::anything_bounces(const Scene& scene) const
@@ -415,7 +410,7 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
 /// many sweeps there were.
 int Solver::Impl::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int iterations)
 {
-    const float rate = kernel == &ConstraintKernels::solve ? exact_rate() : 0;
+    const float rate = kernel == &ConstraintKernels::solve ? layout.context.step.exact_rate : 0;
     // Impulses of trees are not among those that a warm start applies.
     const bool renews = sweeps_long() && layout.figures.touched_trees().empty();
     if (renews) renewal.begin();
@@ -492,17 +487,10 @@ bool Solver::Impl::visits_patches_once() const
            layout.figures.touched_trees().empty();
 }
 
-/// Soft steps take a lock's whole error away in one substep, and the speed that this took away again when they relax.
-float Solver::Impl::exact_rate() const
-{
-    const StepConstants& step = layout.context.step;
-    return settings.method == Method::soft_step ? step.whole_rate : step.joint.rate;
-}
-
 FigureSteps Solver::Impl::figure_steps() const
 {
     return {settings.substeps, settings.iterations,
-            settings.method == Method::soft_step ? settings.relaxations : 0, exact_rate()};
+            settings.method == Method::soft_step ? settings.relaxations : 0};
 }
 
 void Solver::Impl::move_bodies(Scene& scene, StepReport& report)

@@ -35,7 +35,7 @@ class Sweeper {
     void move_beside_patches();
     /// All substeps of the figures that nothing else touches.
     void step_lone_figures(const FigureSteps& steps);
-    /// What is left to do for figures that something touches: their trees, where they have any.
+    /// What is left to do for figures that something touches, where they have trees: prepare_tree(), begin_tree() and solve_tree().
     void prepare_touched_trees();
     void begin_touched_trees();
     void solve_touched_trees(float rate);

@@ -58,17 +58,6 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
     kernels.factor(block);
 }
 
-/// The locks' impulses start from nothing in each substep.
-void clear_impulses(const FigureBlock& block)
-{
-    for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
-        if (!block.shape->joints[i].in_tree) continue;
-        const std::int64_t floats = impulse_floats(block.joints[i]);
-        float* impulses = block.joints[i].streams.impulses + block.joints[i].block * floats;
-        std::fill(impulses, impulses + floats, 0.0F);
-    }
-}
-
 }  // namespace
 
 void step_figure(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
@@ -86,13 +75,13 @@ void step_figure(const KernelContext& context, const FigureKernels& kernels, con
     for (int substep = 0; substep < steps.substeps; ++substep) {
         kernels.integrate_velocities(context, block);
         if (has_tree && (substep == 0 || !relaxes)) factor_tree(context, kernels, block);
-        if (has_tree) clear_impulses(block);
+        if (has_tree) begin_tree(block);
         if (has_others) sweep(context, block, &ConstraintKernels::warm_start_copies);
         // Limits and motors shall see bodies that hold together.
-        if (has_tree && has_others) kernels.solve(block, steps.exact_rate);
+        if (has_tree && has_others) kernels.solve(block, context.step.exact_rate);
         for (int i = 0; i < sweeps(steps.iterations); ++i) {
             if (has_others) sweep(context, block, &ConstraintKernels::solve_copies);
-            if (has_tree) kernels.solve(block, steps.exact_rate);
+            if (has_tree) kernels.solve(block, context.step.exact_rate);
         }
         kernels.integrate_positions(context, block);
         if (has_tree && relaxes) factor_tree(context, kernels, block);
@@ -113,7 +102,12 @@ void prepare_tree(const KernelContext& context, const FigureKernels& kernels, co
 
 void begin_tree(const FigureBlock& block)
 {
-    clear_impulses(block);
+    for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
+        if (!block.shape->joints[i].in_tree) continue;
+        const std::int64_t floats = impulse_floats(block.joints[i]);
+        float* impulses = block.joints[i].streams.impulses + block.joints[i].block * floats;
+        std::fill(impulses, impulses + floats, 0.0F);
+    }
 }
 
 void solve_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,

@@ -10,7 +10,6 @@ namespace motley {
 /// What is done in each substep.
 struct FigureSteps {
     int substeps, iterations, relaxations;
-    float exact_rate;  ///< 1/s: the share of a lock's error that its tree removes a second
 };
 
 /// The whole step of a block that nothing but its own joints touches, in cache: prepare, all substeps, store. `data` is
@@ -19,9 +18,9 @@ void step_figure(const KernelContext& context, const FigureKernels& kernels, con
                  std::span<const ConstraintData> data, const FigureSteps& steps);
 
 // Of blocks that something else touches, what is left to do beside ordinary sweeps: the tree.
-/// Factors where the bodies are: before the first substep, and again where bodies have moved before anything solves.
+/// Factors where the bodies are: before each substep; or, with relaxations, before the first substep and after each move.
 void prepare_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block);
-/// Before the first sweep of a substep: its impulses start from nothing.
+/// Before the first sweep of a substep: the impulses of its locks start from zero.
 void begin_tree(const FigureBlock& block);
 /// After each sweep.
 void solve_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,

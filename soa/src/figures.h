@@ -22,13 +22,13 @@ class Figures {
     };
     /// Sorts the joints into `placed`: those of figures first, sixteen copies of a joint in line with gaps where a block has
     /// fewer copies, so that each has a block of its own; then the rest as they were. `exact`: figures whose locks
-    /// form trees get one, and are figures however few they are; but those in which a light body joins heavy ones.
-    void find(std::span<const Candidate> joints, const BodyRows& rigid, const KernelTable& kernels,
+    /// form trees get one, and are figures however few they are; but those that refused() counts.
+    void find(std::span<const Candidate> joints, const BodyStore& bodies, const KernelTable& kernels,
               bool exact, std::vector<Placement>& placed);
-    /// The joints that got no tree for that, and the row of such a light body.
+    /// Locks of figures without a fixed body in which a body is too light for what it joins; see StepReport::exact_joints_refused.
     struct Refused {
         std::int64_t joints = 0;
-        std::uint32_t light_row = 0;
+        BodyId light_body{};  ///< one such body
     };
     [[nodiscard]] const Refused& refused() const { return refused_; }
     /// Once `placed` has been filled into its blocks.

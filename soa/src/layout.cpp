@@ -90,7 +90,7 @@ void Layout::place_joints(Scene& scene)
                                    locks_point});
         }
     });
-    figures.find(candidates_, bodies.rows(BodyKind::rigid), kernels_, use_.exactly, joint_placements_);
+    figures.find(candidates_, bodies, kernels_, use_.exactly, joint_placements_);
     joints_.begin(joint_placements_, false);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.count(chunk);
     joints_.open(kernels_);
@@ -250,7 +250,8 @@ void Layout::report(StepReport& report) const
     report.blocks = joints.blocks + touches.blocks;
     report.overflow = joints.overflow + touches.overflow;
     report.joints_in_lockstep = figures.lone_joints();
-    report.joints_refused_exactly = figures.refused().joints;
+    report.exact_joints_refused = figures.refused().joints;
+    report.first_light_body = figures.refused().light_body;
     const auto constraints = static_cast<double>(joints.constraints + touches.constraints);
     if (constraints > 0) {
         report.lane_occupancy = constraints / (block_lanes * static_cast<double>(report.blocks));

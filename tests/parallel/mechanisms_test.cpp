@@ -219,6 +219,21 @@ TEST(Pulley, ABlockAndTackleBalancesTheRatioOfWeightsAndASlackRopeHoldsNothing)
     }
 }
 
+TEST(Pulley, HoldsTwoEqualWeightsStillByEveryMethod)
+{
+    // Its wheels are the world's: bodies that it joins keep no momentum among themselves.
+    for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
+        Scene scene;
+        const BodyId a = scene.add_body(box({0, -1, 0})), b = scene.add_body(box({2, -1, 0}));
+        scene.add_joint(PulleyDefinition{a, b, {}, {}, {0, 0, 0}, {2, 0, 0}, 1, 0, 2});
+        SolverSettings settings = with_gravity({0, -9.81F, 0});
+        settings.method = method;
+        Solver solver(settings);
+        run(scene, solver, 2);
+        for (const BodyId weight : {a, b}) EXPECT_NEAR(scene.state(weight).position.y, -1, 2e-3);
+    }
+}
+
 TEST(Distance, ASpringBetweenStopsRestsOnTheOneThatItsLoadReaches)
 {
     // Standing on a spring that carries half the weight: the stop carries the rest.

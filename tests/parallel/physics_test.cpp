@@ -412,7 +412,7 @@ TEST(Conservation, JointsChangeNeitherMomentumNorAngularMomentumByMoreThanRoundi
 
 TEST(Conservation, ATumblingBodyNeverGainsEnergy)
 {
-    // Dzhanibekov: spin about the intermediate axis flips for ever; what carries angular momentum must not pump.
+    // Dzhanibekov: spin about the intermediate axis flips for ever; the turn, which carries angular momentum, must not add energy.
     Scene scene;
     BodyDefinition body = ball(BodyModel::rigid, {});
     body.inertia = {1, 0, 0, 2, 0, 2.9F};

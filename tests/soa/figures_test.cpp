@@ -162,9 +162,8 @@ TEST(Figures, EveryJointIsPlacedOnceAndEveryLaneIsItsOwnCopys)
         Random random(static_cast<std::uint64_t>(100 + trial));
         const std::uint32_t rows = 30 + static_cast<std::uint32_t>(random.below(400));
         const std::vector<Figures::Candidate> joints = random_heap(random, rows);
-        BodyRows bodies;
-        bodies.slot.assign(rows, 0);
-        bodies.velocity.assign(8 * std::size_t{rows}, 1);  // and inverse masses
+        BodyStore bodies;
+        bodies.rows(BodyKind::rigid).slot.assign(rows, 0);
         for (const bool exact : {false, true}) {
             Figures figures;
             std::vector<Placement> placed;

@@ -41,8 +41,8 @@ struct SolverSettings {
     int relaxations = 1;  ///< 0 to 10000; soft_step: sweeps without bias a substep
     /// soft_step, and sequential_impulse without projection: locks (ball-sockets, fixed joints, hinges, sliders and their
     /// parts) between rigid bodies are solved all at once, exactly at any mass ratio, where they hang together as a
-    /// tree with few loops (24 rows of closing locks at most; nets stay iterative); but in a figure that nothing holds a body that
-    /// joins others must not be 2,000 times as light (StepReport::joints_refused_exactly). Limits, motors, springs and contacts
+    /// tree with few loops (24 rows of closing locks at most; nets stay iterative); but not without a fixed body and with a light one
+    /// between heavy ones (StepReport::exact_joints_refused). Limits, motors, springs and contacts
     /// are swept on top. Costs about one to two sweeps more a substep. `joint_hertz` is then of the others.
     bool exact_joints = false;
     bool warm_start = true;  ///< start from the impulses of the step before

@@ -22,9 +22,9 @@ Softness soft(float hertz, float damping_ratio, float substep);
 struct StepConstants {
     float substep = 0;          ///< s
     float inverse_substep = 0;  ///< 1/s
-    /// 1/s, at which soft steps take away a lock's whole error. Of what a longer substep left, only as much as that one would have
-    /// taken in this time: all at once would be a blow.
-    float whole_rate = 0;
+    /// 1/s: the share of a lock's error that SolverSettings::exact_joints removes a second. Soft steps remove all of it in a substep and
+    /// take the speed that this needed away again when they relax.
+    float exact_rate = 0;
     Softness joint, contact, static_contact;
     float push_out_speed = 0;    ///< m/s; infinite speed is the largest float
     float slop = 0;              ///< m of penetration left alone

@@ -67,9 +67,9 @@ struct StepReport {
     std::string skipped_error;          ///< of the first of them: field, value and valid range
     std::int64_t joints = 0;
     std::int64_t joints_in_lockstep = 0;  ///< of them, those of copies of a figure that nothing else touched
-    /// With SolverSettings::exact_joints: locks that sweeps solve all the same, because in a figure that nothing holds a body joins
-    /// others more than 2,000 times as heavy: floats would lose momentum there.
-    std::int64_t joints_refused_exactly = 0;
+    /// With SolverSettings::exact_joints: locks that sweeps solve all the same. They are of figures without a fixed body, in which a
+    /// body with two locks or more is 2,000 times as light as another: solved exactly in float, they would not keep momentum.
+    std::int64_t exact_joints_refused = 0;
     BodyId first_light_body{};        ///< such a body, where there is one
     int colours = 0;                  ///< colours in use, the overflow not counted
     std::int64_t overflow = 0;        ///< constraints that found no colour and ran in order

@@ -41,9 +41,9 @@ class JointModel {
     /// joint has piled up, for those that have no C of the poses alone.
     [[nodiscard]] virtual std::vector<Block> blocks(const Body& a, const Body& b, bool in_plane,
                                                     double travelled) const = 0;
-    /// Rows stay as they were when the step began, and C follows by them: contacts, whose arms do not turn with a ball.
-    /// Pushes its bodies, and nothing else the other way.
+    /// Its impulses on the two bodies do not cancel, as if the world pushed: pulleys and racks keep no momentum.
     [[nodiscard]] virtual bool acts_from_world() const { return false; }
+    /// Rows stay as they were when the step began, and C follows by them: contacts, whose arms do not turn with a ball.
     [[nodiscard]] virtual bool keeps_rows_of_start() const { return false; }
     /// By how much C has grown between two poses of the bodies, for those that pile it up.
     [[nodiscard]] virtual double travel(const Body& /*start_a*/, const Body& /*start_b*/, const Body& /*a*/,

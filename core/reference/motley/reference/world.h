@@ -67,6 +67,8 @@ class World {
     std::vector<Body> start_;  ///< the bodies when the step began
 
     static Soft softness(double hertz, double damping_ratio, double h);
+    /// Hz: of the stiffest spring that a substep can follow, or the last one if that was longer.
+    [[nodiscard]] double stiffest(double h) const { return 0.25 / std::max(h, last_substep_); }
     [[nodiscard]] bool is_planar_pair(int a, int b) const;
     void apply(int a, int b, const Jacobian& jacobian, const Eigen::VectorXd& impulse);
     [[nodiscard]] Eigen::VectorXd speed(int a, int b, const Jacobian& jacobian) const;
