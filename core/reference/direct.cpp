@@ -40,6 +40,7 @@ DirectResult World::step_directly(double dt, const SolverSettings& settings,
         const DirectResult part = solve_substep_directly(h, settings, contacts, stiff);
         result.violation = std::max(result.violation, part.violation);
         result.unsolved += part.unsolved;
+        add_up(contacts);
         std::vector<Hold> holds;
         const auto lose = [&](double sign) {
             const std::vector<Eigen::Vector3d> now = angular_momenta(islands);
@@ -158,6 +159,7 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
         VectorXd& impulse = blocks[i].impulse();
         impulse = assembly.group(placed[i].group).lambda.segment(placed[i].first, impulse.size());
         if (placed[i].to_rows.size() > 0) impulse = placed[i].to_rows * impulse;
+        blocks[i].joint->wrench += wrench_of(blocks[i].block.jacobian, impulse);
         double& peak = blocks[i].joint->peaks[blocks[i].index];
         peak = std::max(peak, impulse(0));
     }

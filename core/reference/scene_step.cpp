@@ -130,7 +130,9 @@ DirectResult step_directly(Scene& scene, float dt, const SolverSettings& setting
         memories.push_back(joint.model->memory(joint.impulses, joint.travelled));
 
     for (std::size_t i = 0; i < ids.size(); ++i) write_back(scene, ids[i], world.bodies[i]);
+    const auto narrow = [](double value) { return std::isfinite(value) ? static_cast<float>(value) : 0.0F; };
     auto next = memories.begin();
+    auto joint = world.joints.begin();
     scene.joints().for_each([&](auto& store, int) {
         using Store = std::remove_cvref_t<decltype(store)>;
         constexpr std::size_t stride = quad_floats<typename Store::Memory>;
@@ -140,19 +142,22 @@ DirectResult step_directly(Scene& scene, float dt, const SolverSettings& setting
                 continue;
             }
             const std::vector<double>& memory = *next++;
-            for (std::size_t k = 0; k < std::min(memory.size(), stride); ++k) {
-                const auto value = static_cast<float>(memory[k]);
-                store.memory[i * stride + k] = std::isfinite(value) ? value : 0;
-            }
+            for (std::size_t k = 0; k < std::min(memory.size(), stride); ++k)
+                store.memory[i * stride + k] = narrow(memory[k]);
+            float* wrench = &store.wrenches[i * Store::wrench_floats];
+            for (const double part : (joint++)->wrench) *wrench++ = narrow(part);
         }
     });
     ContactList& staged = scene.contact_cache().staged();
+    const auto result_of = [&](const World::ContactResults& results, std::uint64_t key) -> ContactImpulse {
+        const auto found = results.find(key);
+        if (found == results.end()) return {};
+        const auto& [normal, friction] = found->second;
+        return {narrow(normal), {narrow(friction.x()), narrow(friction.y()), narrow(friction.z())}};
+    };
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const World::ContactResult left = world.contact_result(contacts[i].key);
-        staged.impulses[i + 1] = {
-            static_cast<float>(left.normal),
-            {static_cast<float>(left.friction.x()), static_cast<float>(left.friction.y()),
-             static_cast<float>(left.friction.z())}};
+        staged.impulses[i + 1] = result_of(world.last_substep_results(), contacts[i].key);
+        staged.step_impulses[i] = result_of(world.step_results(), contacts[i].key);
     }
     return result;
 }

@@ -62,6 +62,21 @@ void World::apply(int a, int b, const Jacobian& jacobian, const Eigen::VectorXd&
     body_b.velocity += change.tail<6>();
 }
 
+void World::apply(Joint& joint, const Jacobian& jacobian, const Eigen::VectorXd& impulse)
+{
+    apply(joint.a, joint.b, jacobian, impulse);
+    joint.wrench += wrench_of(jacobian, impulse);
+}
+
+/// What contacts did in a substep that is done. Joints add up as they push, for their rows turn.
+void World::add_up(std::vector<ContactRow>& contacts)
+{
+    for (ContactRow& row : contacts) {
+        row.step.normal += row.impulse;
+        row.step.friction += row.force();
+    }
+}
+
 Eigen::VectorXd World::speed(int a, int b, const Jacobian& jacobian) const
 {
     Eigen::Matrix<double, 12, 1> v;
@@ -128,7 +143,7 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
             row.to_force.setIdentity(block.jacobian.rows(), block.jacobian.rows());
             row.response = block.jacobian * inverse_mass * block.jacobian.transpose();
         }
-        apply(joint.a, joint.b, block.jacobian, row.impulse());
+        apply(joint, block.jacobian, row.impulse());
     }
 }
 
@@ -172,7 +187,7 @@ void World::aim(BlockRow& row, const Eigen::VectorXd& error, double h, const Sol
 
 void World::solve_block(BlockRow& row, double h, const SolverSettings& settings, bool relax)
 {
-    const Joint& joint = *row.joint;
+    Joint& joint = *row.joint;
     // Contacts look again at how far apart they are, also after positions have moved.
     if (row.block.kind == Block::Kind::contact) aim(row, blocks_of(joint)[row.index].error, h, settings);
     const Soft& soft = relax ? row.relax_soft : row.soft;
@@ -192,7 +207,7 @@ void World::solve_block(BlockRow& row, double h, const SolverSettings& settings,
         wanted = bounded(held, wanted, row.to_force, row.response,
                          row.response.cwiseAbs().rowwise().sum().maxCoeff(), row.bound());
     }
-    apply(joint.a, joint.b, row.block.jacobian, wanted - held);
+    apply(joint, row.block.jacobian, wanted - held);
     row.impulse() = wanted;
     double& peak = row.joint->peaks[row.index];
     peak = std::max(peak, wanted(0));
@@ -215,6 +230,7 @@ void World::begin_step()
 {
     start_ = bodies;
     for (Joint& joint : joints) {
+        joint.wrench.setZero();
         joint.approaches.clear();
         const bool recalls = joint.impulses.empty() && !joint.memory.empty();
         for (const Block& block : blocks_of(joint)) {
@@ -402,6 +418,7 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
             for (BlockRow& row : rows) solve_block(row, h, settings, true);
             for (ContactRow& row : contacts) solve_contact(row, h, settings, true);
         }
+        add_up(contacts);
     }
     finish_contacts(contacts, h, settings);
     end_step(h);
@@ -443,11 +460,12 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, double h, const S
             const double leaving = speed(joint.a, joint.b, block.jacobian)(0) - opening;
             double& held = joint.impulses[i](0);
             const double wanted = std::max(held - mass_of(joint, block)(0, 0) * leaving, 0.0);
-            apply(joint.a, joint.b, block.jacobian, Eigen::VectorXd::Constant(1, wanted - held));
+            apply(joint, block.jacobian, Eigen::VectorXd::Constant(1, wanted - held));
             held = wanted;
         }
     }
     memory_.clear();
+    step_results_.clear();
     for (ContactRow& row : contacts) {
         const double e = static_cast<double>(row.point->contact.restitution);
         if (e > 0 && row.approach < threshold && row.peak > 0) {
@@ -457,13 +475,11 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, double h, const S
             const double leaving = speed(a, b, row.normal)(0) - opening;
             const double impulse = std::max(row.impulse - row.normal_mass * leaving, 0.0);
             apply(a, b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
+            row.step.normal += impulse - row.impulse;
             row.impulse = impulse;
         }
-        ContactResult kept;
-        kept.normal = row.impulse;
-        // The tangents' linear part on b is the direction itself.
-        kept.friction = row.tangents.middleCols<3>(6).transpose() * row.friction;
-        memory_[row.point->contact.key] = kept;
+        memory_[row.point->contact.key] = {row.impulse, row.force()};
+        step_results_[row.point->contact.key] = row.step;
     }
 }
 

@@ -36,6 +36,21 @@ struct World::ContactRow {
     double approach;
     double impulse, peak = 0;
     Eigen::VectorXd friction;
+    ContactResult step{};  ///< of the substeps so far
+
+    /// Friction in the world: the tangents' linear part on b is the direction itself.
+    [[nodiscard]] Eigen::Vector3d force() const { return tangents.middleCols<3>(6).transpose() * friction; }
 };
+
+/// What an impulse along rows is on b where they act: a row pushes there and turns nothing, one without a linear part turns.
+inline Eigen::Matrix<double, 6, 1> wrench_of(const Jacobian& jacobian, const Eigen::VectorXd& impulse)
+{
+    Eigen::Matrix<double, 6, 1> wrench = Eigen::Matrix<double, 6, 1>::Zero();
+    for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
+        const int part = jacobian.block<1, 3>(i, 6).isZero() ? 3 : 0;
+        wrench.segment<3>(part) += impulse(i) * jacobian.block<1, 3>(i, 6 + part).transpose();
+    }
+    return wrench;
+}
 
 }  // namespace motley::reference

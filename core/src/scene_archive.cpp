@@ -139,7 +139,8 @@ void SceneArchive::check_joints(const Scene& scene)
         const std::size_t size = store.definitions.size();
         count += size;
         demand(store.memory.size() == size * quad_floats<typename Store::Memory> &&
-                   store.colours.size() == size && store.slots.size() == size,
+                   store.wrenches.size() == size * Store::wrench_floats && store.colours.size() == size &&
+                   store.slots.size() == size,
                "its lists of joints differ in length");
         for (std::size_t i = 0; i < size; ++i) {
             const auto& definition = store.definitions[i];
@@ -186,7 +187,8 @@ void SceneArchive::check(const Scene& scene)
     const ContactList& list = scene.contacts_.current();
     for (std::size_t i = 0; i < list.count; ++i)
         demand(list.colours[i] <= overflow_colour || list.colours[i] == no_colour, "a contact of no colour");
-    demand(scene.last_substep >= 0 && scene.last_substep <= 1, "a substep of no length");
+    demand(scene.last_substep >= 0 && scene.last_substep <= scene.last_step && scene.last_step <= 1,
+           "a step of no length");
 }
 
 void SceneArchive::derive(Scene& scene)

@@ -88,6 +88,7 @@ struct SceneArchive {
         archive(scene.ground_);
         archive(scene.body_count_);
         archive(scene.last_substep);
+        archive(scene.last_step);
         if constexpr (Archive::reads) {
             check(scene);
             derive(scene);
@@ -130,6 +131,7 @@ struct SceneArchive {
         joints.for_each([&](auto& store, int) {
             archive(store.definitions);
             archive(store.memory);
+            archive(store.wrenches);
             archive(store.colours);
             archive(store.slots);
         });
@@ -144,14 +146,16 @@ struct SceneArchive {
         if constexpr (Archive::reads) {
             std::vector<ContactList::Entry> entries;
             std::vector<std::uint8_t> colours;
-            std::vector<ContactImpulse> impulses;
+            std::vector<ContactImpulse> impulses, step_impulses;
             archive(entries);
             archive(colours);
             archive(impulses);
+            archive(step_impulses);
             if (entries.size() > UINT32_MAX / 2) throw std::runtime_error("has more contacts than fit");
-            if (colours.size() != entries.size() || impulses.size() != entries.size())
+            if (colours.size() != entries.size() || impulses.size() != entries.size() ||
+                step_impulses.size() != entries.size())
                 throw std::runtime_error("has lists of different lengths");
-            if (!cache.restore(entries, colours, impulses))
+            if (!cache.restore(entries, colours, impulses, step_impulses))
                 throw std::runtime_error("has a contact key twice");
         } else {
             const ContactList& list = cache.current();
@@ -163,6 +167,7 @@ struct SceneArchive {
             archive(in_use(list.entries, 0));
             archive(in_use(list.colours, 0));
             archive(in_use(list.impulses, 1));
+            archive(in_use(list.step_impulses, 0));
         }
     }
 };

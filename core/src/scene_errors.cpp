@@ -57,7 +57,7 @@ SceneErrors Scene::errors() const
         for (std::size_t i = 0; i < store.size(); ++i) {
             const auto& definition = store.definitions[i];
             const JointReport report = Type::report(definition, store.memory_of(i), state(definition.body_a),
-                                                    state(definition.body_b), 0);
+                                                    state(definition.body_b));
             const auto error = static_cast<double>(report.error),
                        angle = static_cast<double>(report.angle_error);
             squares += error * error;

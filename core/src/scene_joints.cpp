@@ -195,6 +195,12 @@ void Scene::find_break_events() noexcept
     }
 }
 
+/// Of an impulse of the last step, its mean over the step.
+Vec3<float> Scene::force_of(const Vec3<float>& impulse) const
+{
+    return last_step > 0 ? 1 / last_step * impulse : Vec3<float>{};
+}
+
 JointReport Scene::joint_report(ConstraintId joint) const
 {
     if (!is_alive(joint)) {
@@ -202,14 +208,16 @@ JointReport Scene::joint_report(ConstraintId joint) const
                "a joint of this scene");
     }
     const JointStores::Slot& entry = joints_->slots[joint.slot];
-    const double inverse_substep = last_substep > 0 ? 1 / static_cast<double>(last_substep) : 0;
     JointReport result;
     joints_->for_each([&](const auto& store, int type) {
         if (type != entry.type) return;
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         const auto& definition = store.definitions[entry.index];
         result = Type::report(definition, store.memory_of(entry.index), state(definition.body_a),
-                              state(definition.body_b), inverse_substep);
+                              state(definition.body_b));
+        const Wrench<float> wrench = store.wrench_of(entry.index);
+        result.force = force_of(wrench.push);
+        result.torque = force_of(wrench.turn);
     });
     return result;
 }
@@ -224,10 +232,9 @@ JointReport Scene::contact_report(std::span<const Contact> contacts, std::size_t
     const Contact& contact = contacts[index];
     if (list.entries[index].key != contact.key)
         refuse("contact_report.contacts", "another list", "the list of the last step");
-    const ContactImpulse& impulse = contacts_.impulses()[index];
+    const ContactImpulse& impulse = contact_impulses()[index];
     JointReport report;
-    if (last_substep > 0)
-        report.force = (1 / last_substep) * (impulse.normal * contact.normal + impulse.friction);
+    report.force = force_of(impulse.normal * contact.normal + impulse.friction);
     report.error = std::fmax(0.0F, -contact.separation);
     report.state = impulse.normal > 0 ? JointState::active : JointState::inactive;
     return report;

@@ -141,9 +141,9 @@ struct Solver::Impl {
     [[nodiscard]] bool visits_patches_once() const;
     [[nodiscard]] bool anything_bounces(const Scene& scene) const;
     void move_bodies(Scene& scene, StepReport& report);
-    void solve_substeps(Scene& scene, StepReport& report);
+    void solve_substeps(Scene& scene, float dt, StepReport& report);
     void solve_directly(Scene& scene, float dt, std::span<const Contact> contacts, StepReport& report);
-    void finish(Scene& scene, StepReport& report);
+    void finish(Scene& scene, float dt, StepReport& report);
     void pick_settings();
     void learn_times(const StepReport& report);
     /// Whether blocks have room for residuals and wishes; and whether some of them are swept and others not.
@@ -226,7 +226,7 @@ void Solver::Impl::step(Scene& scene, float dt, std::span<const Contact> contact
         if (settings.method == Method::direct) {
             solve_directly(scene, dt, contacts, report);
         } else {
-            solve_substeps(scene, report);
+            solve_substeps(scene, dt, report);
         }
         if (settings.measures) report.measures.after = scene.errors();
         learn_times(report);
@@ -274,7 +274,7 @@ void Solver::Impl::learn_times(const StepReport& report)
 }
 
 /// The step as the data sees it.
-void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
+void Solver::Impl::solve_substeps(Scene& scene, float dt, StepReport& report)
 {
     const bool soft = settings.method == Method::soft_step;
     const bool projects = !soft && settings.drift_correction == DriftCorrection::projection;
@@ -299,6 +299,7 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     const bool runs_on = !projects && !relaxes;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool is_last = substep + 1 == settings.substeps;
+        if (substep > 0) sweeper.add_up();
         if (substep == 0 || !runs_on) sweeper.integrate(&BodyKernels::integrate_velocities);
         clock.charge(Stage::integrate_velocities);
         // Where bodies relax, their trees have been factored after the last move: see step_figure().
@@ -332,8 +333,9 @@ void Solver::Impl::solve_substeps(Scene& scene, StepReport& report)
     }
     if (anything_bounces(scene)) sweeper.sweep(&ConstraintKernels::restitute);
     clock.charge(Stage::restitution);
+    sweeper.add_up();
     sweeper.transfer(&ConstraintKernels::store);
-    finish(scene, report);
+    finish(scene, dt, report);
     report.substeps = settings.substeps;
     report.sweeps += settings.substeps * (1 + (projects ? settings.projections : 0));
     clock.charge(Stage::store);
@@ -348,15 +350,16 @@ void Solver::Impl::solve_directly(Scene& scene, float dt, std::span<const Contac
     report.direct_violation = result.violation;
     report.direct_unsolved = result.unsolved;
     clock.charge(Stage::solve);
-    finish(scene, report);
+    finish(scene, dt, report);
     clock.charge(Stage::store);
 }
 
-void Solver::Impl::finish(Scene& scene, StepReport& report)
+void Solver::Impl::finish(Scene& scene, float dt, StepReport& report)
 {
     move_bodies(scene, report);
     scene.contact_cache().accept_staged();
     scene.last_substep = layout.context.step.substep;
+    scene.last_step = dt;
     scene.find_break_events();
     layout.report(report);
 }
@@ -399,7 +402,7 @@ std::string Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contact
     });
     if (cache.has_repeated_key()) return ContactIntake::repeated_key(contacts);
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.count_contacts(chunk); });
-    layout.contacts.open(layout.kernels());
+    layout.contacts.open(layout.kernels(), settings.substeps > 1);
     runner.run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
     layout.cut(scene, contacts, tells_blocks_apart);
     sweeper.make_room();

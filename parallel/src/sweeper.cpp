@@ -114,6 +114,16 @@ void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_
     if (!patches_first) sweep_patches(kernel, at_least);
 }
 
+void Sweeper::add_up()
+{
+    const SweepLists& sweeps = layout_.sweeps();
+    runner_.run(sweeps.chunk_count(), [&](std::int64_t i) {
+        const SweepChunk& chunk = sweeps.chunk(i);
+        if (chunk.streams.sums != nullptr)
+            chunk.kernels->add_up(layout_.context, chunk.streams, chunk.begin, chunk.end);
+    });
+}
+
 namespace {
 
 /// What sweeps of a patch stream, asked for block by block, in their order.

@@ -27,6 +27,8 @@ class Sweeper {
     void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least = every_block);
     /// Runs a kernel over every block that is in no patch.
     void sweep_across(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least = every_block);
+    /// Adds what constraints did in a substep to what they did in those before it.
+    void add_up();
     /// Solves each patch, moves its bodies and relaxes it, at one visit. Between sweep_across(solve) and
     /// move_beside_patches() with sweep_across(relax) it makes the same bits as the three stages one by one.
     void visit_patches();

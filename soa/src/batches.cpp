@@ -131,8 +131,9 @@ std::array<std::int32_t, BatchSet::colours> BatchSet::add_up(std::size_t p)
     return totals;
 }
 
-void BatchSet::open(const KernelTable& kernels)
+void BatchSet::open(const KernelTable& kernels, bool adds_up)
 {
+    adds_up_ = adds_up;
     used_.clear();
     for (std::size_t p = 0; p < pools_.size(); ++p) {
         if (occurs_[p] != 0) used_.push_back(p);
@@ -162,6 +163,7 @@ void BatchSet::open(const KernelTable& kernels)
         grow_to(pool.rows, lanes * static_cast<std::size_t>(own.row_floats));
         grow_to(pool.substep_rows, lanes * static_cast<std::size_t>(own.substep_floats));
         grow_to(pool.impulses, lanes * static_cast<std::size_t>(own.impulse_floats));
+        if (adds_up_) grow_to(pool.sums, lanes * static_cast<std::size_t>(own.sum_floats));
     }
 }
 
@@ -272,6 +274,7 @@ BlockStreams BatchSet::streams(std::size_t p, bool tells_apart)
             pool.rows.data(),
             pool.substep_rows.data(),
             pool.impulses.data(),
+            adds_up_ ? pool.sums.data() : nullptr,
             tells_apart ? pool.residuals.data() : nullptr};
 }
 

@@ -122,6 +122,20 @@ struct SweepLists {
     }
     /// What was added to patches since there were `first_chunk` chunks is the next one, though it be nothing.
     void close_patch(std::int32_t first_chunk) { patches.push_back({first_chunk, patch_chunks()}); }
+    /// All chunks one after another, in an order that does not matter to whoever looks at each by itself.
+    [[nodiscard]] std::int64_t chunk_count() const
+    {
+        std::size_t count = 0;
+        for (const auto& chunks : lists) count += chunks.size();
+        return static_cast<std::int64_t>(count);
+    }
+    [[nodiscard]] const SweepChunk& chunk(std::int64_t i) const
+    {
+        auto left = static_cast<std::size_t>(i);
+        const auto* list = lists.data();
+        for (; left >= list->size(); ++list) left -= list->size();
+        return (*list)[left];
+    }
     [[nodiscard]] std::int32_t patch_chunks() const
     {
         return static_cast<std::int32_t>(lists[patch_list].size());
@@ -155,8 +169,9 @@ class BatchSet {
     [[nodiscard]] std::int64_t chunk_count() const;
     /// Counts the constraints of a chunk. Chunks may run on different threads.
     void count(std::int64_t chunk);
-    /// When all are counted: makes room, and puts the overflow into its blocks, in order.
-    void open(const KernelTable& kernels);
+    /// When all are counted: makes room, and puts the overflow into its blocks, in order. `adds_up`: with room for the sums of
+    /// several substeps.
+    void open(const KernelTable& kernels, bool adds_up);
     /// Puts the constraints of a chunk into their lanes. Chunks may run on different threads, unless there are gaps.
     void fill(std::int64_t chunk);
 
@@ -188,7 +203,7 @@ class BatchSet {
         AlignedVector<BlockBodies> bodies;
         AlignedVector<BlockConstraints> who;
         AlignedVector<std::uint8_t> counts, skipped;
-        AlignedVector<float> rows, substep_rows, impulses;
+        AlignedVector<float> rows, substep_rows, impulses, sums;
         AlignedVector<float> residuals;                            ///< only when blocks are told apart
         AlignedVector<std::uint8_t> finished;                      ///< likewise
         AlignedVector<std::int32_t> islands, wanted;               ///< likewise
@@ -224,7 +239,7 @@ class BatchSet {
     /// Of a chunk that is a patch, for each class and colour: how many, then the next place, in lanes of the class's blocks;
     /// and which block comes first. The overflow, of which a patch has none, stands for the end of the class.
     std::vector<std::int32_t> patch_places_, patch_blocks_;
-    bool has_patches_ = false;
+    bool has_patches_ = false, adds_up_ = false;
 
     [[nodiscard]] std::size_t keys() const { return pools_.size() * colours; }
     [[nodiscard]] std::size_t key_of(const Placement& placement) const

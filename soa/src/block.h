@@ -53,6 +53,7 @@ struct BlockStreams {
     float* rows = nullptr;                          ///< constant through a step
     float* substep_rows = nullptr;                  ///< made by warm_start each substep
     float* impulses = nullptr;
+    float* sums = nullptr;       ///< what the substeps so far come to; null for contacts of a single substep
     float* residuals = nullptr;  ///< energies and speeds of LaneResidual; null unless they are measured
 };
 
@@ -65,6 +66,9 @@ struct ConstraintData {
         nullptr;                     ///< entry of memory_in by constraint; null: the constraint's own
     float* memory_out = nullptr;     ///< by constraint
     std::int64_t memory_stride = 0;  ///< floats
+    float* step_out =
+        nullptr;  ///< by constraint: what all substeps came to, a Wrench of joints, of contacts as in memory
+    std::int64_t step_stride = 0;               ///< floats
     const WorldPoints* world_points = nullptr;  ///< by constraint; null for types without
 };
 
@@ -117,7 +121,8 @@ struct ConstraintKernels {
     Sweep relax = nullptr;
     Sweep restitute = nullptr;  ///< null for types that do not bounce
     Sweep project = nullptr;
-    Transfer store = nullptr;  ///< impulses -> memory
+    Sweep add_up = nullptr;    ///< impulses of a substep that is done, added to the sums
+    Transfer store = nullptr;  ///< impulses and sums -> memory
 
     /// The same over one block whose lanes are copies of a figure, with body a and body b already in lanes (see
     /// CopyBody). Null for pairs with a particle or planar body, and for types that bounce.
@@ -132,7 +137,7 @@ struct ConstraintKernels {
     CopiesRows equality_rows = nullptr;
     int equality_count = 0;
 
-    int row_floats = 0, substep_floats = 0, impulse_floats = 0;
+    int row_floats = 0, substep_floats = 0, impulse_floats = 0, sum_floats = 0;
     int swept_floats = 0;  ///< of row and substep row, what a sweep reads
 };
 

@@ -29,6 +29,16 @@ void transfer(const KernelContext& context, const FigureBlock& block, std::span<
     }
 }
 
+/// What the joints beside the tree did in a substep that is done; the tree adds up as it solves.
+void add_up(const KernelContext& context, const FigureBlock& block)
+{
+    for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
+        if (block.shape->joints[i].in_tree) continue;
+        const FigureBlock::Joint& joint = block.joints[i];
+        joint.kernels->add_up(context, joint.streams, joint.block, joint.block + 1);
+    }
+}
+
 std::int64_t impulse_floats(const FigureBlock::Joint& joint)
 {
     return std::int64_t{joint.kernels->impulse_floats} * block_lanes;
@@ -89,6 +99,7 @@ void step_figure(const KernelContext& context, const FigureKernels& kernels, con
             if (has_others) sweep(context, block, &ConstraintKernels::relax_copies);
             if (has_tree) kernels.solve(block, 0);
         }
+        if (has_others) add_up(context, block);
     }
     kernels.store(context, block);
     transfer(context, block, data, &ConstraintKernels::store);

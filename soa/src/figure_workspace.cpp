@@ -22,7 +22,8 @@ void FigureWorkspace::make_room(std::span<const FigureBlock> blocks)
         std::int64_t floats = body_floats(*block.shape) + block.shape->system_floats;
         for (std::size_t i = 0; i < joints; ++i) {
             const ConstraintKernels& kernels = *block.joints[i].kernels;
-            floats += std::int64_t{kernels.row_floats + kernels.substep_floats + kernels.impulse_floats} *
+            floats += std::int64_t{kernels.row_floats + kernels.substep_floats + kernels.impulse_floats +
+                                   kernels.sum_floats} *
                       block_lanes;
         }
         if (floats_.size() < static_cast<std::size_t>(floats))
@@ -49,7 +50,8 @@ FigureBlock FigureWorkspace::take_in(const FigureBlock& block)
                        .constraints = streams.constraints + index,
                        .rows = take(std::int64_t{kernels->row_floats} * block_lanes),
                        .substep_rows = take(std::int64_t{kernels->substep_floats} * block_lanes),
-                       .impulses = take(std::int64_t{kernels->impulse_floats} * block_lanes)},
+                       .impulses = take(std::int64_t{kernels->impulse_floats} * block_lanes),
+                       .sums = take(std::int64_t{kernels->sum_floats} * block_lanes)},
                       0};
     }
     return here;

@@ -27,8 +27,9 @@ struct ConstraintBundle {
     float* row;
     float* substep;
     float* impulse;
-    int count;  ///< lanes of this bundle that are not padding
-    int lane;   ///< of the block, where it begins
+    float* sum;  ///< null where nothing is added up
+    int count;   ///< lanes of this bundle that are not padding
+    int lane;    ///< of the block, where it begins
     [[nodiscard]] Body<kind_a> load_a() const
     {
         return load_body(arrays_a, offsets_a, static_cast<Body<kind_a>*>(nullptr));

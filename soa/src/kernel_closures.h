@@ -145,11 +145,16 @@ inline void solve_closures(const FigureBlock& figure, float rate, int lane)
     }
     for (const FigureClosure& closure : shape.closures) {
         float* impulse = impulse_of(figure, closure.joint) + lane;
+        const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
+        Wrench<Lanes> sum{none, none};
         for (int i = 0; i < closure.rows; ++i) {
             const Lanes lambda = load_lanes(x(closure.first_row + i));
-            push_along(closure_row(figure, closure, i, lane), lambda);
+            const ClosureRow pushed = closure_row(figure, closure, i, lane);
+            push_along(pushed, lambda);
             store_lanes(load_lanes(impulse + i * block_lanes) + lambda, impulse + i * block_lanes);
+            add_row(pushed.row.linear, pushed.row.lever_b, lambda, sum);
         }
+        add_to_sum(figure, closure.joint, sum, lane);
     }
     sweep_tree(figure, rate, TreeSweep::solves, lane);
 }

@@ -31,9 +31,13 @@ struct Kernels {
     using Swept = std::remove_cvref_t<decltype(swept<Type::recomputes_each_substep>(std::declval<Row>()))>;
     /// What is made anew each substep is made by its warm start from where the bodies are; others look in each sweep.
     static constexpr bool sees_delta_once = Type::recomputes_each_substep;
+    static constexpr bool is_joint = requires { typename Type::Definition; };
+    /// What substeps are added up as: contacts have the same rows in all of them, those of joints turn.
+    using Sum = std::conditional_t<is_joint, Wrench<Lanes>, Impulse>;
     static constexpr int row_stride = fields_of<Row> * block_lanes;
     static constexpr int substep_stride = fields_of<Substep> * block_lanes;
     static constexpr int impulse_stride = fields_of<Impulse> * block_lanes;
+    static constexpr int sum_stride = fields_of<Sum> * block_lanes;
 
     using Bundle = ConstraintBundle<kind_a, kind_b>;
 
@@ -65,8 +69,9 @@ struct Kernels {
                         streams.constraints[block].lane + lane, streams.rows + block * row_stride + lane,
                         // A stream of nothing is null, and stays so.
                         substep_stride == 0 ? nullptr : streams.substep_rows + block * substep_stride + lane,
-                        streams.impulses + block * impulse_stride + lane, count - lane, lane,
-                        velocities_out<kind_a>(arrays_a, bodies.a + lane, nowhere),
+                        streams.impulses + block * impulse_stride + lane,
+                        streams.sums == nullptr ? nullptr : streams.sums + block * sum_stride + lane,
+                        count - lane, lane, velocities_out<kind_a>(arrays_a, bodies.a + lane, nowhere),
                         velocities_out<kind_b>(arrays_b, bodies.b + lane, nowhere)});
         }
     }
@@ -130,6 +135,7 @@ struct Kernels {
                               bundle.row);
                 }
                 store_row(impulse, bundle.impulse);
+                if (bundle.sum != nullptr) clear(bundle.sum);
             });
         }
     }
@@ -213,6 +219,38 @@ struct Kernels {
         }
     }
 
+    static void clear(float* sum)
+    {
+        for (int i = 0; i < fields_of<Sum>; ++i) store_lanes(Lanes(0), sum + i * block_lanes);
+    }
+
+    /// What the impulses of a substep are added up as.
+    static Sum summand(const Bundle& bundle)
+    {
+        const auto impulse = load_row<Impulse>(bundle.impulse);
+        if constexpr (is_joint) {
+            return Type::template wrench<Lanes>(load_row<Row>(bundle.row), load_row<Substep>(bundle.substep),
+                                                impulse);
+        } else {
+            return impulse;
+        }
+    }
+
+    static void add_up(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
+                       std::int32_t end)
+    {
+        for (std::int32_t block = begin; block < end; ++block) {
+            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+                const Sum summand = Kernels::summand(bundle);
+                auto sum = load_row<Sum>(bundle.sum);
+                const Lanes* more = reinterpret_cast<const Lanes*>(&summand);
+                Lanes* fields = reinterpret_cast<Lanes*>(&sum);
+                for (int i = 0; i < fields_of<Sum>; ++i) fields[i] = fields[i] + more[i];
+                store_row(sum, bundle.sum);
+            });
+        }
+    }
+
     static void store(const KernelContext& context, const BlockStreams& streams, const ConstraintData& data,
                       std::int32_t begin, std::int32_t end)
     {
@@ -228,6 +266,14 @@ struct Kernels {
                     memory = Type::template remember<Lanes>(row, impulse);
                 }
                 scatter_finite(memory, data.memory_out, data.memory_stride, bundle.constraint, bundle.count);
+                if constexpr (is_joint) {
+                    scatter_finite(load_row<Sum>(bundle.sum), data.step_out, data.step_stride,
+                                   bundle.constraint, bundle.count);
+                } else {
+                    if (bundle.sum != nullptr)
+                        memory = Type::template remember<Lanes>(row, load_row<Sum>(bundle.sum));
+                    scatter_finite(memory, data.step_out, data.step_stride, bundle.constraint, bundle.count);
+                }
             });
         }
     }
@@ -294,10 +340,12 @@ struct Kernels {
         kernels.warm_start = warm_start;
         kernels.solve = sweep<false>;
         kernels.relax = sweep<true>;
+        kernels.add_up = add_up;
         kernels.row_floats = fields_of<Row>;
         kernels.swept_floats = fields_of<Swept> + fields_of<Substep>;
         kernels.substep_floats = fields_of<Substep>;
         kernels.impulse_floats = fields_of<Impulse>;
+        kernels.sum_floats = fields_of<Sum>;
     }
 
     /// What runs once a step or where a setting asks for it.

@@ -44,6 +44,15 @@ inline Vec3<Lanes> lever_of_point(const Vec3<Lanes>& along_x, const Vec3<Lanes>&
     return {along_y.z, -along_x.z, along_x.y};
 }
 
+/// A row pushes where it acts, and turns nothing there; one without a linear part turns.
+inline void add_row(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, const Lanes& lambda,
+                    Wrench<Lanes>& sum)
+{
+    sum.push = sum.push + lambda * linear;
+    const Lanes turns = select(dot(linear, linear) > Lanes(0), Lanes(0), lambda);
+    sum.turn = sum.turn + turns * lever;
+}
+
 /// Locks of any kind: J on the body that hangs, on the one that it hangs on, and C. Rows are told by integral constants.
 template <int rows>
 struct AnyRows {
@@ -87,6 +96,18 @@ struct AnyRows {
     void push_parent(const Lanes (&y)[rows], Row6& x) const
     {
         unrolled<rows>([&](auto i) { unrolled<6>([&](auto c) { x[c] = x[c] + y[i] * parent[i][c]; }); });
+    }
+    /// What lambda of the rows from `first` to before `last` is on the child, where they act.
+    [[nodiscard]] Wrench<Lanes> wrench(const Lanes (&lambda)[rows], int first, int last) const
+    {
+        const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
+        Wrench<Lanes> sum{none, none};
+        unrolled<rows>([&](auto i) {
+            if (i() < first || i() >= last) return;
+            add_row({child[i][0], child[i][1], child[i][2]}, {child[i][3], child[i][4], child[i][5]},
+                    lambda[i], sum);
+        });
+        return sum;
     }
 };
 
@@ -159,6 +180,13 @@ struct PointRows {
             x[4] = x[4] - y[3 + i] * turn[i].y;
             x[5] = x[5] - y[3 + i] * turn[i].z;
         });
+    }
+    /// Of the only lock.
+    [[nodiscard]] Wrench<Lanes> wrench(const Lanes (&lambda)[rows], int, int) const
+    {
+        Wrench<Lanes> sum{{lambda[0], lambda[1], lambda[2]}, {Lanes(0), Lanes(0), Lanes(0)}};
+        unrolled<turns>([&](auto i) { sum.turn = sum.turn + lambda[3 + i] * turn[i]; });
+        return sum;
     }
 
   private:

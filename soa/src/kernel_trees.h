@@ -212,6 +212,16 @@ inline float* impulse_of(const FigureBlock& figure, int joint)
            static_cast<std::int64_t>(lanes.block) * lanes.kernels->impulse_floats * block_lanes;
 }
 
+/// What a lock of the tree did more to its body b.
+inline void add_to_sum(const FigureBlock& figure, int joint, const Wrench<Lanes>& more, int lane)
+{
+    const FigureBlock::Joint& lanes = figure.joints[joint];
+    float* at = lanes.streams.sums +
+                static_cast<std::int64_t>(lanes.block) * fields_of<Wrench<Lanes>> * block_lanes + lane;
+    const auto sum = load_row<Wrench<Lanes>>(at);
+    store_row(Wrench<Lanes>{sum.push + more.push, sum.turn + more.turn}, at);
+}
+
 /// And back: lambda = y - K^-1 J_p (change of what it hangs on), change = M'^-1 (f + J_c^T lambda).
 template <class Rows>
 void reach_down(const FigureBlock& figure, const FigureNode& node, float* system, const float* parent_change,
@@ -220,8 +230,8 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
     constexpr int rows = Rows::count;
     Lanes lambda[rows];
     load_array(system + node.target, lambda);
+    const Rows j = Rows::kept(system + node.jacobian);
     if (parent_change != nullptr) {
-        const Rows j = Rows::kept(system + node.jacobian);
         Row6 above;
         load_array(parent_change, above);
         Lanes lacking[rows];
@@ -242,6 +252,9 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
             const Lanes before = load_lanes(impulse + i * block_lanes);
             store_lanes(lock.reversed ? before - pushed : before + pushed, impulse + i * block_lanes);
         }
+        const Wrench<Lanes> on_child = j.wrench(lambda, lock.first_row, lock.first_row + lock.rows);
+        add_to_sum(figure, lock.joint,
+                   lock.reversed ? Wrench<Lanes>{-on_child.push, -on_child.turn} : on_child, lane);
     }
 }
 

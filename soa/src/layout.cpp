@@ -93,7 +93,7 @@ void Layout::place_joints(Scene& scene)
     figures.find(candidates_, bodies, kernels_, use_.exactly, joint_placements_);
     joints_.begin(joint_placements_, false);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.count(chunk);
-    joints_.open(kernels_);
+    joints_.open(kernels_, true);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.fill(chunk);
     figures.bind(joints_, kernels_);
 }
@@ -107,7 +107,7 @@ void Layout::colour_contacts(const BodyStore& bodies, ContactList& list)
         if (placement.is_bad || bodies.is_contained(placement.a) || bodies.is_contained(placement.b)) {
             placement.colour = left_out_colour;
             list.colours[i] = no_colour;
-            list.impulses[i + 1] = {};
+            list.impulses[i + 1] = list.step_impulses[i] = {};
             continue;
         }
         // A joint added since may have taken the colour; then the contact looks for another below. One in the
@@ -206,6 +206,8 @@ void Layout::point_at_data(Scene& scene, std::span<const Contact> list)
         contact.memory_index = intake.memory_index.data();
         contact.memory_out = &scene.contact_cache().staged().impulses[1].normal;
         contact.memory_stride = sizeof(ContactImpulse) / sizeof(float);
+        contact.step_out = &scene.contact_cache().staged().step_impulses[0].normal;
+        contact.step_stride = contact.memory_stride;
     }
     for (int type = 0; type < contact_type_count; ++type) data_[static_cast<std::size_t>(type)] = contact;
     scene.joints().for_each([&](auto& store, int type) {
@@ -216,6 +218,8 @@ void Layout::point_at_data(Scene& scene, std::span<const Contact> list)
         data.memory_in = store.memory.data();
         data.memory_out = store.memory.data();
         data.memory_stride = quad_floats<typename Store::Memory>;
+        data.step_out = store.wrenches.data();
+        data.step_stride = Store::wrench_floats;
         data.world_points = store.world_points.data();
     });
 }

@@ -76,8 +76,8 @@ TEST(JointLists, ATeleportForgetsTheImpulsesOfItsOwnJointsAlone)
     const ConstraintId of_a = scene.add_joint(BallSocketDefinition{scene.ground(), a, {}, {0, 1, 0}});
     const ConstraintId of_b = scene.add_joint(BallSocketDefinition{b, scene.ground(), {0, 1, 0}, {5, 0, 0}});
     auto& store = std::get<0>(scene.joints().stores);
-    for (float& impulse : store.memory) impulse = 1;
-    scene.last_substep = 1;
+    for (float& impulse : store.wrenches) impulse = 1;
+    scene.last_step = 1;
     scene.set_pose(a, {0, -1, 0}, {0, 0, 0, 1}, 0);
     EXPECT_EQ(scene.joint_report(of_a).force.y, 0);
     EXPECT_NE(scene.joint_report(of_b).force.y, 0);

@@ -99,7 +99,7 @@ RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice,
     const KernelTable& kernels = kernel_table(Isa::scalar);
     set.begin(placements, false);
     for (std::int64_t chunk = 0; chunk < set.chunk_count(); ++chunk) set.count(chunk);
-    set.open(kernels);
+    set.open(kernels, false);
     for (std::int64_t chunk = set.chunk_count(); chunk-- > 0;) set.fill(chunk);  // any order will do
     SweepLists sweeps;
     TransferList transfers;

@@ -19,7 +19,7 @@ inline void lay_out(Layout& layout, Scene& scene, std::span<const Contact> conta
     run(cache.part_count(), [&](std::int64_t part) { cache.verify(part); });
     ASSERT_FALSE(cache.has_repeated_key());
     run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.count_contacts(chunk); });
-    layout.contacts.open(layout.kernels());
+    layout.contacts.open(layout.kernels(), true);
     run(layout.contacts.chunk_count(), [&](std::int64_t chunk) { layout.contacts.fill(chunk); });
     layout.cut(scene, contacts, false);
     cache.accept_staged();

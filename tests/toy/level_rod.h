@@ -102,11 +102,16 @@ struct LevelRod {
     {
         return {impulse.lambda};
     }
-    static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState& a,
-                              const BodyState& b, double inverse_substep)
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row&, const Substep&, const Impulse& impulse)
+    {
+        const Vec3<Real> none{Real(0), Real(0), Real(0)};
+        return {{Real(0), impulse.lambda, Real(0)}, none};
+    }
+    static JointReport report(const Definition& joint, const Memory<float>&, const BodyState& a,
+                              const BodyState& b)
     {
         JointReport report;
-        report.force.y = static_cast<float>(inverse_substep * static_cast<double>(memory.lambda));
         report.error =
             static_cast<float>(std::abs(b.position.y - a.position.y - static_cast<double>(joint.offset)));
         report.state = JointState::active;

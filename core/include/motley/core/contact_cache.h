@@ -29,8 +29,9 @@ struct ContactList {
     std::size_t count = 0;
     AlignedVector<Entry> entries;  ///< `count` of them are in use
     AlignedVector<std::uint8_t> colours;
-    /// Of contact i at i + 1; the first stays zero, where a contact without a past looks for it.
+    /// Of the last substep, of contact i at i + 1; the first stays zero, where a contact without a past looks for it.
     AlignedVector<ContactImpulse> impulses = AlignedVector<ContactImpulse>(1);
+    AlignedVector<ContactImpulse> step_impulses;  ///< of all substeps together
 };
 
 /// The list of the last step and the one in the making.
@@ -99,12 +100,16 @@ class ContactCache {
     /// Of an empty cache: these are the contacts of the last step. False, with the cache no longer of use, when a key
     /// comes twice.
     bool restore(std::span<const ContactList::Entry> entries, std::span<const std::uint8_t> colours,
-                 std::span<const ContactImpulse> impulses);
+                 std::span<const ContactImpulse> impulses, std::span<const ContactImpulse> step_impulses);
     /// The staged list becomes the current one.
     void accept_staged() { current_ = 1 - current_; }
     [[nodiscard]] std::span<const ContactImpulse> impulses() const
     {
         return {current().impulses.data() + 1, current().count};
+    }
+    [[nodiscard]] std::span<const ContactImpulse> step_impulses() const
+    {
+        return {current().step_impulses.data(), current().count};
     }
 
   private:

@@ -33,11 +33,13 @@ struct JointStore {
     std::vector<typename Type::Definition> definitions;
     AlignedVector<float> parameters;        ///< quad_floats<Parameters> a joint
     AlignedVector<float> memory;            ///< quad_floats<Memory> a joint: impulses of the last substep
+    AlignedVector<float> wrenches;          ///< quad_floats<Wrench> a joint: of the last step
     std::vector<WorldPoints> world_points;  ///< of types that have any
     std::vector<std::uint8_t> colours;      ///< no_colour until the first step
     std::vector<std::uint32_t> slots;       ///< handle slot of each joint
 
     static constexpr bool has_world_points = requires { &Type::world_points; };
+    static constexpr std::size_t wrench_floats = quad_floats<Wrench<float>>;
     [[nodiscard]] std::size_t size() const { return definitions.size(); }
 
     /// Room for one more; then push_back() cannot fail.
@@ -46,6 +48,7 @@ struct JointStore {
         make_room_for(definitions, 1);
         make_room_for(parameters, quad_floats<Parameters>);
         make_room_for(memory, quad_floats<Memory>);
+        make_room_for(wrenches, wrench_floats);
         if constexpr (has_world_points) make_room_for(world_points, 1);
         make_room_for(colours, 1);
         make_room_for(slots, 1);
@@ -57,6 +60,7 @@ struct JointStore {
         if constexpr (has_world_points) world_points.emplace_back();
         define(size() - 1, definition);
         memory.resize(memory.size() + quad_floats<Memory>);
+        wrenches.resize(wrenches.size() + wrench_floats);
         colours.push_back(no_colour);
         slots.push_back(slot);
     }
@@ -71,12 +75,19 @@ struct JointStore {
     void forget_impulse(std::size_t index)
     {
         std::memset(&memory[index * quad_floats<Memory>], 0, quad_floats<Memory> * sizeof(float));
+        std::memset(&wrenches[index * wrench_floats], 0, wrench_floats * sizeof(float));
     }
     [[nodiscard]] Memory memory_of(std::size_t index) const
     {
         Memory m;
         std::memcpy(static_cast<void*>(&m), &memory[index * quad_floats<Memory>], sizeof m);
         return m;
+    }
+    [[nodiscard]] Wrench<float> wrench_of(std::size_t index) const
+    {
+        Wrench<float> wrench;
+        std::memcpy(static_cast<void*>(&wrench), &wrenches[index * wrench_floats], sizeof wrench);
+        return wrench;
     }
     void swap_remove(std::size_t index)
     {
@@ -87,6 +98,8 @@ struct JointStore {
                         &parameters[last * quad_floats<Parameters>], quad_floats<Parameters> * sizeof(float));
             std::memcpy(&memory[index * quad_floats<Memory>], &memory[last * quad_floats<Memory>],
                         quad_floats<Memory> * sizeof(float));
+            std::memcpy(&wrenches[index * wrench_floats], &wrenches[last * wrench_floats],
+                        wrench_floats * sizeof(float));
             if constexpr (has_world_points) world_points[index] = world_points[last];
             colours[index] = colours[last];
             slots[index] = slots[last];
@@ -95,6 +108,7 @@ struct JointStore {
         definitions.pop_back();
         parameters.resize(last * quad_floats<Parameters>);
         memory.resize(last * quad_floats<Memory>);
+        wrenches.resize(last * wrench_floats);
         colours.pop_back();
         slots.pop_back();
     }

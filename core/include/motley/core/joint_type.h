@@ -28,7 +28,8 @@
 //   solve<relax, Real>(step, swept row, substep, impulse&, a&, b&)   one sweep; relax: without bias, rigid
 //   project<Real>(step, row, substep, a&, b&)                           positions along J^T
 //   remember<Real>(row, impulse) -> Memory                              or (row, impulse, a, b), to look at the bodies
-//   report(definition, memory, state_a, state_b, inverse_substep)       force, torque, error, state, in double
+//   wrench<Real>(row, substep, impulse) -> Wrench                       what the impulse is on b where it acts
+//   report(definition, memory, state_a, state_b)                        errors and state, in double
 //   equality_count, locks_point, is_equality(definition), equality_rows<Real>(row, a, b, rows*)
 //                                         if it locks: its J and C row by row, for SolverSettings::exact_joints;
 //                                         locks_point: three rows of a point along x, y and z, then others of turning alone
@@ -65,7 +66,7 @@ concept JointType = requires(const typename Type::Definition& definition,
         Type::parameters(definition)
         } -> std::same_as<typename Type::template Parameters<float>>;
     {
-        Type::report(definition, memory, state, state, 1.0)
+        Type::report(definition, memory, state, state)
         } -> std::same_as<JointReport>;
 };
 

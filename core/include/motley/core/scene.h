@@ -90,13 +90,13 @@ class Scene {
     void remove_joint(ConstraintId joint);
     [[nodiscard]] bool is_alive(ConstraintId joint) const;
     [[nodiscard]] std::size_t joint_count() const;
-    /// The force and torque that a joint applied in the last substep of the last step, and its error now.
+    /// The force and torque that a joint applied over the last step, and its error now.
     [[nodiscard]] JointReport joint_report(ConstraintId joint) const;
 
     /// Asks to be told when a joint bears more than this; infinite limits ask no more. The joint holds on: whether it
     /// breaks, the host decides, by removing it. Refuses limits that are not above 0.
     void set_break_limit(ConstraintId joint, const BreakLimit& limit);
-    /// Joints that bore more than their limit in the last step, in the order in which they were first watched.
+    /// Joints that bore more than their limit on average over the last step, in the order in which they were first watched.
     [[nodiscard]] std::span<const BreakEvent> break_events() const { return break_events_; }
 
     // ---- memory -------------------------------------------------------------------------------------------
@@ -112,12 +112,27 @@ class Scene {
     void set_island_iterations(BodyId body, int at_least);
 
     // ---- contacts -----------------------------------------------------------------------------------------
-    /// What the contacts of the last step did, in the order of its list.
-    [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const { return contacts_.impulses(); }
+    /// What the contacts of the last step did in all its substeps together, in the order of its list: what changed the
+    /// bodies' momentum. Divided by last_step it is the mean force.
+    [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const
+    {
+        return contacts_.step_impulses();
+    }
+    /// What they did in its last substep alone, which takes last_substep.
+    [[nodiscard]] std::span<const ContactImpulse> last_substep_impulses() const
+    {
+        return contacts_.impulses();
+    }
 
     /// What contact `index` of the list of the last step did, as a joint tells it: the force on b at the point, the depth
     /// that the host gave, active when it pushed. Refuses an index beyond the last list, or another contact's.
     [[nodiscard]] JointReport contact_report(std::span<const Contact> contacts, std::size_t index) const;
+
+    /// What bodies bear of the contacts of the last step, `contacts` being its list: element i is of bodies[i], be it
+    /// dynamic, kinematic, static or contained. `circumferences` (m, > 0), if there are any, give the pressure of each.
+    /// Refuses another list. Allocates room for a sum a body of the scene.
+    void read_loads(std::span<const BodyId> bodies, std::span<const Contact> contacts,
+                    StridedSpan<BodyLoad> loads, StridedSpan<const float> circumferences = {}) const;
 
     // ---- whole scene --------------------------------------------------------------------------------------
     /// 64-bit hash of every body's position, orientation and velocity bits, in slot order.
@@ -144,8 +159,8 @@ class Scene {
     void find_break_events() noexcept;
     /// Taken by a step for as long as it lasts.
     [[nodiscard]] BusyFlag& busy() { return busy_; }
-    /// Seconds of the last substep: turns impulses into forces. 0 before the first step.
-    float last_substep = 0;
+    /// Seconds of the last step and of its last substep: they turn impulses into forces. 0 before the first step.
+    float last_step = 0, last_substep = 0;
 
   private:
     friend struct SceneArchive;
@@ -172,6 +187,8 @@ class Scene {
     std::size_t index_of_joint(ConstraintId joint, int type) const;
     void remove_joints_of(std::span<const BodyId> bodies);
     void remove_joint_at(int type, std::size_t index);
+    void require_list_of_last_step(std::span<const Contact> contacts, const char* what) const;
+    [[nodiscard]] Vec3<float> force_of(const Vec3<float>& impulse) const;
     void write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular);
     void check_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular) const;
 };

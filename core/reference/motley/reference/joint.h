@@ -68,6 +68,8 @@ struct Joint {
     std::vector<Eigen::VectorXd> impulses{};  ///< of each block, carried from step to step
     double travelled = 0;
     std::span<const float> memory{};  ///< where impulses are recalled from while there are none
+    /// What the last step did to b, N s where the rows act and N m s beside it.
+    Eigen::Matrix<double, 6, 1> wrench = Eigen::Matrix<double, 6, 1>::Zero();
     std::vector<double> approaches{},
         peaks{};  ///< of a step: J v when it began, and the largest impulse, of each block
 };

@@ -38,19 +38,18 @@ class World {
     DirectResult step_directly(double dt, const SolverSettings& settings,
                                const std::vector<ContactPoint>& contacts);
 
-    /// What the last step's contact with this key did, N s: along the normal, and across it, on b.
+    /// What a contact did, N s: along the normal, and across it, on b.
     struct ContactResult {
         double normal = 0;
         Eigen::Vector3d friction = Eigen::Vector3d::Zero();
     };
-    [[nodiscard]] ContactResult contact_result(std::uint64_t key) const
-    {
-        const auto found = memory_.find(key);
-        return found == memory_.end() ? ContactResult{} : found->second;
-    }
+    using ContactResults = std::map<std::uint64_t, ContactResult>;  ///< by key
+    /// In the last step's last substep, and in all its substeps together.
+    [[nodiscard]] const ContactResults& last_substep_results() const { return memory_; }
+    [[nodiscard]] const ContactResults& step_results() const { return step_results_; }
 
     /// Takes over what another step, of this substep, did to its contacts: by key. Joints carry theirs themselves.
-    void recall(double last_substep, std::map<std::uint64_t, ContactResult> contacts)
+    void recall(double last_substep, ContactResults contacts)
     {
         last_substep_ = last_substep;
         memory_ = std::move(contacts);
@@ -62,7 +61,7 @@ class World {
     };
     struct BlockRow;
     struct ContactRow;
-    std::map<std::uint64_t, ContactResult> memory_;
+    ContactResults memory_, step_results_;
     double last_substep_ = 0;
     std::vector<Body> start_;  ///< the bodies when the step began
 
@@ -71,6 +70,8 @@ class World {
     [[nodiscard]] double stiffest(double h) const { return 0.25 / std::max(h, last_substep_); }
     [[nodiscard]] bool is_planar_pair(int a, int b) const;
     void apply(int a, int b, const Jacobian& jacobian, const Eigen::VectorXd& impulse);
+    void apply(Joint& joint, const Jacobian& jacobian, const Eigen::VectorXd& impulse);
+    void add_up(std::vector<ContactRow>& contacts);
     [[nodiscard]] Eigen::VectorXd speed(int a, int b, const Jacobian& jacobian) const;
 
     [[nodiscard]] std::vector<Block> blocks_of(const Joint& joint) const;

@@ -140,16 +140,18 @@ struct BallSocket {
         return {to_three(impulse.push)};
     }
 
-    /// What it did and how far off it is, from the poses now, in double.
-    static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState& a,
-                              const BodyState& b, double inverse_substep)
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row&, const Substep&, const Impulse& impulse)
+    {
+        return {to_three(impulse.push), {Real(0), Real(0), Real(0)}};
+    }
+
+    /// How far off it is, from the poses now, in double.
+    static JointReport report(const Definition& joint, const Memory<float>&, const BodyState& a,
+                              const BodyState& b)
     {
         const Vec3<double> d = anchor_separation(a, b, joint.local_anchor_a, joint.local_anchor_b);
-        return {convert<float>(inverse_substep * convert<double>(memory.push)),
-                {},
-                static_cast<float>(std::sqrt(dot(d, d))),
-                0,
-                JointState::active};
+        return {.error = static_cast<float>(std::sqrt(dot(d, d))), .state = JointState::active};
     }
 };
 

@@ -22,9 +22,17 @@ struct Contact {
     float restitution = 0;  ///< 0 to 1
 };
 
-/// What a contact did in the last step, in the order of the list.
+/// What a body bears of its contacts, on average over the last step.
+struct BodyLoad {
+    float normal_force = 0;          ///< N, the sum of what its contacts press with
+    float largest_normal_force = 0;  ///< N, of one contact
+    Vec3<float> net_force{};         ///< N, world: all its contacts together, friction with them
+    float pressure = 0;  ///< N/m: normal_force over the body's circumference; 0 where none was given
+};
+
+/// What a contact did in a step or in a substep.
 struct ContactImpulse {
-    float normal = 0;        ///< N s, >= 0, along the normal on b; summed over the last substep
+    float normal = 0;        ///< N s, >= 0, along the normal on b
     Vec3<float> friction{};  ///< N s, world, on b
 };
 

@@ -150,19 +150,21 @@ struct Distance {
         return {impulse.spring, impulse.limit};
     }
 
-    /// What it did and how far off it is, from the poses now, in double.
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row&, const Substep& substep, const Impulse& impulse)
+    {
+        return {to_three((impulse.spring + impulse.limit) * substep.axis), {Real(0), Real(0), Real(0)}};
+    }
+
+    /// How far off it is, from the poses now, in double.
     static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState& a,
-                              const BodyState& b, double inverse_substep)
+                              const BodyState& b)
     {
         const Vec3<double> d = anchor_separation(a, b, joint.local_anchor_a, joint.local_anchor_b);
         const double length = std::sqrt(dot(d, d));
-        const Vec3<double> axis = length > 1e-9 ? (1 / length) * d : Vec3<double>{1, 0, 0};
         const double wrong = std::fmax(0.0, std::fmax(static_cast<double>(joint.min_length) - length,
                                                       length - static_cast<double>(joint.max_length)));
         JointReport report;
-        report.force =
-            convert<float>(inverse_substep *
-                           (static_cast<double>(memory.spring) + static_cast<double>(memory.limit)) * axis);
         report.error = static_cast<float>(wrong);
         if (joint.min_length == joint.max_length) {
             report.state = JointState::active;

@@ -204,23 +204,27 @@ struct Drive {
         return {impulse.motor, impulse.spring, impulse.limit};
     }
 
-    /// What it did and how far beyond its limits it is, from the poses now, in double.
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row&, const Substep& substep, const Impulse& impulse)
+    {
+        const Vec3<Real> none{Real(0), Real(0), Real(0)};
+        const Vec3<Real> effort = (impulse.motor + impulse.spring + impulse.limit) * substep.axis;
+        return slides ? Wrench<Real>{effort, none} : Wrench<Real>{none, effort};
+    }
+
+    /// How far beyond its limits it is, from the poses now, in double.
     static JointReport report(const Definition& drive, const Memory<float>& memory, const BodyState& a,
-                              const BodyState& b, double inverse_substep)
+                              const BodyState& b)
     {
         const Quat<double> frame_a = a.orientation * unit(convert<double>(drive.frame_a.rotation));
         const Quat<double> frame_b = b.orientation * unit(convert<double>(drive.frame_b.rotation));
         const Vec3<double> d = anchor_separation(a, b, drive.frame_a.position, drive.frame_b.position);
-        const double lambda =
-            inverse_substep * (static_cast<double>(memory.motor) + static_cast<double>(memory.spring) +
-                               static_cast<double>(memory.limit));
         const Quat<double> q = conjugate(frame_a) * frame_b;
         const double value =
             slides ? dot(axis_x(frame_a), d) : 2 * std::atan2(q.w < 0 ? -q.x : q.x, std::abs(q.w));
         const double wrong = std::fmax(0.0, std::fmax(static_cast<double>(drive.lower) - value,
                                                       value - static_cast<double>(drive.upper)));
         JointReport report;
-        (slides ? report.force : report.torque) = convert<float>(lambda * axis_x(frame_a));
         (slides ? report.error : report.angle_error) = static_cast<float>(wrong);
         if (memory.limit != 0) {
             report.state = memory.limit > 0 ? JointState::lower : JointState::upper;

@@ -193,9 +193,15 @@ struct FrameJoint {
         return memory;
     }
 
-    /// What it did and how far off it is, from the poses now, in double.
-    static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState& a,
-                              const BodyState& b, double inverse_substep)
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row&, const Substep& substep, const Impulse& impulse)
+    {
+        return wrench_of(substep, impulse.lambda);
+    }
+
+    /// How far off it is, from the poses now, in double.
+    static JointReport report(const Definition& joint, const Memory<float>&, const BodyState& a,
+                              const BodyState& b)
     {
         const Quat<double> frame_a = a.orientation * unit(convert<double>(joint.frame_a.rotation));
         const Quat<double> frame_b = b.orientation * unit(convert<double>(joint.frame_b.rotation));
@@ -204,20 +210,12 @@ struct FrameJoint {
         double error[6] = {};
         linear_rows_of(frame_a, d, linear, error);
         angular_rows_of(frame_a, frame_b, angular, error + linear_rows);
-        Vec3<double> force{}, torque{};
         double linear_error = 0, angular_error = 0;
-        for (int i = 0; i < rows; ++i) {
-            const double lambda = inverse_substep * static_cast<double>(memory.lambda[i]);
-            if (i < linear_rows) {
-                force = force + lambda * linear[i];
-                linear_error += error[i] * error[i];
-            } else {
-                torque = torque + lambda * angular[i - linear_rows];
-                angular_error += error[i] * error[i];
-            }
-        }
-        return {convert<float>(force), convert<float>(torque), static_cast<float>(std::sqrt(linear_error)),
-                static_cast<float>(std::sqrt(angular_error)), JointState::active};
+        for (int i = 0; i < rows; ++i)
+            (i < linear_rows ? linear_error : angular_error) += error[i] * error[i];
+        return {.error = static_cast<float>(std::sqrt(linear_error)),
+                .angle_error = static_cast<float>(std::sqrt(angular_error)),
+                .state = JointState::active};
     }
 
   private:
@@ -333,27 +331,36 @@ struct FrameJoint {
         }
     }
 
+    /// What lambda is at the point where the rows act.
+    template <class Real, class Substep>
+    static Wrench<Real> wrench_of(const Substep& substep, const Real (&lambda)[rows])
+    {
+        const Vec3<Real> none{Real(0), Real(0), Real(0)};
+        Wrench<Real> wrench{none, none};
+        if constexpr (has_turns) {
+            for (int i = linear_rows; i < rows; ++i)
+                wrench.turn = wrench.turn + lambda[i] * substep.angular.axis[i - linear_rows];
+        }
+        if constexpr (has_axes) {
+            for (int i = 0; i < linear_rows; ++i)
+                wrench.push = wrench.push + lambda[i] * substep.linear.axis[i];
+        } else if constexpr (has_arms) {
+            wrench.push = {lambda[0], lambda[1], lambda[2]};
+        }
+        return wrench;
+    }
     /// J^T lambda to both bodies, by `apply(body, linear, angular)`.
     template <class Real, class Substep, class A, class B, class Apply>
     static void push(const Substep& substep, const Real (&lambda)[rows], A& a, B& b, const Apply& apply)
     {
-        Vec3<Real> linear{Real(0), Real(0), Real(0)}, angular_a = linear, angular_b = linear;
-        if constexpr (has_turns) {
-            for (int i = linear_rows; i < rows; ++i)
-                angular_b = angular_b + lambda[i] * substep.angular.axis[i - linear_rows];
-            angular_a = angular_b;
-        }
+        const Wrench<Real> wrench = wrench_of(substep, lambda);
+        Vec3<Real> angular_a = wrench.turn, angular_b = wrench.turn;
         if constexpr (has_arms) {
-            if constexpr (has_axes) {
-                for (int i = 0; i < linear_rows; ++i) linear = linear + lambda[i] * substep.linear.axis[i];
-            } else {
-                linear = {lambda[0], lambda[1], lambda[2]};
-            }
-            angular_a = angular_a + cross(substep.arm.a, linear);
-            angular_b = angular_b + cross(substep.arm.b, linear);
+            angular_a = angular_a + cross(substep.arm.a, wrench.push);
+            angular_b = angular_b + cross(substep.arm.b, wrench.push);
         }
-        apply(a, -linear, -angular_a);
-        apply(b, linear, angular_b);
+        apply(a, -wrench.push, -angular_a);
+        apply(b, wrench.push, angular_b);
     }
 };
 

@@ -268,13 +268,24 @@ struct Manifold {
         return memory;
     }
 
-    /// The force on b and the moment beside it, and how deep its deepest point is, from the poses now, in double.
-    static JointReport report(const Definition& contact, const Memory<float>& memory, const BodyState& a,
-                              const BodyState& b, double inverse_substep)
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row& whole, const Substep&, const Impulse& impulse)
     {
-        const Vec3<double> local_n = convert<double>(unit(contact.normal)), local_t = across(local_n);
-        const Vec3<double> n = rotate(a.orientation, local_n), t = rotate(a.orientation, local_t),
-                           t2 = cross(n, t);
+        const auto& row = whole.in_sweep;
+        Real normal(0);
+        for (int i = 0; i < most_points; ++i) normal = normal + impulse.normal[i];
+        const Vec3<Real> tangent2 = cross(row.normal, row.tangent);
+        const auto along = [&](const Real& n, const Vec2<Real>& t) {
+            return n * row.normal + t.x * row.tangent + t.y * tangent2;
+        };
+        return {along(normal, impulse.friction), along(impulse.torsion, impulse.rolling)};
+    }
+
+    /// How deep its deepest point is, from the poses now, in double.
+    static JointReport report(const Definition& contact, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b)
+    {
+        const Vec3<double> n = rotate(a.orientation, convert<double>(unit(contact.normal)));
         double push = 0, deepest = 0;
         for (int i = 0; i < contact.point_count; ++i) {
             push += static_cast<double>(memory.normal[i]);
@@ -282,12 +293,7 @@ struct Manifold {
             deepest = std::fmax(deepest,
                                 -dot(n, anchor_separation(a, b, point.local_anchor_a, point.local_anchor_b)));
         }
-        const Vec2<double> f{static_cast<double>(memory.friction.x), static_cast<double>(memory.friction.y)},
-            r{static_cast<double>(memory.rolling.x), static_cast<double>(memory.rolling.y)};
         JointReport report;
-        report.force = convert<float>(inverse_substep * (push * n + f.x * t + f.y * t2));
-        report.torque =
-            convert<float>(inverse_substep * (static_cast<double>(memory.torsion) * n + r.x * t + r.y * t2));
         report.error = static_cast<float>(deepest);
         report.state = push > 0 ? JointState::active : JointState::inactive;
         return report;

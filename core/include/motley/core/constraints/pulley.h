@@ -140,20 +140,23 @@ struct Pulley {
         return {impulse.lambda};
     }
 
-    /// The pull on b, and how much too short or too long the rope is, from the poses now, in double.
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row&, const Substep& substep, const Impulse& impulse)
+    {
+        return {to_three(impulse.lambda * substep.b_end.axis), {Real(0), Real(0), Real(0)}};
+    }
+
+    /// How much too short or too long the rope is, from the poses now, in double.
     static JointReport report(const Definition& pulley, const Memory<float>& memory, const BodyState& a,
-                              const BodyState& b, double inverse_substep)
+                              const BodyState& b)
     {
         const Vec3<double> rope_a =
             a.position + rotate(a.orientation, convert<double>(pulley.local_anchor_a)) - pulley.point_a;
         const Vec3<double> rope_b =
             b.position + rotate(b.orientation, convert<double>(pulley.local_anchor_b)) - pulley.point_b;
-        const double length_b = std::sqrt(dot(rope_b, rope_b));
-        const auto ratio = static_cast<double>(pulley.ratio);
-        const double length = std::sqrt(dot(rope_a, rope_a)) + ratio * length_b;
-        const double pull = inverse_substep * ratio * static_cast<double>(memory.lambda);
+        const double length = std::sqrt(dot(rope_a, rope_a)) +
+                              static_cast<double>(pulley.ratio) * std::sqrt(dot(rope_b, rope_b));
         JointReport report;
-        report.force = convert<float>((length_b > 1e-9 ? pull / length_b : 0) * rope_b);
         report.error =
             static_cast<float>(std::fmax(0.0, std::fmax(static_cast<double>(pulley.min_length) - length,
                                                         length - static_cast<double>(pulley.max_length))));

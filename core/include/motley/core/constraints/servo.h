@@ -154,14 +154,18 @@ struct PointServo {
         return {to_three(impulse.push)};
     }
 
-    /// What it did and how far the anchors are apart, from the poses now, in double.
-    static JointReport report(const Definition& servo, const Memory<float>& memory, const BodyState& a,
-                              const BodyState& b, double inverse_substep)
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row&, const Substep&, const Impulse& impulse)
+    {
+        return {to_three(impulse.push), {Real(0), Real(0), Real(0)}};
+    }
+
+    /// How far the anchors are apart, from the poses now, in double.
+    static JointReport report(const Definition& servo, const Memory<float>&, const BodyState& a,
+                              const BodyState& b)
     {
         const Vec3<double> d = anchor_separation(a, b, servo.local_anchor_a, servo.local_anchor_b);
-        return {.force = convert<float>(inverse_substep * convert<double>(memory.push)),
-                .error = static_cast<float>(std::sqrt(dot(d, d))),
-                .state = JointState::active};
+        return {.error = static_cast<float>(std::sqrt(dot(d, d))), .state = JointState::active};
     }
 };
 
@@ -294,19 +298,20 @@ struct AngularServo {
         return {impulse.turn};
     }
 
-    /// What it did and how far the frames are turned apart, from the poses now, in double.
-    static JointReport report(const Definition& servo, const Memory<float>& memory, const BodyState& a,
-                              const BodyState& b, double inverse_substep)
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row&, const Substep& substep, const Impulse& impulse)
+    {
+        return {{Real(0), Real(0), Real(0)}, torque_of(substep, impulse.turn)};
+    }
+
+    /// How far the frames are turned apart, from the poses now, in double.
+    static JointReport report(const Definition& servo, const Memory<float>&, const BodyState& a,
+                              const BodyState& b)
     {
         const Quat<double> frame_a = a.orientation * unit(convert<double>(servo.frame_a.rotation));
         const Quat<double> frame_b = b.orientation * unit(convert<double>(servo.frame_b.rotation));
-        double error[3];
-        const RotationRows<double> rows = rotation_rows(frame_a, frame_b, error);
-        const Vec3<double> lambda = inverse_substep * convert<double>(memory.turn);
         const Quat<double> q = relative_rotation(frame_a, frame_b);
-        return {.torque = convert<float>(lambda.x * rows.axis[0] + lambda.y * rows.axis[1] +
-                                         lambda.z * rows.axis[2]),
-                .angle_error =
+        return {.angle_error =
                     static_cast<float>(2 * std::atan2(std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z), q.w)),
                 .state = JointState::active};
     }

@@ -107,9 +107,15 @@ struct SwingLimit {
         return {impulse.limit};
     }
 
-    /// What it did and how far beyond the cone it is, from the poses now, in double.
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row&, const Substep& substep, const Impulse& impulse)
+    {
+        return {{Real(0), Real(0), Real(0)}, -(impulse.limit * substep.normal)};
+    }
+
+    /// How far beyond the cone it is, from the poses now, in double.
     static JointReport report(const Definition& limit, const Memory<float>& memory, const BodyState& a,
-                              const BodyState& b, double inverse_substep)
+                              const BodyState& b)
     {
         const Vec3<double> x_a = axis_x(a.orientation * unit(convert<double>(limit.frame_a.rotation)));
         const Vec3<double> x_b = axis_x(b.orientation * unit(convert<double>(limit.frame_b.rotation)));
@@ -118,12 +124,7 @@ struct SwingLimit {
         JointReport report;
         report.angle_error = static_cast<float>(
             std::fmax(0.0, std::atan2(sine, dot(x_a, x_b)) - static_cast<double>(limit.max_angle)));
-        if (memory.limit > 0) {
-            report.state = JointState::upper;
-            const double torque =
-                -inverse_substep * static_cast<double>(memory.limit) / std::fmax(sine, 1e-9);
-            report.torque = convert<float>(torque * n);
-        }
+        if (memory.limit > 0) report.state = JointState::upper;
         return report;
     }
 

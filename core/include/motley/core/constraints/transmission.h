@@ -147,15 +147,19 @@ struct Transmission {
         return {impulse.lambda, error_now<Real>(row, a, b)};
     }
 
-    /// What it did to b, and by how much b is ahead of a.
-    static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState&,
-                              const BodyState& b, double inverse_substep)
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row&, const Substep& substep, const Impulse& impulse)
     {
-        const Vec3<double> axis = rotate(b.orientation, unit(convert<double>(joint.axis_b)));
-        const Vec3<float> effort =
-            convert<float>(inverse_substep * static_cast<double>(memory.lambda) * axis);
+        const Vec3<Real> none{Real(0), Real(0), Real(0)};
+        const Vec3<Real> effort = impulse.lambda * substep.axis_b;
+        return slides ? Wrench<Real>{effort, none} : Wrench<Real>{none, effort};
+    }
+
+    /// By how much b is ahead of a.
+    static JointReport report(const Definition&, const Memory<float>& memory, const BodyState&,
+                              const BodyState&)
+    {
         JointReport report;
-        (slides ? report.force : report.torque) = effort;
         (slides ? report.error : report.angle_error) = std::abs(memory.error);
         report.state = JointState::active;
         return report;
