@@ -57,9 +57,9 @@ double operations_of()
     const StepConstants step;
     Counted::operations = 0;
     if constexpr (requires { row.in_sweep; }) {
-        Type::template solve<false, Counted>(step, row.in_sweep, substep, impulse, a, b);
+        Type::template solve<Counted>(step, row.in_sweep, substep, impulse, a, b);
     } else {
-        Type::template solve<false, Counted>(step, row, substep, impulse, a, b);
+        Type::template solve<Counted>(step, row, substep, impulse, a, b);
     }
     return static_cast<double>(Counted::operations);
 }

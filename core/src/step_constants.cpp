@@ -58,6 +58,14 @@ Softness soft(float hertz, float damping_ratio, float substep)
     return {omega / a1, a2 * a3, a3};
 }
 
+StepConstants relaxing(StepConstants step)
+{
+    step.joint = step.contact = step.static_contact = Softness{};
+    // More than any speed, and times any mass that is accepted still a float.
+    step.push_out_speed = 1e30F;
+    return step;
+}
+
 StepConstants step_constants(const SolverSettings& settings, float dt, float last_substep)
 {
     StepConstants step;

@@ -104,6 +104,7 @@ enum class Replay {
 
 struct KernelContext {
     StepConstants step;
+    StepConstants relaxing;  ///< the same for sweeps that relax
     Measure measure = Measure::nothing;
     Replay replay = Replay::nothing;
     bool bodies_are_far = false;  ///< more than a core keeps at hand: sweeps ask for the next block's in time

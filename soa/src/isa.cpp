@@ -113,6 +113,20 @@ constexpr bool is_built(TypeList<Built...>)
     return (std::is_same_v<List, Built> || ...);
 }
 
+/// Whose lanes run what is rare: SSE2 and AVX-512 have no such kernels of their own, which would be a quarter of the library.
+/// Bits do not depend on it.
+constexpr Isa rare_lanes_of(Isa isa)
+{
+    switch (isa) {
+        case Isa::sse2:
+            return Isa::scalar;
+        case Isa::avx512:
+            return Isa::avx2;
+        default:
+            return isa;
+    }
+}
+
 template <Isa isa, class... Lists>
 void enter_constraints(KernelTable& table, TypeList<Lists...>)
 {
@@ -120,7 +134,8 @@ void enter_constraints(KernelTable& table, TypeList<Lists...>)
     const auto enter = [&]<class Types>(Types) {
         if constexpr (is_built<Types>(BuiltLists{})) {
             enter_constraint_kernels<isa, KernelShare::swept, Types>(next);
-            enter_constraint_kernels<isa, KernelShare::rare, Types>(next);
+            enter_constraint_kernels<isa, KernelShare::once, Types>(next);
+            enter_constraint_kernels<rare_lanes_of(isa), KernelShare::rare, Types>(next);
         }
         next += class_of(Types::size, BodyKind{}, BodyKind{});
     };

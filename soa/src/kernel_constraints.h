@@ -168,9 +168,19 @@ struct Kernels {
                                                   streams.bodies[block + 1]);
     }
 
-    template <bool relax>
-    static void sweep(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
+    static void solve(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
                       std::int32_t end)
+    {
+        sweep(context, context.step, streams, begin, end);
+    }
+    static void relax(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
+                      std::int32_t end)
+    {
+        sweep(context, context.relaxing, streams, begin, end);
+    }
+    /// One copy for both, or kernels would be half as large again.
+    [[gnu::noinline]] static void sweep(const KernelContext& context, const StepConstants& step,
+                                        const BlockStreams& streams, std::int32_t begin, std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
             prefetch<!sees_delta_once>(context, streams, block, end);
@@ -179,8 +189,8 @@ struct Kernels {
                 B b = bundle.load_b();
                 auto impulse = load_row<Impulse>(bundle.impulse);
                 const auto row = load_row<Row>(bundle.row);
-                Type::template solve<relax, Lanes>(context.step, swept<Type::recomputes_each_substep>(row),
-                                                   load_row<Substep>(bundle.substep), impulse, a, b);
+                Type::template solve<Lanes>(step, swept<Type::recomputes_each_substep>(row),
+                                            load_row<Substep>(bundle.substep), impulse, a, b);
                 store_row(impulse, bundle.impulse);
                 bundle.store_velocities(a, b);
             });
@@ -297,17 +307,27 @@ struct Kernels {
         });
     }
 
-    template <bool relax>
-    static void sweep_copies(const KernelContext& context, const BlockStreams& streams, std::int32_t block,
+    static void solve_copies(const KernelContext& context, const BlockStreams& streams, std::int32_t block,
                              float* body_a, float* body_b)
+    {
+        sweep_copies(context, context.step, streams, block, body_a, body_b);
+    }
+    static void relax_copies(const KernelContext& context, const BlockStreams& streams, std::int32_t block,
+                             float* body_a, float* body_b)
+    {
+        sweep_copies(context, context.relaxing, streams, block, body_a, body_b);
+    }
+    [[gnu::noinline]] static void sweep_copies(const KernelContext& context, const StepConstants& step,
+                                               const BlockStreams& streams, std::int32_t block, float* body_a,
+                                               float* body_b)
     {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
             A a = load_row<A>(body_a + bundle.lane);
             B b = load_row<B>(body_b + bundle.lane);
             auto impulse = load_row<Impulse>(bundle.impulse);
             const auto row = load_row<Row>(bundle.row);
-            Type::template solve<relax, Lanes>(context.step, swept<Type::recomputes_each_substep>(row),
-                                               load_row<Substep>(bundle.substep), impulse, a, b);
+            Type::template solve<Lanes>(step, swept<Type::recomputes_each_substep>(row),
+                                        load_row<Substep>(bundle.substep), impulse, a, b);
             store_row(impulse, bundle.impulse);
             store_copy_velocity(a, body_a + bundle.lane);
             store_copy_velocity(b, body_b + bundle.lane);
@@ -334,12 +354,12 @@ struct Kernels {
         static_assert(fields_of<Impulse> <= most_impulse_floats);
         if constexpr (has_copies) {
             kernels.warm_start_copies = warm_start_copies;
-            kernels.solve_copies = sweep_copies<false>;
-            kernels.relax_copies = sweep_copies<true>;
+            kernels.solve_copies = solve_copies;
+            kernels.relax_copies = relax_copies;
         }
         kernels.warm_start = warm_start;
-        kernels.solve = sweep<false>;
-        kernels.relax = sweep<true>;
+        kernels.solve = solve;
+        kernels.relax = relax;
         kernels.add_up = add_up;
         kernels.row_floats = fields_of<Row>;
         kernels.swept_floats = fields_of<Swept> + fields_of<Substep>;
@@ -348,16 +368,21 @@ struct Kernels {
         kernels.sum_floats = fields_of<Sum>;
     }
 
-    /// What runs once a step or where a setting asks for it.
-    static void enter_rare(ConstraintKernels& kernels)
+    /// What runs when a step begins and when it is done, and before the trees of exact joints.
+    static void enter_once(ConstraintKernels& kernels)
     {
         kernels.prepare = prepare;
-        if constexpr (Type::has_restitution) kernels.restitute = restitute;
-        kernels.project = project;
         kernels.store = store;
         if constexpr (has_copies && requires { Type::equality_count; }) {
             kernels.equality_rows = equality_rows;
             kernels.equality_count = Type::equality_count;
         }
+    }
+
+    /// What a setting or a definition asks for.
+    static void enter_rare(ConstraintKernels& kernels)
+    {
+        if constexpr (Type::has_restitution) kernels.restitute = restitute;
+        kernels.project = project;
     }
 };

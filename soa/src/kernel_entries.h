@@ -6,9 +6,12 @@
 
 namespace motley {
 
-/// Kernels are compiled in two shares: for speed what every substep runs of pairs of like bodies, and of bodies and fixed ones;
-/// for size what runs once a step or where a setting asks for it, and all of pairs of two models.
-enum class KernelShare { swept, rare };
+/// Kernels are compiled in three shares.
+enum class KernelShare {
+    swept,  ///< what every substep runs of usual pairs (see is_usual): for speed
+    once,   ///< what brings those into lanes when a step begins, and stores what they did: for size
+    rare,  ///< what a setting asks for, and all of unusual pairs: for size, and in some lanes only (see rare_lanes_of)
+};
 
 /// Of the types of one constraint header, by pair of body kinds: the entry of class_of, counted from the first of them.
 template <Isa isa, KernelShare share, class Types>

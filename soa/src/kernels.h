@@ -43,6 +43,14 @@ constexpr bool is_mixed(BodyKind a, BodyKind b)
 {
     return a != b && a != BodyKind::fixed && b != BodyKind::fixed;
 }
+/// Bodies of one model, or of one and fixed ones; but not joints of planar bodies about axes, whose rows are mostly of what the
+/// plane forbids: a ball-socket is the hinge of the plane, a distance its rope.
+template <class Type, BodyKind a, BodyKind b>
+constexpr bool is_usual()
+{
+    return !is_mixed(a, b) &&
+           !((a == BodyKind::planar || b == BodyKind::planar) && requires { Type::needs_bodies_that_turn; });
+}
 /// Joints between moving bodies of two models are few in any scene: one copy of them, of one lane, serves every instruction
 /// set, with the same bits. See kernel_table().
 template <class Type, BodyKind a, BodyKind b>
@@ -72,8 +80,10 @@ void enter_pair(ConstraintKernels* pairs)
     if constexpr (occurs<Type, a, b>() && !is_left_to_scalar<Type, a, b>()) {
         using Computed = Kernels<Type, computed_as<Type, a, b>(), computed_as<Type, b, a>()>;
         ConstraintKernels& kernels = pairs[class_of(0, a, b)];
-        if constexpr (share == KernelShare::rare) Computed::enter_rare(kernels);
-        if constexpr ((share == KernelShare::rare) == is_mixed(a, b)) Computed::enter_swept(kernels);
+        constexpr bool usual = is_usual<Type, a, b>(), rare = share == KernelShare::rare;
+        if constexpr (usual ? share == KernelShare::swept : rare) Computed::enter_swept(kernels);
+        if constexpr (usual ? share == KernelShare::once : rare) Computed::enter_once(kernels);
+        if constexpr (rare) Computed::enter_rare(kernels);
     }
 }
 

@@ -227,6 +227,7 @@ void Layout::point_at_data(Scene& scene, std::span<const Contact> list)
 void Layout::point_at(Scene& scene, const StepConstants& step)
 {
     context.step = step;
+    context.relaxing = relaxing(step);
     std::int64_t swept = 0;
     for (int kind = 0; kind < body_kind_count; ++kind) {
         BodyRows& rows = scene.bodies().rows(static_cast<BodyKind>(kind));

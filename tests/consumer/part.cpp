@@ -1,4 +1,4 @@
-// A host of a library that was built with contacts of planar bodies alone: MOTLEY_JOINTS=none, MOTLEY_MODELS=planar.
+// A host of a library that was built in part: MOTLEY_JOINTS=ball_socket, MOTLEY_MODELS=planar;rigid. The rest is refused by name.
 #include <motley/motley.h>
 
 #include <cstdio>
@@ -30,14 +30,12 @@ int main()
     const motley::BodyId b = scene.add_body(person);
 
     const bool refuses_joint = refuses(
-        [&] {
-            scene.add_joint(motley::BallSocketDefinition{a, b, {0.2F, 0, 0}, {-0.19F, 0, 0}});
-        },
-        "joint is motley::BallSocketDefinition; expected one that is built, MOTLEY_JOINTS: none");
-    person.model = motley::BodyModel::rigid;
+        [&] { scene.add_joint(motley::DistanceDefinition{.body_a = a, .body_b = b}); },
+        "joint is motley::DistanceDefinition; expected one that is built, MOTLEY_JOINTS: ball_socket");
+    person.model = motley::BodyModel::particle;
     const bool refuses_model =
         refuses([&] { scene.add_body(person); },
-                "BodyDefinition.model is rigid; expected one that is built, MOTLEY_MODELS: planar");
+                "BodyDefinition.model is particle; expected one that is built, MOTLEY_MODELS: planar, rigid");
 
     // Two people who overlap by 1 cm are pushed apart alike.
     motley::Contact touch;

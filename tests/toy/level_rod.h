@@ -77,12 +77,12 @@ struct LevelRod {
         apply_impulse(a, at_centre<A, B, Real>(), -up<A, B>(impulse.lambda));
         apply_impulse(b, at_centre<A, B, Real>(), up<A, B>(impulse.lambda));
     }
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row&, const Substep& substep, Impulse& impulse, A& a,
                       B& b)
     {
         const Real speed = b.linear.y - a.linear.y;
-        const Real wanted = lock_impulse<relax>(step, substep.error, speed, substep.mass, impulse.lambda);
+        const Real wanted = lock_impulse(step, substep.error, speed, substep.mass, impulse.lambda);
         const Real change = wanted - impulse.lambda;
         impulse.lambda = wanted;
         apply_impulse(a, at_centre<A, B, Real>(), -up<A, B>(change));

@@ -25,7 +25,7 @@
 //   prepare(step, parameters, memory, pose, a, b, impulse&) -> Row      once a step
 //                                         with has_restitution: (..., memory, acceleration, pose, ...), of b beside a
 //   warm_start<Real>(step, row, substep&, impulse, a&, b&)              J and K^-1 where the bodies are now; J^T lambda
-//   solve<relax, Real>(step, swept row, substep, impulse&, a&, b&)   one sweep; relax: without bias, rigid
+//   solve<Real>(step, swept row, substep, impulse&, a&, b&)             one sweep, as soft as `step` says: rigid to relax
 //   project<Real>(step, row, substep, a&, b&)                           positions along J^T
 //   remember<Real>(row, impulse) -> Memory                              or (row, impulse, a, b), to look at the bodies
 //   wrench<Real>(row, substep, impulse) -> Wrench                       what the impulse is on b where it acts

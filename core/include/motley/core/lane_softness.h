@@ -30,13 +30,15 @@ LaneSoftness<Real> softness_or(const StepConstants& step, const Real& hertz, con
             select(own, a3, Real(usual.impulse_scale)), select(own, Real(1), Real(0))};
 }
 
-/// What relaxation solves with: rigid and without bias, but springs as they are.
+/// What a sweep solves with: a spring as it is, everything else as soft as the sweep's constants say, which are rigid when
+/// it relaxes.
 template <class Real>
-LaneSoftness<Real> relaxed(const LaneSoftness<Real>& soft)
+LaneSoftness<Real> softness_in(const StepConstants& step, const LaneSoftness<Real>& soft)
 {
     const auto own = soft.is_own > Real(0);
-    return {select(own, soft.rate, Real(0)), select(own, soft.mass_scale, Real(1)),
-            select(own, soft.impulse_scale, Real(0)), soft.is_own};
+    return {select(own, soft.rate, Real(step.joint.rate)),
+            select(own, soft.mass_scale, Real(step.joint.mass_scale)),
+            select(own, soft.impulse_scale, Real(step.joint.impulse_scale)), soft.is_own};
 }
 
 }  // namespace motley

@@ -34,6 +34,9 @@ struct StepConstants {
     Vec3<float> gravity{};
 };
 
+/// What relaxation sweeps with: rigid, without bias, and nothing held back. So relaxing and solving are one sweep.
+StepConstants relaxing(StepConstants step);
+
 /// `last_substep` is what the cached impulses were accumulated over; 0 if there are none.
 StepConstants step_constants(const SolverSettings& settings, float dt, float last_substep);
 

@@ -43,7 +43,7 @@ struct BallSocket {
     struct SubstepRow {
         PairVector<Real, a, b> arm_a, arm_b;
         PairSymmetric<Real, a, b> mass;  ///< K^-1
-        PairVector<Real, a, b> bias;     ///< rate C, m/s
+        PairVector<Real, a, b> error;    ///< C, m
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -76,30 +76,27 @@ struct BallSocket {
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants& step, const Row& row, Substep& substep,
-                           const Impulse& impulse, A& a, B& b)
+    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
+                           A& a, B& b)
     {
         substep.arm_a = turned(a, row.start_arm_a);
         substep.arm_b = turned(b, row.start_arm_b);
-        const auto error = anchor_error(row.start_error, row.start_arm_a, row.start_arm_b, substep.arm_a,
-                                        substep.arm_b, a, b);
-        meet_half_way(substep.arm_a, substep.arm_b, error);
+        substep.error = anchor_error(row.start_error, row.start_arm_a, row.start_arm_b, substep.arm_a,
+                                     substep.arm_b, a, b);
+        meet_half_way(substep.arm_a, substep.arm_b, substep.error);
         substep.mass = inverse(inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b));
-        substep.bias = Real(step.joint.rate) * error;
         apply_impulse(a, substep.arm_a, -impulse.push);
         apply_impulse(b, substep.arm_b, impulse.push);
     }
 
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row&, const Substep& substep, Impulse& impulse, A& a,
                       B& b)
     {
-        auto speed = velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a);
-        if constexpr (!relax) speed = speed + substep.bias;
-        auto change = -(substep.mass * speed);
-        if constexpr (!relax) {
-            change = Real(step.joint.mass_scale) * change - Real(step.joint.impulse_scale) * impulse.push;
-        }
+        const auto speed = velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a) +
+                           Real(step.joint.rate) * substep.error;
+        const auto change = Real(step.joint.mass_scale) * -(substep.mass * speed) -
+                            Real(step.joint.impulse_scale) * impulse.push;
         impulse.push = impulse.push + change;
         apply_impulse(a, substep.arm_a, -change);
         apply_impulse(b, substep.arm_b, change);

@@ -206,15 +206,15 @@ struct ContactKind {
     }
 
     /// One sweep over this contact: friction with the bound of the normal impulse so far, then the normal.
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row& row, const Substep&, Impulse& impulse, A& a, B& b)
     {
         if constexpr (!smooth) solve_friction<Real>(row, impulse, a, b);
 
         constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
-        const Real wanted = contact_impulse<relax>(
-            step, on_fixed ? step.static_contact : step.contact, row.separation + moved<Real>(row, a, b),
-            speed<Real>(row, a, b), normal_mass<Real>(row, a, b), impulse.normal);
+        const Real wanted = contact_impulse(step, on_fixed ? step.static_contact : step.contact,
+                                            row.separation + moved<Real>(row, a, b), speed<Real>(row, a, b),
+                                            normal_mass<Real>(row, a, b), impulse.normal);
         push_normal<Real>(row, wanted, impulse, a, b);
     }
 

@@ -117,7 +117,7 @@ struct Distance {
         push((impulse.spring + impulse.limit) * substep.axis, substep, a, b);
     }
 
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row& in_sweep, const Substep& substep,
                       Impulse& impulse, A& a, B& b)
     {
@@ -127,8 +127,8 @@ struct Distance {
                                            substep.mass, impulse.spring, in_sweep.spring_max_impulse);
         speed = speed + substep.inverse_mass * (spring - impulse.spring);
         impulse.spring = spring;
-        impulse.limit = range_impulse<relax>(step, substep.length, in_sweep.min_length, in_sweep.max_length,
-                                             speed, substep.mass, impulse.limit);
+        impulse.limit = range_impulse(step, substep.length, in_sweep.min_length, in_sweep.max_length, speed,
+                                      substep.mass, impulse.limit);
         push((impulse.spring + impulse.limit - before) * substep.axis, substep, a, b);
     }
 

@@ -159,7 +159,7 @@ struct Drive {
         push(substep, lambda, a, b);
     }
 
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row& in_sweep, const Substep& substep,
                       Impulse& impulse, A& a, B& b)
     {
@@ -176,8 +176,8 @@ struct Drive {
         const Real motor = impulse.motor - substep.mass * (speed - in_sweep.motor_speed);
         change_to(impulse.motor,
                   maximum(minimum(motor, in_sweep.motor_max_impulse), -in_sweep.motor_max_impulse));
-        change_to(impulse.limit, range_impulse<relax>(step, substep.value, in_sweep.lower, in_sweep.upper,
-                                                      speed, substep.mass, impulse.limit));
+        change_to(impulse.limit, range_impulse(step, substep.value, in_sweep.lower, in_sweep.upper, speed,
+                                               substep.mass, impulse.limit));
 
         push(substep, impulse.motor + impulse.spring + impulse.limit - before, a, b);
     }

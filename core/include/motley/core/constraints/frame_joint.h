@@ -139,11 +139,11 @@ struct FrameJoint {
         });
     }
 
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void solve(const StepConstants&, const Row& in_sweep, const Substep& substep, Impulse& impulse,
-                      A& a, B& b)
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants& step, const Row& in_sweep, const Substep& substep,
+                      Impulse& impulse, A& a, B& b)
     {
-        const LaneSoftness<Real> soft = relax ? relaxed(in_sweep) : in_sweep;
+        const LaneSoftness<Real> soft = softness_in(step, in_sweep);
         Real change[rows];
         speeds(substep, a, b, change);
         for (int i = 0; i < rows; ++i) change[i] = -(change[i] + soft.rate * substep.error[i]);

@@ -193,16 +193,15 @@ struct Manifold {
         for (int i = 0; i < most_points; ++i) push_point(row, i, impulse.normal[i], a, b);
     }
 
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row& row, const Substep&, Impulse& impulse, A& a, B& b)
     {
         solve_friction<Real>(row, impulse, a, b);
         constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
         const Softness& soft = on_fixed ? step.static_contact : step.contact;
         for (int i = 0; i < most_points; ++i) {
-            const Real wanted =
-                contact_impulse<relax>(step, soft, separation_at<Real>(row, i, a, b),
-                                       speed_at<Real>(row, i, a, b), row.mass[i], impulse.normal[i]);
+            const Real wanted = contact_impulse(step, soft, separation_at<Real>(row, i, a, b),
+                                                speed_at<Real>(row, i, a, b), row.mass[i], impulse.normal[i]);
             push_point(row, i, wanted - impulse.normal[i], a, b);
             impulse.normal[i] = wanted;
             impulse.peak[i] = maximum(impulse.peak[i], wanted);

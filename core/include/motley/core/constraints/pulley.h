@@ -109,14 +109,14 @@ struct Pulley {
         apply_impulse(b, substep.b_end.arm, impulse.lambda * substep.b_end.axis);
     }
 
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row& in_sweep, const Substep& substep,
                       Impulse& impulse, A& a, B& b)
     {
         const Real speed = dot(substep.a_end.axis, velocity_at(a, substep.a_end.arm)) +
                            dot(substep.b_end.axis, velocity_at(b, substep.b_end.arm));
-        const Real wanted = range_impulse<relax>(step, substep.length, in_sweep.min_length,
-                                                 in_sweep.max_length, speed, substep.mass, impulse.lambda);
+        const Real wanted = range_impulse(step, substep.length, in_sweep.min_length, in_sweep.max_length,
+                                          speed, substep.mass, impulse.lambda);
         const Real change = wanted - impulse.lambda;
         impulse.lambda = wanted;
         apply_impulse(a, substep.a_end.arm, change * substep.a_end.axis);

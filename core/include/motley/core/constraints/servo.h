@@ -128,7 +128,7 @@ struct PointServo {
         apply_impulse(b, substep.arm_b, impulse.push);
     }
 
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants&, const Row& in_sweep, const Substep& substep, Impulse& impulse,
                       A& a, B& b)
     {
@@ -264,7 +264,7 @@ struct AngularServo {
         push(substep, impulse.turn, a, b);
     }
 
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants&, const Row& in_sweep, const Substep& substep, Impulse& impulse,
                       A& a, B& b)
     {

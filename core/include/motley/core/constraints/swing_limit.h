@@ -79,13 +79,13 @@ struct SwingLimit {
         push(substep, impulse.limit, a, b);
     }
 
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row&, const Substep& substep, Impulse& impulse, A& a,
                       B& b)
     {
         const Real closing = dot(substep.normal, angular_of(a) - angular_of(b));  // dC/dt
         const Real wanted =
-            maximum(limit_impulse<relax>(step, substep.room, closing, substep.mass, impulse.limit), Real(0));
+            maximum(limit_impulse(step, substep.room, closing, substep.mass, impulse.limit), Real(0));
         push(substep, wanted - impulse.limit, a, b);
         impulse.limit = wanted;
     }

@@ -113,13 +113,13 @@ struct Transmission {
         push_b(impulse.lambda * substep.axis_b, b);
     }
 
-    template <bool relax, class Real, class Row, class Substep, class Impulse, class A, class B>
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row&, const Substep& substep, Impulse& impulse, A& a,
                       B& b)
     {
         const Real speed =
             dot(substep.axis_b, slides ? linear_of(b) : angular_of(b)) - dot(substep.axis_a, angular_of(a));
-        const Real wanted = lock_impulse<relax>(step, substep.error, speed, substep.mass, impulse.lambda);
+        const Real wanted = lock_impulse(step, substep.error, speed, substep.mass, impulse.lambda);
         const Real change = wanted - impulse.lambda;
         impulse.lambda = wanted;
         apply_turn(a, -(change * substep.axis_a));
