@@ -103,6 +103,38 @@ void memory(benchmark::State& state)
     state.counters["contacts"] = static_cast<double>(net.contacts.size()) / people;
 }
 
+/// A step of 10,000 ball-sockets, in a net or in a thousand chains of eleven bodies, of which so many are taken away and put back
+/// before it.
+void changing_joints(benchmark::State& state, bool in_chains, int changed)
+{
+    Scene scene;
+    std::vector<BodyId> bodies;
+    std::vector<BallSocketDefinition> definitions;
+    const auto tie = [&](std::size_t a, std::size_t b, const Vec3<float>& half) {
+        definitions.push_back({bodies[a], bodies[b], half, -half});
+    };
+    const std::size_t columns = in_chains ? 11 : 71, rows = in_chains ? 1000 : 71;
+    for (std::size_t i = 0; i < columns * rows; ++i) {
+        bodies.push_back(scene.add_body({.position = {double(i % columns), double(i / columns), 0}}));
+        if (i % columns > 0) tie(i - 1, i, {0.5F, 0, 0});
+        if (!in_chains && i >= columns) tie(i - columns, i, {0, 0.5F, 0});
+    }
+    std::vector<ConstraintId> joints;
+    for (const BallSocketDefinition& definition : definitions) joints.push_back(scene.add_joint(definition));
+    Solver solver({.gravity = {0, -9.81F, 0}});
+    solver.step(scene, 1.0F / 60);
+    std::uint32_t random = 1;
+    for (auto _ : state) {
+        for (int i = 0; i < changed; ++i) {
+            random = random * 1664525 + 1013904223;
+            const std::size_t joint = (random >> 8) % joints.size();
+            scene.remove_joint(joints[joint]);
+            joints[joint] = scene.add_joint(definitions[joint]);
+        }
+        solver.step(scene, 1.0F / 60);
+    }
+}
+
 /// A step of Method::direct at its default substeps: a wall of cubes with friction that stands, each cube with two corners on
 /// either of the two below it or four on the floor, three rows a contact.
 void direct(benchmark::State& state, int base)
@@ -245,6 +277,14 @@ void enter_all()
     enter_order("memory_order/shuffled_and_renumbered", BodyOrder::shuffled, true);
     benchmark::RegisterBenchmark("memory/planar_crowd", memory)->Iterations(3)->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("hand_over/threads:2", hand_over);
+    for (const bool in_chains : {false, true}) {
+        for (const int changed : {0, 20}) {
+            benchmark::RegisterBenchmark(
+                fmt::format("joints_changed:{}/{}", changed, in_chains ? "chains" : "net").c_str(),
+                [in_chains, changed](benchmark::State& s) { changing_joints(s, in_chains, changed); })
+                ->Unit(benchmark::kMillisecond);
+        }
+    }
     for (const int base : {4, 8, 12, 16}) {
         const int rows = 6 * base * (base + 1);  // twelve a cube
         benchmark::RegisterBenchmark(fmt::format("direct/rows:{}", rows).c_str(), [base](

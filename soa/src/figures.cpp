@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <utility>
 
 #include "disjoint_sets.h"
 
@@ -26,21 +28,40 @@ std::uint32_t rigid_row_of(const Placement& joint)
     return is_rigid(joint.a) ? joint.a.row() : joint.b.row();
 }
 
-/// Joints of one component, in the order of their colours, and its bodies in the order in which these name them.
-struct Member {
-    std::vector<const Figures::Candidate*> joints;
-    std::vector<BodyRow> bodies;
-    bool is_refused = false;  ///< what light_between_heavy() finds keeps it from being solved exactly
+/// Components that may be figures, in flat lists: those of member m are from first_joint[m] to first_joint[m + 1], and so on.
+struct Members {
+    std::vector<const Figures::Candidate*> joints;  ///< by colour, type and body
+    std::vector<BodyRow> bodies;                    ///< in the order in which the joints name them
+    std::vector<std::uint32_t>
+        signatures;  ///< what they look like, in numbers: members with equal ones are copies
+    std::vector<std::size_t> first_joint{0}, first_body{0}, first_number{0};
+    std::vector<std::uint8_t>
+        is_refused;  ///< what light_between_heavy() finds keeps it from being solved exactly
+
+    [[nodiscard]] std::size_t count() const { return first_joint.size() - 1; }
+    [[nodiscard]] std::span<const Figures::Candidate* const> joints_of(std::size_t member) const
+    {
+        return std::span(joints).subspan(first_joint[member], first_joint[member + 1] - first_joint[member]);
+    }
+    [[nodiscard]] std::span<const BodyRow> bodies_of(std::size_t member) const
+    {
+        return std::span(bodies).subspan(first_body[member], first_body[member + 1] - first_body[member]);
+    }
+    [[nodiscard]] std::span<const std::uint32_t> signature_of(std::size_t member) const
+    {
+        return std::span(signatures)
+            .subspan(first_number[member], first_number[member + 1] - first_number[member]);
+    }
 };
 
 /// A body with two locks or more, in a figure without a fixed body and with one more than 2,000 times as heavy; {} if there is none.
 /// The mass that its joints see is made of both and keeps too few digits of the light one: the joints hold, but their impulses do not
 /// cancel. Momentum changes by 3e-6 a second at 1 : 1,000 and by 3e-5 at 1 : 10,000 (light_between_heavy_test.cpp).
-BodyId light_between_heavy(const Member& member, const BodyStore& bodies)
+BodyId light_between_heavy(std::span<const Figures::Candidate* const> joints, const BodyStore& bodies)
 {
     constexpr double most_mass_ratio = 2000;
     std::map<std::uint32_t, int> locks_on;  // by slot
-    for (const Figures::Candidate* joint : member.joints) {
+    for (const Figures::Candidate* joint : joints) {
         if (joint->equalities == 0) continue;
         for (const BodyRow body : {joint->placement.a, joint->placement.b}) {
             if (!is_rigid(body)) return {};
@@ -56,42 +77,68 @@ BodyId light_between_heavy(const Member& member, const BodyStore& bodies)
     return {};
 }
 
-/// The shape of a component as numbers: equal ones are copies.
-std::vector<std::uint32_t> signature_of(Member& member)
-{
-    std::map<std::uint32_t, std::uint32_t> index;
-    const auto name = [&](BodyRow body) {
-        const auto [entry, is_new] =
-            index.try_emplace(body.bits, static_cast<std::uint32_t>(member.bodies.size()));
-        if (is_new) member.bodies.push_back(body);
-        return entry->second;
-    };
-    std::vector<std::uint32_t> signature;
-    signature.reserve(4 * member.joints.size() + 1);
-    for (const Figures::Candidate* joint : member.joints) {
-        const Placement& p = joint->placement;
-        signature.push_back(p.colour | std::uint32_t{p.type} << 8 |
-                            static_cast<std::uint32_t>(p.a.kind()) << 16 |
-                            static_cast<std::uint32_t>(p.b.kind()) << 18 |
-                            static_cast<std::uint32_t>(joint->equalities) << 20 |
-                            static_cast<std::uint32_t>(joint->locks_point) << 24);
-        signature.push_back(name(p.a));
-        signature.push_back(name(p.b));
+/// Numbers the bodies of a figure from 0 on.
+class BodyNames {
+  public:
+    explicit BodyNames(const BodyStore& bodies)
+        : rigid_(bodies.rows(BodyKind::rigid).size()), fixed_(bodies.rows(BodyKind::fixed).size())
+    {
     }
-    signature.push_back(static_cast<std::uint32_t>(member.is_refused));
-    return signature;
+    /// The next figure's. A rigid body is of one figure alone; fixed ones may be of many.
+    void start_figure() { ++figure_; }
+    /// Adds a body that this figure has not named to the end of `bodies`, which begin at `first`.
+    std::uint32_t name(BodyRow body, std::vector<BodyRow>& bodies, std::size_t first)
+    {
+        Name& name = (is_rigid(body) ? rigid_ : fixed_)[body.row()];
+        if (name.figure != figure_) {
+            name = {figure_, static_cast<std::uint32_t>(bodies.size() - first)};
+            bodies.push_back(body);
+        }
+        return name.number;
+    }
+
+  private:
+    struct Name {
+        std::uint32_t figure = 0, number = 0;
+    };
+    std::vector<Name> rigid_, fixed_;
+    std::uint32_t figure_ = 0;
+};
+
+/// Names the bodies of the last member and writes its signature; then there may be another.
+void close_member(Members& members, BodyNames& names, bool is_refused)
+{
+    const std::size_t first_body = members.bodies.size();
+    names.start_figure();
+    for (std::size_t i = members.first_joint.back(); i < members.joints.size(); ++i) {
+        const Figures::Candidate& joint = *members.joints[i];
+        const Placement& p = joint.placement;
+        members.signatures.push_back(p.colour | std::uint32_t{p.type} << 8 |
+                                     static_cast<std::uint32_t>(p.a.kind()) << 16 |
+                                     static_cast<std::uint32_t>(p.b.kind()) << 18 |
+                                     static_cast<std::uint32_t>(joint.equalities) << 20 |
+                                     static_cast<std::uint32_t>(joint.locks_point) << 24);
+        members.signatures.push_back(names.name(p.a, members.bodies, first_body));
+        members.signatures.push_back(names.name(p.b, members.bodies, first_body));
+    }
+    members.signatures.push_back(is_refused ? 1 : 0);
+    members.is_refused.push_back(is_refused ? 1 : 0);
+    members.first_joint.push_back(members.joints.size());
+    members.first_body.push_back(members.bodies.size());
+    members.first_number.push_back(members.signatures.size());
 }
 
-std::unique_ptr<FigureShape> shape_of(const Member& member, std::span<const std::uint32_t> signature)
+std::unique_ptr<FigureShape> shape_of(const Members& members, std::size_t member)
 {
     auto shape = std::make_unique<FigureShape>();
-    for (const BodyRow body : member.bodies) shape->bodies.push_back(body.kind());
-    for (std::size_t i = 0; i < member.joints.size(); ++i) {
-        const Placement& p = member.joints[i]->placement;
-        shape->joints.push_back({p.type, p.a.kind(), p.b.kind(), p.colour,
-                                 static_cast<int>(signature[3 * i + 1]),
-                                 static_cast<int>(signature[3 * i + 2]), member.joints[i]->equalities,
-                                 member.joints[i]->locks_point});
+    for (const BodyRow body : members.bodies_of(member)) shape->bodies.push_back(body.kind());
+    const std::span<const Figures::Candidate* const> joints = members.joints_of(member);
+    const std::span<const std::uint32_t> signature = members.signature_of(member);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const Placement& p = joints[i]->placement;
+        shape->joints.push_back(
+            {p.type, p.a.kind(), p.b.kind(), p.colour, static_cast<int>(signature[3 * i + 1]),
+             static_cast<int>(signature[3 * i + 2]), joints[i]->equalities, joints[i]->locks_point});
     }
     return shape;
 }
@@ -102,10 +149,24 @@ bool can_be_in_lanes(const Placement& joint, const KernelTable& kernels)
            kernels.constraints[class_of(joint.type, joint.a.kind(), joint.b.kind())].solve_copies != nullptr;
 }
 
-/// The components of at most so many moving bodies that may be figures.
-std::vector<Member> members_of(std::span<const Figures::Candidate> joints, std::size_t rigid_rows,
-                               const KernelTable& kernels, std::size_t largest)
+constexpr std::int32_t none = -1;
+
+/// A joint of the component whose first rigid row is `root`. No two joints of a colour share a moving body, so `order`
+/// is the same in every copy, whatever was added and removed before: the slots of a figure's bodies are in the order in which these
+/// were added.
+struct JointOfComponent {
+    std::int32_t root;    ///< or `none`
+    std::uint64_t order;  ///< colour, type, slot of a rigid body
+    const Figures::Candidate* joint;
+};
+
+/// The joints of all components of at most so many moving bodies that may be figures, component by component.
+std::vector<JointOfComponent> joints_by_component(std::span<const Figures::Candidate> joints,
+                                                  const BodyStore& bodies, const KernelTable& kernels,
+                                                  std::size_t largest)
 {
+    const BodyRows& rigid = bodies.rows(BodyKind::rigid);
+    const std::size_t rigid_rows = rigid.size();
     DisjointSets components;
     components.reset(rigid_rows);
     for (const auto& [joint, equalities, locks_point] : joints) {
@@ -114,7 +175,7 @@ std::vector<Member> members_of(std::span<const Figures::Candidate> joints, std::
                            static_cast<std::int32_t>(joint.b.row()));
     }
     components.flatten();
-    std::vector<std::size_t> size(rigid_rows, 0);
+    std::vector<std::uint32_t> size(rigid_rows, 0);
     for (std::size_t row = 0; row < rigid_rows; ++row) ++size[static_cast<std::size_t>(components.root(row))];
     std::vector<std::uint8_t> excluded(rigid_rows, 0);
     for (const auto& [joint, equalities, locks_point] : joints) {
@@ -122,24 +183,83 @@ std::vector<Member> members_of(std::span<const Figures::Candidate> joints, std::
         for (const BodyRow body : {joint.a, joint.b})
             if (is_rigid(body)) excluded[static_cast<std::size_t>(components.root(body.row()))] = 1;
     }
-    std::vector<std::int32_t> member_of_root(rigid_rows, -1);
-    std::vector<Member> members;
+    // Counted by component, put in line, and each component's put in order.
+    std::vector<std::uint32_t> end(rigid_rows + 1, 0);
+    const auto root_of = [&](const Figures::Candidate& joint) {
+        if (!can_be_in_lanes(joint.placement, kernels)) return none;
+        const std::int32_t root = components.root(rigid_row_of(joint.placement));
+        const auto i = static_cast<std::size_t>(root);
+        return excluded[i] != 0 || size[i] > largest ? none : root;
+    };
     for (const Figures::Candidate& joint : joints) {
-        if (!can_be_in_lanes(joint.placement, kernels)) continue;
-        const auto root = static_cast<std::size_t>(components.root(rigid_row_of(joint.placement)));
-        if (excluded[root] != 0 || size[root] > largest) continue;
-        if (member_of_root[root] < 0) {
-            member_of_root[root] = static_cast<std::int32_t>(members.size());
-            members.emplace_back();
-        }
-        members[static_cast<std::size_t>(member_of_root[root])].joints.push_back(&joint);
+        const std::int32_t root = root_of(joint);
+        if (root != none) ++end[static_cast<std::size_t>(root)];
     }
-    for (Member& member : members) {
-        std::stable_sort(member.joints.begin(), member.joints.end(), [](const auto* x, const auto* y) {
-            return x->placement.colour < y->placement.colour;
-        });
+    std::exclusive_scan(end.begin(), end.end(), end.begin(), 0U);
+    std::vector<JointOfComponent> found(end.back());
+    for (const Figures::Candidate& joint : joints) {
+        const std::int32_t root = root_of(joint);
+        if (root == none) continue;
+        const Placement& p = joint.placement;
+        found[end[static_cast<std::size_t>(root)]++] = {
+            root, std::uint64_t{p.colour} << 40 | std::uint64_t{p.type} << 32 | rigid.slot[rigid_row_of(p)],
+            &joint};
+    }
+    for (std::size_t root = 0; root < rigid_rows; ++root) {
+        const std::size_t begin = root == 0 ? 0 : end[root - 1];
+        std::sort(found.begin() + static_cast<std::ptrdiff_t>(begin),
+                  found.begin() + static_cast<std::ptrdiff_t>(end[root]),
+                  [](const JointOfComponent& x, const JointOfComponent& y) { return x.order < y.order; });
+    }
+    return found;
+}
+
+Members members_of(std::span<const Figures::Candidate> joints, const BodyStore& bodies,
+                   const KernelTable& kernels, bool exact, Figures::Refused& refused)
+{
+    const std::vector<JointOfComponent> found = joints_by_component(
+        joints, bodies, kernels, exact ? bodies.rows(BodyKind::rigid).size() : most_bodies);
+    Members members;
+    members.joints.reserve(found.size());
+    members.signatures.reserve(4 * found.size());
+    members.bodies.reserve(2 * found.size());
+    BodyNames names(bodies);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        members.joints.push_back(found[i].joint);
+        if (i + 1 < found.size() && found[i + 1].root == found[i].root) continue;
+        const auto own =
+            std::span<const Figures::Candidate* const>(members.joints).subspan(members.first_joint.back());
+        const BodyId light = exact ? light_between_heavy(own, bodies) : BodyId{};
+        if (light != BodyId{}) {
+            refused.joints += std::count_if(own.begin(), own.end(), [](const Figures::Candidate* joint) {
+                return joint->equalities > 0;
+            });
+            refused.light_body = light;
+        }
+        close_member(members, names, light != BodyId{});
     }
     return members;
+}
+
+/// Members so that copies come one after another. (Two shapes of one hash, should there ever be such, are fewer copies at once.)
+std::vector<std::size_t> sorted_by_signature(const Members& members)
+{
+    std::vector<std::pair<std::uint64_t, std::size_t>> hashed(members.count());
+    for (std::size_t i = 0; i < hashed.size(); ++i) {
+        std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
+        for (const std::uint32_t number : members.signature_of(i)) hash = (hash ^ number) * 1099511628211ULL;
+        hashed[i] = {hash, i};
+    }
+    std::sort(hashed.begin(), hashed.end());
+    std::vector<std::size_t> order(hashed.size());
+    std::transform(hashed.begin(), hashed.end(), order.begin(),
+                   [](const auto& member) { return member.second; });
+    return order;
+}
+
+bool are_copies(const Members& members, std::size_t x, std::size_t y)
+{
+    return std::ranges::equal(members.signature_of(x), members.signature_of(y));
 }
 
 /// A lane without a constraint, in the block of this one.
@@ -160,26 +280,23 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
     blocks_.clear();
     lone_.clear();
     touched_trees_.clear();
-    std::vector<Member> members = members_of(joints, rigid_rows, kernels, exact ? rigid_rows : most_bodies);
-    for (Member& member : members) {
-        const BodyId light = exact ? light_between_heavy(member, bodies) : BodyId{};
-        if (light == BodyId{}) continue;
-        member.is_refused = true;
-        refused_.joints += std::count_if(member.joints.begin(), member.joints.end(),
-                                         [](const Candidate* joint) { return joint->equalities > 0; });
-        refused_.light_body = light;
-    }
-    std::map<std::vector<std::uint32_t>, std::vector<std::size_t>> groups;
-    for (std::size_t i = 0; i < members.size(); ++i) groups[signature_of(members[i])].push_back(i);
+    const Members members = members_of(joints, bodies, kernels, exact, refused_);
+    const std::vector<std::size_t> order = sorted_by_signature(members);
 
     placed.clear();
     block_of_row_.assign(rigid_rows, -1);
     std::vector<std::int32_t> offsets;
     std::int64_t memory = 0;
     std::vector<std::int64_t> first_float;
-    for (const auto& [signature, copies] : groups) {
-        std::unique_ptr<FigureShape> shape = shape_of(members[copies.front()], signature);
-        const bool has_tree = exact && !members[copies.front()].is_refused && shape->plant_tree();
+    std::span<const std::size_t> copies;
+    for (std::size_t next = 0; next < order.size(); next += copies.size()) {
+        std::size_t end = next + 1;
+        while (end < order.size() && are_copies(members, order[next], order[end])) ++end;
+        copies = std::span(order).subspan(next, end - next);
+        // Too few of them, and nothing to be solved exactly.
+        if (!exact && copies.size() < fewest_copies) continue;
+        std::unique_ptr<FigureShape> shape = shape_of(members, copies.front());
+        const bool has_tree = exact && members.is_refused[copies.front()] == 0 && shape->plant_tree();
         if (!has_tree && shape->bodies.size() > most_bodies) continue;
         for (std::size_t first = 0; first < copies.size(); first += block_lanes) {
             const std::size_t count = std::min<std::size_t>(block_lanes, copies.size() - first);
@@ -193,7 +310,7 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
             for (std::size_t body = 0; body < shape->bodies.size(); ++body) {
                 for (std::size_t lane = 0; lane < block_lanes; ++lane) {
                     const bool pads = lane >= count;
-                    const BodyRow row = pads ? BodyRow{} : members[copies[first + lane]].bodies[body];
+                    const BodyRow row = pads ? BodyRow{} : members.bodies_of(copies[first + lane])[body];
                     offsets.push_back(offset_of(row));
                     if (!pads && is_rigid(row)) block_of_row_[row.row()] = block;
                 }
@@ -201,7 +318,7 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
             for (std::size_t joint = 0; joint < shape->joints.size(); ++joint) {
                 for (std::size_t lane = 0; lane < block_lanes; ++lane) {
                     const std::size_t copy = copies[first + std::min(lane, count - 1)];
-                    const Placement& placement = members[copy].joints[joint]->placement;
+                    const Placement& placement = members.joints_of(copy)[joint]->placement;
                     placed.push_back(lane < count ? placement : gap_beside(placement));
                 }
             }

@@ -217,7 +217,9 @@ TEST_P(ImpulsesOfAStep, OfContactsAndJointsTogetherChangeMomenta)
     std::printf("%-26s %.2g, by the last substep %.2g\n", GetParam().name, most, of_last_substep);
     EXPECT_LT(most, rounding);
     // The measure sees the difference.
-    if (GetParam().settings.substeps > 1) EXPECT_GT(of_last_substep, 0.05);
+    if (GetParam().settings.substeps > 1) {
+        EXPECT_GT(of_last_substep, 0.05);
+    }
 }
 
 /// A mobile: a tree of all locks with loops, defined now from the nearer, now from the farther body, hung on the world, with a
