@@ -113,7 +113,7 @@ constexpr bool is_built(TypeList<Built...>)
     return (std::is_same_v<List, Built> || ...);
 }
 
-/// Whose lanes run what is rare: SSE2 and AVX-512 have no such kernels of their own, which would be a quarter of the library.
+/// Whose lanes run what is rare or unusual: SSE2 and AVX-512 have no such kernels of their own, which would be a quarter of the library.
 /// Bits do not depend on it.
 constexpr Isa rare_lanes_of(Isa isa)
 {
@@ -135,6 +135,7 @@ void enter_constraints(KernelTable& table, TypeList<Lists...>)
         if constexpr (is_built<Types>(BuiltLists{})) {
             enter_constraint_kernels<isa, KernelShare::swept, Types>(next);
             enter_constraint_kernels<isa, KernelShare::once, Types>(next);
+            enter_constraint_kernels<rare_lanes_of(isa), KernelShare::unusual, Types>(next);
             enter_constraint_kernels<rare_lanes_of(isa), KernelShare::rare, Types>(next);
         }
         next += class_of(Types::size, BodyKind{}, BodyKind{});

@@ -6,11 +6,12 @@
 
 namespace motley {
 
-/// Kernels are compiled in three shares.
+/// Kernels are compiled in four shares.
 enum class KernelShare {
     swept,  ///< what every substep runs of usual pairs (see is_usual): for speed
     once,   ///< what brings those into lanes when a step begins, and stores what they did: for size
-    rare,  ///< what a setting asks for, and all of unusual pairs: for size, and in some lanes only (see rare_lanes_of)
+    unusual,  ///< what every substep runs of unusual pairs: for speed, but in some lanes only (see rare_lanes_of)
+    rare,  ///< what a setting asks for, and the rest of unusual pairs: for size, and in some lanes only
 };
 
 /// Of the types of one constraint header, by pair of body kinds: the entry of class_of, counted from the first of them.

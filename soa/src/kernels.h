@@ -80,10 +80,11 @@ void enter_pair(ConstraintKernels* pairs)
     if constexpr (occurs<Type, a, b>() && !is_left_to_scalar<Type, a, b>()) {
         using Computed = Kernels<Type, computed_as<Type, a, b>(), computed_as<Type, b, a>()>;
         ConstraintKernels& kernels = pairs[class_of(0, a, b)];
-        constexpr bool usual = is_usual<Type, a, b>(), rare = share == KernelShare::rare;
-        if constexpr (usual ? share == KernelShare::swept : rare) Computed::enter_swept(kernels);
-        if constexpr (usual ? share == KernelShare::once : rare) Computed::enter_once(kernels);
-        if constexpr (rare) Computed::enter_rare(kernels);
+        constexpr bool usual = is_usual<Type, a, b>();
+        if constexpr (share == (usual ? KernelShare::swept : KernelShare::unusual))
+            Computed::enter_swept(kernels);
+        if constexpr (share == (usual ? KernelShare::once : KernelShare::rare)) Computed::enter_once(kernels);
+        if constexpr (share == KernelShare::rare) Computed::enter_rare(kernels);
     }
 }
 
