@@ -61,8 +61,8 @@ Softness soft(float hertz, float damping_ratio, float substep)
 StepConstants relaxing(StepConstants step)
 {
     step.joint = step.contact = step.static_contact = Softness{};
-    // More than any speed, and times any mass that is accepted still a float.
-    step.push_out_speed = 1e30F;
+    // Above any speed, and no overflow when multiplied by the largest inertia that is accepted, 1e20 kg m2.
+    step.push_out_speed = 1e17F;
     return step;
 }
 

@@ -149,13 +149,14 @@ bool can_be_in_lanes(const Placement& joint, const KernelTable& kernels)
            kernels.constraints[class_of(joint.type, joint.a.kind(), joint.b.kind())].solve_copies != nullptr;
 }
 
+/// The root of a joint that cannot be in a figure.
 constexpr std::int32_t none = -1;
 
 /// A joint of the component whose first rigid row is `root`. No two joints of a colour share a moving body, so `order`
 /// is the same in every copy, whatever was added and removed before: the slots of a figure's bodies are in the order in which these
 /// were added.
 struct JointOfComponent {
-    std::int32_t root;    ///< or `none`
+    std::int32_t root;
     std::uint64_t order;  ///< colour, type, slot of a rigid body
     const Figures::Candidate* joint;
 };
