@@ -44,7 +44,7 @@ struct ReportOptions {
     std::string output = "motley-report.html";
     std::vector<std::string> scenes;  ///< empty: all of the page's
     int rounds = 3;
-    bool quick = false;  ///< small scenes, run once and for half as long: a page in minutes, for a look
+    bool quick = false;  ///< small scenes, run once and for a third as long: a page in minutes, for a look
     bool with_peers = true;
 };
 /// Measures everything and writes the page, and beside it the sweeps as JSON and CSV. Throws std::runtime_error.

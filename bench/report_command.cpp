@@ -99,7 +99,7 @@ void write_report(const ReportOptions& options)
             continue;
         SweepOptions sweep_options;
         sweep_options.agents = options.quick ? scene.quick_bodies : scene.bodies;
-        sweep_options.seconds = options.quick ? scene.seconds / 2 : scene.seconds;
+        sweep_options.seconds = options.quick ? scene.seconds / 3 : scene.seconds;
         sweep_options.rounds = rounds;
         sweep_options.with_peers = options.with_peers;
         report.sweeps.push_back(sweep(scene.name, {}, sweep_options));

@@ -61,8 +61,9 @@ DirectResult World::step_directly(double dt, const SolverSettings& settings,
              ++i)
             project_directly(contacts, settings);
     }
-    finish_contacts(contacts, h, settings);
+    finish_contacts(contacts, settings);
     end_step(h);
+    land_free_groups(h, dt, settings);
     return result;
 }
 

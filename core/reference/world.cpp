@@ -420,31 +420,85 @@ void World::step(double dt, const SolverSettings& settings, const std::vector<Co
         }
         add_up(contacts);
     }
-    finish_contacts(contacts, h, settings);
+    finish_contacts(contacts, settings);
     end_step(h);
+    land_free_groups(h, dt, settings);
 }
 
-/// Restitution: how fast a contact, `now` m apart, is to open, from the energy of the flight before and after the impact. What
-/// flies freely by v += h a, x += h v keeps (v + h a / 2)^2 / 2 - a x.
-double World::opening_speed(int a, int b, const Jacobian& normal, double approach, double now,
-                            double restitution, double h, const SolverSettings& settings) const
+/// What forces alone make of the velocity of a body in a second.
+Vector6 World::free_acceleration(int i, const SolverSettings& settings) const
 {
-    const auto free_acceleration = [&](int i) -> Eigen::Vector3d {
-        Body body = bodies[static_cast<std::size_t>(i)];
-        if (body.motion != BodyMotion::dynamic_body) return Eigen::Vector3d::Zero();
-        body.velocity.setZero();
-        body.accelerate(eigen(settings.gravity), 1);
-        return body.velocity.head<3>();
-    };
-    const double along = normal.middleCols<3>(6).row(0) * (free_acceleration(b) - free_acceleration(a));
-    const double start = now - (normal * moved_since_start(a, b))(0), impact = std::min(start, 0.0);
-    const double before = approach + h * along / 2;
-    const double of_impact = std::max(before * before + 2 * along * (impact - start), 0.0);
-    const double of_leaving = restitution * restitution * of_impact + 2 * along * (now - impact);
-    return std::max(std::sqrt(std::max(of_leaving, 0.0)) - restitution * h * along / 2, 0.0);
+    Body body = bodies[static_cast<std::size_t>(i)];
+    if (body.motion != BodyMotion::dynamic_body) return Vector6::Zero();
+    body.velocity.setZero();
+    body.accelerate(eigen(settings.gravity), 1);
+    return body.velocity;
 }
 
-void World::finish_contacts(std::vector<ContactRow>& contacts, double h, const SolverSettings& settings)
+/// Restitution: how fast a contact, `now` m apart, is to open, from the energy of the flight before and after the impact: what
+/// flies freely keeps v^2 / 2 - a x.
+double World::opening_speed(int a, int b, const Jacobian& normal, double approach, double now,
+                            double restitution, const SolverSettings& settings) const
+{
+    const double along = normal.middleCols<3>(6).row(0) *
+                         (free_acceleration(b, settings) - free_acceleration(a, settings)).head<3>();
+    const double start = now - (normal * moved_since_start(a, b))(0), impact = std::min(start, 0.0);
+    const double of_impact = std::max(approach * approach + 2 * along * (impact - start), 0.0);
+    const double of_leaving = restitution * restitution * of_impact + 2 * along * (now - impact);
+    return std::sqrt(std::max(of_leaving, 0.0));
+}
+
+/// What hangs together by joints, and whose momentum forces alone made in the step, flew by v += h a, x += h v, which takes its
+/// centre of mass a h dt / 2 too far. What turns is left as it is, but in the plane, where a body alone turns as it moves.
+void World::land_free_groups(double h, double dt, const SolverSettings& settings)
+{
+    const auto moves = [&](int i) {
+        return bodies[static_cast<std::size_t>(i)].motion == BodyMotion::dynamic_body;
+    };
+    const std::vector<int> group_of = find_islands({}).of_body;
+    struct Group {
+        double mass = 0;
+        Eigen::Vector3d force = Eigen::Vector3d::Zero(), change = Eigen::Vector3d::Zero();  // of momentum
+        bool has_joints = false, is_held = false, in_plane = false;
+    };
+    std::vector<Group> groups(bodies.size());
+    for (const Joint& joint : joints) {
+        const int of = group_of[static_cast<std::size_t>(moves(joint.a) ? joint.a : joint.b)];
+        if (of < 0) continue;
+        Group& group = groups[static_cast<std::size_t>(of)];
+        group.has_joints = true;
+        if ((moves(joint.a) && moves(joint.b)) || joint.model->acts_from_world()) continue;
+        for (const Block& block : blocks_of(joint)) {
+            const bool is_lock = block.kind == Block::Kind::equality && block.hertz == 0;
+            group.is_held = group.is_held || (is_lock && !block.jacobian.middleCols<3>(6).isZero(0));
+        }
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (group_of[i] < 0) continue;
+        Group& group = groups[static_cast<std::size_t>(group_of[i])];
+        group.mass += bodies[i].mass;
+        group.force += bodies[i].mass * free_acceleration(static_cast<int>(i), settings).head<3>();
+        group.change += bodies[i].mass * (bodies[i].velocity - start_[i].velocity).head<3>();
+        group.in_plane = group.in_plane || bodies[i].model == BodyModel::planar;
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (group_of[i] < 0) continue;
+        const Group& group = groups[static_cast<std::size_t>(group_of[i])];
+        const Eigen::Vector3d in_space(1, 1, group.in_plane ? 0 : 1);
+        const Eigen::Vector3d force = in_space.cwiseProduct(group.force),
+                              change = in_space.cwiseProduct(group.change);
+        // What pushes it across the force does not matter to how far that takes it.
+        const double by_force = dt * force.squaredNorm();
+        if (group.is_held || !(std::abs(change.dot(force) - by_force) < 1e-3 * by_force)) continue;
+        Vector6 back = Vector6::Zero();
+        back.head<3>() = force / group.mass;
+        if (group.in_plane && !group.has_joints)
+            back(5) = free_acceleration(static_cast<int>(i), settings)(5);
+        bodies[i].advance(back, -h * dt / 2);
+    }
+}
+
+void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSettings& settings)
 {
     const double threshold = -static_cast<double>(settings.restitution_threshold);
     for (Joint& joint : joints) {
@@ -456,7 +510,7 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, double h, const S
             const Block& block = blocks[i];
             if (block.restitution == 0 || joint.approaches[i] >= threshold || joint.peaks[i] == 0) continue;
             const double opening = opening_speed(joint.a, joint.b, block.jacobian, joint.approaches[i],
-                                                 block.error(0), block.restitution, h, settings);
+                                                 block.error(0), block.restitution, settings);
             const double leaving = speed(joint.a, joint.b, block.jacobian)(0) - opening;
             double& held = joint.impulses[i](0);
             const double wanted = std::max(held - mass_of(joint, block)(0, 0) * leaving, 0.0);
@@ -471,7 +525,7 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, double h, const S
         if (e > 0 && row.approach < threshold && row.peak > 0) {
             const int a = row.point->a, b = row.point->b;
             const double opening =
-                opening_speed(a, b, row.normal, row.approach, separation(row), e, h, settings);
+                opening_speed(a, b, row.normal, row.approach, separation(row), e, settings);
             const double leaving = speed(a, b, row.normal)(0) - opening;
             const double impulse = std::max(row.impulse - row.normal_mass * leaving, 0.0);
             apply(a, b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));

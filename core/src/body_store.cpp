@@ -285,7 +285,8 @@ void BodyStore::derive()
     }
 }
 
-int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, std::uint32_t& contained_slot)
+int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, const Flight& flight,
+                      std::uint32_t& contained_slot)
 {
     BodyRows& r = rows(kind);
     const int quads = quads_of(kind);
@@ -309,12 +310,25 @@ int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, std
             contained_slot = std::min(contained_slot, r.slot[row]);
         } else {
             BodyPose& pose = r.pose[row];
-            pose.position.x += static_cast<PoseReal>(delta[0]);
-            pose.position.y += static_cast<PoseReal>(delta[1]);
-            if (kind == BodyKind::planar) {
-                pose.yaw += static_cast<PoseReal>(delta[2]);
+            const float* a = &r.acceleration[std::size_t{4} * quads * row];
+            const bool in_plane = kind == BodyKind::planar;
+            const Vec3<float>& g = flight.gravity;
+            const Vec3<float> acceleration{a[0] + g.x, a[1] + g.y, in_plane ? 0 : a[2] + g.z};
+            const Vec3<float> now{velocity[0], velocity[1], in_plane ? 0 : velocity[2]};
+            // Neither what stands nor what is contained falls; and forces may have been what it was contained for.
+            const bool falls = kind != BodyKind::fixed && velocity[3] > 0 && flight.is_jointed[row] == 0 &&
+                               flew_freely(flight.start_along[row], dot(now, acceleration),
+                                           flight.seconds * dot(acceleration, acceleration));
+            const auto moved = [&](int i, float along) {
+                const float back = falls ? flight.excess * along : 0.0F;
+                return static_cast<PoseReal>(delta[i]) - static_cast<PoseReal>(back);
+            };
+            pose.position.x += moved(0, acceleration.x);
+            pose.position.y += moved(1, acceleration.y);
+            if (in_plane) {
+                pose.yaw += moved(2, a[2]);
             } else {
-                pose.position.z += static_cast<PoseReal>(delta[2]);
+                pose.position.z += moved(2, acceleration.z);
             }
             if (quads == 2) {
                 const Quat<PoseReal> turn{delta[4], delta[5], delta[6], delta[7]};

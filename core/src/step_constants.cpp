@@ -71,6 +71,9 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
     StepConstants step;
     step.substep = dt / static_cast<float>(settings.substeps);
     step.inverse_substep = 1 / step.substep;
+    step.seconds = dt;
+    // The reference, which solves directly, moves bodies itself.
+    if (settings.method != Method::direct) step.flight_excess = 0.5F * step.substep * dt;
     step.gravity = settings.gravity;
     step.restitution_threshold = settings.restitution_threshold;
     step.push_out_speed = settings.push_out_speed;

@@ -285,6 +285,7 @@ void Solver::Impl::solve_substeps(Scene& scene, float dt, StepReport& report)
                                  layout.sweeps());
         convergence.take_wishes(scene, layout.sweeps());
     }
+    sweeper.begin_free_groups();
     sweeper.transfer(&ConstraintKernels::prepare);
     // Where nothing has to be known of all between them, a patch is solved, moved and relaxed at one visit.
     const int once = visits_patches_once() ? 1 : 0;
@@ -300,7 +301,11 @@ void Solver::Impl::solve_substeps(Scene& scene, float dt, StepReport& report)
     for (int substep = 0; substep < settings.substeps; ++substep) {
         const bool is_last = substep + 1 == settings.substeps;
         if (substep > 0) sweeper.add_up();
-        if (substep == 0 || !runs_on) sweeper.integrate(&BodyKernels::integrate_velocities);
+        if (substep == 0) {
+            sweeper.integrate(&BodyKernels::begin_velocities);
+        } else if (!runs_on) {
+            sweeper.integrate(&BodyKernels::integrate_velocities);
+        }
         clock.charge(Stage::integrate_velocities);
         // Where bodies relax, their trees have been factored after the last move: see step_figure().
         if (substep == 0 || !relaxes) sweeper.prepare_touched_trees();
@@ -499,6 +504,7 @@ FigureSteps Solver::Impl::figure_steps() const
 void Solver::Impl::move_bodies(Scene& scene, StepReport& report)
 {
     std::uint32_t first_slot = 0;
+    if (layout.context.step.flight_excess > 0) sweeper.land_free_groups();
     report.bodies_contained = sweeper.commit(scene.bodies(), first_slot);
     if (report.bodies_contained == 0) return;
     report.first_contained = scene.bodies().id_of_slot(first_slot);

@@ -259,6 +259,27 @@ void Sweeper::solve_touched_trees(float rate)
     });
 }
 
+template <class Work>
+void Sweeper::for_each_free_group(const Work& work)
+{
+    constexpr std::int64_t groups_per_chunk = 64;
+    const std::int64_t groups = layout_.groups.size();
+    runner_.run((groups + groups_per_chunk - 1) / groups_per_chunk, [&](std::int64_t chunk) {
+        const std::int64_t end = std::min((chunk + 1) * groups_per_chunk, groups);
+        for (std::int64_t group = chunk * groups_per_chunk; group < end; ++group) work(group);
+    });
+}
+
+void Sweeper::begin_free_groups()
+{
+    for_each_free_group([&](std::int64_t group) { layout_.groups.begin(layout_.context, group); });
+}
+
+void Sweeper::land_free_groups()
+{
+    for_each_free_group([&](std::int64_t group) { layout_.groups.land(layout_.context, group); });
+}
+
 std::int64_t Sweeper::commit(BodyStore& bodies, std::uint32_t& first_slot)
 {
     std::atomic<std::int64_t> contained{0};
@@ -266,6 +287,10 @@ std::int64_t Sweeper::commit(BodyStore& bodies, std::uint32_t& first_slot)
     for (int kind = 0; kind < body_kind_count; ++kind) {
         const std::int64_t rows = layout_.context.bodies[kind].size;
         const auto in_lanes = layout_.kernels().bodies[kind].commit;
+        const StepConstants& step = layout_.context.step;
+        const BodyArrays& arrays = layout_.context.bodies[kind];
+        const Flight flight{arrays.start_along, arrays.is_jointed, step.flight_excess, step.seconds,
+                            step.gravity};
         runner_.run((rows + rows_per_chunk - 1) / rows_per_chunk, [&](std::int64_t chunk) {
             std::uint32_t slot = UINT32_MAX;
             int count = 0;
@@ -273,11 +298,10 @@ std::int64_t Sweeper::commit(BodyStore& bodies, std::uint32_t& first_slot)
             const auto end = static_cast<std::int32_t>(std::min((chunk + 1) * rows_per_chunk, rows));
             for_each_piece(begin, end, block_lanes, [&](std::int32_t first, std::int32_t last) {
                 // In lanes, or one by one where a row is free, the last, or has come to grief.
-                if (in_lanes != nullptr && last - first == block_lanes &&
-                    in_lanes(layout_.context.bodies[kind], first))
+                if (in_lanes != nullptr && last - first == block_lanes && in_lanes(layout_.context, first))
                     return;
                 count += bodies.commit(static_cast<BodyKind>(kind), static_cast<std::uint32_t>(first),
-                                       static_cast<std::uint32_t>(last), slot);
+                                       static_cast<std::uint32_t>(last), flight, slot);
             });
             if (count == 0) return;
             contained += count;

@@ -44,6 +44,9 @@ class Sweeper {
     /// Adds what a step has moved to where the bodies are. Returns how many bodies it had to contain, and sets the first
     /// one's slot.
     std::int64_t commit(BodyStore& bodies, std::uint32_t& first_slot);
+    /// Before anything moves, and before the commit: see FreeGroups.
+    void begin_free_groups();
+    void land_free_groups();
 
   private:
     StageRunner& runner_;
@@ -51,6 +54,8 @@ class Sweeper {
     std::vector<FigureWorkspace> workspaces_;  ///< one a worker
 
     void sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
+    template <class Work>
+    void for_each_free_group(const Work& work);
     template <class Work>
     void for_each_touched_tree(const Work& work);
 };

@@ -77,6 +77,8 @@ struct BodyArrays {
     float* velocity = nullptr;
     float* delta = nullptr;
     float* unpushed = nullptr;
+    float* start_along = nullptr;  ///< see Flight, as is_jointed
+    const std::uint8_t* is_jointed = nullptr;
     const float* acceleration = nullptr;
     float* world_inverse_inertia = nullptr;
     float* start_inverse_inertia = nullptr;
@@ -146,6 +148,7 @@ struct ConstraintKernels {
 struct BodyKernels {
     using Move = void (*)(const KernelContext&, std::int32_t begin, std::int32_t end);
     Move integrate_velocities = nullptr;  ///< null for fixed bodies
+    Move begin_velocities = nullptr;      ///< the same for the first substep: notes Flight::start_along
     Move integrate_positions = nullptr;
     Move integrate_on =
         nullptr;  ///< positions, and then the velocities of the next substep: one pass for two
@@ -153,7 +156,7 @@ struct BodyKernels {
     void (*integrate_listed)(const KernelContext&, const BodyRow* rows, std::int32_t count) = nullptr;
     /// BodyStore::commit of sixteen rows from `first` on; false, and nothing done, unless each of them is a body that
     /// can move and is finite. Null for fixed bodies.
-    bool (*commit)(const BodyArrays&, std::int32_t first) = nullptr;
+    bool (*commit)(const KernelContext&, std::int32_t first) = nullptr;
     // Of sixteen bodies, for watched_sweep.h:
     /// As they are, into most_body_floats fields of sixteen floats.
     void (*keep)(const BodyArrays&, const std::int32_t* offsets, float* kept) = nullptr;

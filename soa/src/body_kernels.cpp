@@ -22,7 +22,8 @@ template <BodyKind kind>
 void enter_body(BodyKernels& kernels)
 {
     if constexpr (kind != BodyKind::fixed) {
-        kernels.integrate_velocities = integrate_velocities<kind>;
+        kernels.integrate_velocities = integrate_velocities<kind, false>;
+        kernels.begin_velocities = integrate_velocities<kind, true>;
         kernels.integrate_listed = integrate_listed<kind>;
         kernels.commit = commit<kind>;
         kernels.bring_back = bring_back<kind>;

@@ -5,6 +5,11 @@
 template <BodyKind kind>
 using Body = LaneBody<Lanes, kind>;
 
+/// Four numbers of a pose in line, in one register where there is one so wide.
+using PoseQuad [[gnu::vector_size(4 * sizeof(PoseReal)), gnu::aligned(sizeof(PoseReal)), gnu::may_alias]] =
+    PoseReal;
+using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
+
 [[gnu::always_inline]] inline Body<BodyKind::particle> load_body(const BodyArrays& arrays,
                                                                  const std::int32_t* offsets,
                                                                  Body<BodyKind::particle>*)

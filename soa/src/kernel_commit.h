@@ -75,18 +75,53 @@ inline void turn_inertia(const BodyArrays& arrays, std::int32_t first, const Tur
     }
 }
 
+/// What sixteen bodies are to be moved back by, s2 per m/s2 of acceleration: see Flight.
 template <BodyKind kind>
-bool commit(const BodyArrays& arrays, std::int32_t first)
+void find_excess(const KernelContext& context, const BodyArrays& arrays, std::int32_t first,
+                 float (&excess)[block_lanes])
+{
+    const Lanes excess_here(context.step.flight_excess), seconds(context.step.seconds);
+    for (int lane = 0; lane < block_lanes; lane += Lanes_width) {
+        const RowIndex<kind> index(first + lane);
+        alignas(64) float start[Lanes_width];
+        for (int i = 0; i < Lanes_width; ++i) start[i] = arrays.start_along[first + lane + i];
+        const Along along = along_acceleration<kind>(context, arrays, index);
+        const auto is_free = flew_freely(load_lanes(start), along.v_a, seconds * along.a_a);
+        store_lanes(select(is_free, excess_here, Lanes(0)), excess + lane);
+    }
+    for (int lane = 0; lane < block_lanes; ++lane)
+        excess[lane] = arrays.is_jointed[first + lane] != 0 ? 0 : excess[lane];
+}
+
+template <BodyKind kind>
+bool commit(const KernelContext& context, std::int32_t first)
 {
     constexpr std::int64_t floats = std::int64_t{4} * quads_of(kind);
+    const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
     float* delta = arrays.delta + floats * first;
     if (!can_commit<kind>(arrays.velocity + floats * first, delta)) return false;
     BodyPose* pose = arrays.pose + first;
+    alignas(64) float excess[block_lanes];
+    find_excess<kind>(context, arrays, first, excess);
+    constexpr bool turns_in_plane = kind == BodyKind::planar;
+    const Vec3<float>& g = context.step.gravity;
+    const FloatQuad gravity{g.x, g.y, turns_in_plane ? 0 : g.z, 0};
+    // Of the numbers of a pose one is no business of this kind; nothing is added by -0 alone.
+    const PoseQuad nothing{-PoseReal(0), -PoseReal(0), -PoseReal(0), -PoseReal(0)};
+    static_assert(sizeof(BodyPose) == sizeof(PoseQuad));
     for (int lane = 0; lane < block_lanes; ++lane) {
-        const float* d = delta + floats * lane;
-        pose[lane].position.x += static_cast<PoseReal>(d[0]);
-        pose[lane].position.y += static_cast<PoseReal>(d[1]);
-        (kind == BodyKind::planar ? pose[lane].yaw : pose[lane].position.z) += static_cast<PoseReal>(d[2]);
+        const FloatQuad moved = *reinterpret_cast<const FloatQuad*>(delta + floats * lane);
+        const FloatQuad a =
+            *reinterpret_cast<const FloatQuad*>(arrays.acceleration + floats * (first + lane));
+        const FloatQuad back = excess[lane] * (a + gravity);
+        const PoseQuad by =
+            __builtin_convertvector(moved, PoseQuad) - __builtin_convertvector(back, PoseQuad);
+        auto& to = *reinterpret_cast<PoseQuad*>(&pose[lane].position.x);
+        if constexpr (turns_in_plane) {
+            to += __builtin_shufflevector(by, nothing, 0, 1, 4, 2);
+        } else {
+            to += __builtin_shufflevector(by, nothing, 0, 1, 2, 4);
+        }
     }
     if constexpr (kind == BodyKind::rigid) {
         Turns<float> turns;

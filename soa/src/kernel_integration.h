@@ -119,14 +119,42 @@ void change_velocity(const KernelContext& context, const BodyArrays& arrays, con
     store_velocity(arrays_unpushed, index.offsets, unpushed, index.count);
 }
 
+/// Velocity and acceleration times acceleration: see flew_freely.
+struct Along {
+    Lanes v_a, a_a;
+};
 template <BodyKind kind>
+Along along_acceleration(const KernelContext& context, const BodyArrays& arrays, const RowIndex<kind>& index)
+{
+    const Vec3<float>& g = context.step.gravity;
+    Lanes v[4], a[4];
+    load_quads(arrays.velocity, offset_floats, index.offsets, v);
+    load_quads(arrays.acceleration, offset_floats, index.offsets, a);
+    Vec3<Lanes> velocity{v[0], v[1], v[2]};
+    Vec3<Lanes> acceleration{a[0] + Lanes(g.x), a[1] + Lanes(g.y), a[2] + Lanes(g.z)};
+    if constexpr (kind == BodyKind::planar) velocity.z = acceleration.z = Lanes(0);
+    return {dot(velocity, acceleration), dot(acceleration, acceleration)};
+}
+
+template <BodyKind kind, bool begins>
 void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
     for_each_rows<kind>(begin, end, [&](const RowIndex<kind>& index) {
         Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
+        alignas(64) float start[Lanes_width];
+        if constexpr (begins) store_lanes(along_acceleration<kind>(context, arrays, index).v_a, start);
         change_velocity(context, arrays, index, body);
         store_velocity(arrays, index.offsets, body, index.count);
+        if constexpr (begins) {
+            // Last: what lies between loads and stores of bodies would have them loaded twice.
+            float* to = arrays.start_along + index.offsets[0] / offsets_a_row(kind);
+            if (index.count == Lanes_width) {
+                for (int lane = 0; lane < Lanes_width; ++lane) to[lane] = start[lane];
+            } else {
+                for (int lane = 0; lane < index.count; ++lane) to[lane] = start[lane];
+            }
+        }
     });
 }
 

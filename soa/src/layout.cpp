@@ -51,6 +51,12 @@ void Layout::begin(Scene& scene, std::size_t contact_count, const FigureUse& use
         if (!scene.joints().version) scene.joints().version = std::make_shared<const char>('\0');
         joint_version_ = scene.joints().version;
     }
+    for (std::size_t kind = 0; kind < body_kind_count; ++kind) {
+        // Bodies that came since joints changed have none.
+        const std::size_t rows = scene.bodies().rows(static_cast<BodyKind>(kind)).size();
+        grow_to(is_jointed_[kind], rows);
+        grow_to(start_along_[kind], rows);
+    }
     if (contact_count > 0) masks_.copy(joint_masks_, scene.bodies());
     grow_to(uncoloured_, contact_count);
     contacts.begin({intake.placements.data(), contact_count}, intake.patches.are_wanted());
@@ -68,6 +74,7 @@ void Layout::place_joints(Scene& scene)
         }
     });
     candidates_.clear();
+    ties_.clear();
     scene.joints().for_each([&](auto& store, int type) {
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         for (std::size_t i = 0; i < store.size(); ++i) {
@@ -88,14 +95,31 @@ void Layout::place_joints(Scene& scene)
                                     static_cast<std::uint8_t>(contact_type_count + type), store.colours[i]},
                                    equalities,
                                    locks_point});
+            bool locks_place = false;
+            if constexpr (requires { Type::locks_place(store.definitions[i]); })
+                locks_place = Type::locks_place(store.definitions[i]);
+            ties_.push_back({a, b, locks_place});
         }
     });
+    find_groups(bodies);
     figures.find(candidates_, bodies, kernels_, use_.exactly, joint_placements_);
     joints_.begin(joint_placements_, false);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.count(chunk);
     joints_.open(kernels_, true);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.fill(chunk);
     figures.bind(joints_, kernels_);
+}
+
+void Layout::find_groups(const BodyStore& bodies)
+{
+    groups.find(ties_, bodies);
+    for (int kind = 0; kind < body_kind_count; ++kind)
+        is_jointed_[static_cast<std::size_t>(kind)].assign(bodies.rows(static_cast<BodyKind>(kind)).size(),
+                                                           0);
+    for (const FreeGroups::Tie& tie : ties_) {
+        for (const BodyRow body : {tie.a, tie.b})
+            is_jointed_[static_cast<std::size_t>(body.kind())][body.row()] = 1;
+    }
 }
 
 void Layout::colour_contacts(const BodyStore& bodies, ContactList& list)
@@ -235,6 +259,8 @@ void Layout::point_at(Scene& scene, const StepConstants& step)
         context.bodies[kind] = {rows.velocity.data(),
                                 rows.delta.data(),
                                 rows.unpushed.data(),
+                                start_along_[static_cast<std::size_t>(kind)].data(),
+                                is_jointed_[static_cast<std::size_t>(kind)].data(),
                                 rows.acceleration.data(),
                                 rows.world_inverse_inertia.data(),
                                 rows.start_inverse_inertia.data(),

@@ -11,6 +11,7 @@
 #include "batches.h"
 #include "contact_intake.h"
 #include "figures.h"
+#include "free_groups.h"
 #include "motley/core/scene.h"
 #include "motley/core/step_report.h"
 
@@ -55,6 +56,8 @@ class Layout {
     [[nodiscard]] std::span<const Placement> contact_placements() const { return contacts.placements(); }
     /// The figures of the scene, and which of them are solved on their own.
     Figures figures;
+    /// What joints tie together.
+    FreeGroups groups;
     /// The bodies of a kind, less those of figures that are alone.
     [[nodiscard]] const std::vector<RowRange>& rows(int kind) const
     {
@@ -93,6 +96,9 @@ class Layout {
     };
     std::optional<Cut> cut_;  ///< what the lists still are of
     std::vector<Figures::Candidate> candidates_;
+    std::vector<FreeGroups::Tie> ties_;
+    std::array<std::vector<std::uint8_t>, body_kind_count> is_jointed_;  ///< by kind and row
+    std::array<AlignedVector<float>, body_kind_count> start_along_;      ///< see Flight
     std::array<std::vector<RowRange>, body_kind_count> rows_;
     std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< of each range, where the range begins
     ColourMasks joint_masks_, masks_;
@@ -101,6 +107,7 @@ class Layout {
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(Scene& scene);
+    void find_groups(const BodyStore& bodies);
     void list_rows(const Scene& scene);
     void point_at_data(Scene& scene, std::span<const Contact> contacts);
 };

@@ -30,10 +30,10 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 17628588635836109796ULL},
-            {"baumgarte", iterative, 1679848397350824560ULL},
-            {"no drift correction", none, 2148422154256455566ULL},
-            {"projection", projection, 13604459780252104017ULL}};
+    return {{"soft_step", soft, 14875667552570768486ULL},
+            {"baumgarte", iterative, 3541547805837373829ULL},
+            {"no drift correction", none, 10926031984305311940ULL},
+            {"projection", projection, 9563929330460450998ULL}};
 }
 
 /// The state's hash after every step.
@@ -89,8 +89,8 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {14700026297281566102ULL, 7021944756437310376ULL, 14786839451368715601ULL,
-                                    8269466734413825494ULL};
+    const std::uint64_t golden[] = {10925114057894728310ULL, 1750931909301228940ULL, 11072712023805129995ULL,
+                                    5844263093004727901ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});

@@ -164,6 +164,7 @@ TEST(Figures, EveryJointIsPlacedOnceAndEveryLaneIsItsOwnCopys)
         const std::vector<Figures::Candidate> joints = random_heap(random, rows);
         BodyStore bodies;
         bodies.rows(BodyKind::rigid).slot.assign(rows, 0);
+        bodies.rows(BodyKind::fixed).slot.assign(2, 0);  // nobody's row, and the ground
         for (const bool exact : {false, true}) {
             Figures figures;
             std::vector<Placement> placed;

@@ -18,6 +18,7 @@
 
 #include "motley/core/aligned_vector.h"
 #include "motley/core/body.h"
+#include "motley/core/flight.h"
 #include "motley/core/ids.h"
 
 namespace motley {
@@ -116,10 +117,11 @@ class BodyStore {
     AlignedVector<float> inverse_masses;
     std::vector<float> inverse_inertias;  ///< likewise, planar only
 
-    /// Adds the deltas of a step to the poses of rows [begin, end) of a kind, and clears them. A row that is
-    /// not finite keeps its pose, loses its velocity and is contained: its slot goes to `contained_slot`.
-    /// Returns how many were contained.
-    int commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, std::uint32_t& contained_slot);
+    /// Adds the deltas of a step to the poses of rows [begin, end) of a kind, less the excess of free flight, and clears
+    /// them. A row that is not finite keeps its pose, loses its velocity and is contained: its slot goes to
+    /// `contained_slot`. Returns how many were contained.
+    int commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, const Flight& flight,
+               std::uint32_t& contained_slot);
     /// Gives a contained body its mass back.
     void revive(BodyId body);
     /// Fills in what follows from the rest and is in no file: displacements, inertias, what is counted.

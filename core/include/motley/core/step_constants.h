@@ -22,6 +22,9 @@ Softness soft(float hertz, float damping_ratio, float substep);
 struct StepConstants {
     float substep = 0;          ///< s
     float inverse_substep = 0;  ///< 1/s
+    float seconds = 0;          ///< of all substeps
+    /// h dt / 2, s2: how far v += h a, x += h v takes a body too far in a step, per m/s2 of constant acceleration a.
+    float flight_excess = 0;
     /// 1/s: the share of a lock's error that SolverSettings::exact_joints removes a second. Soft steps remove all of it in a substep and
     /// take the speed that this needed away again when they relax.
     float exact_rate = 0;

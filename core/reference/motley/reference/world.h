@@ -89,8 +89,10 @@ class World {
     void project_contacts(const Joint& joint, const SolverSettings& settings);
     void project(std::vector<ContactRow>& contacts, const SolverSettings& settings);
     [[nodiscard]] double opening_speed(int a, int b, const Jacobian& normal, double approach, double now,
-                                       double restitution, double h, const SolverSettings& settings) const;
-    void finish_contacts(std::vector<ContactRow>& contacts, double h, const SolverSettings& settings);
+                                       double restitution, const SolverSettings& settings) const;
+    [[nodiscard]] Vector6 free_acceleration(int i, const SolverSettings& settings) const;
+    void finish_contacts(std::vector<ContactRow>& contacts, const SolverSettings& settings);
+    void land_free_groups(double h, double dt, const SolverSettings& settings);
     void end_step(double h);
     /// What hangs together through joints and contacts, and whether anything of it hangs on what cannot be moved.
     struct Islands {

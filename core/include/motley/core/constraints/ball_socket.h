@@ -104,6 +104,7 @@ struct BallSocket {
 
     /// Between bodies that turn.
     static bool is_equality(const Definition&) { return true; }
+    static bool locks_place(const Definition&) { return true; }
     template <class Real, class Row, class A, class B>
     static void equality_rows(const Row& row, const A& a, const B& b, EqualityRow<Real>* rows)
     {

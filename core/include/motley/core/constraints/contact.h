@@ -223,7 +223,7 @@ struct ContactKind {
     static void restitute(const StepConstants& step, const Row& whole, Impulse& impulse, A& a, B& b)
     {
         const auto& row = in_sweep(whole);
-        const Real opening = opening_speed(step, whole.restitution, whole.approach, whole.acceleration,
+        const Real opening = opening_speed(whole.restitution, whole.approach, whole.acceleration,
                                            row.separation, row.separation + moved<Real>(row, a, b));
         const Real wanted =
             impulse.normal - normal_mass<Real>(row, a, b) * (speed<Real>(row, a, b) - opening);

@@ -78,6 +78,7 @@ struct Distance {
         check_range("DistanceDefinition.rest_length", joint.rest_length, 0, largest_length, "0 to 1e9 (m)");
         check_bound("DistanceDefinition.spring_max_force", joint.spring_max_force);
     }
+    static bool locks_place(const Definition& joint) { return joint.min_length == joint.max_length; }
     static Parameters<float> parameters(const Definition& joint)
     {
         return {joint.local_anchor_a, joint.min_length,

@@ -104,6 +104,7 @@ struct Drive {
                     slides ? "-1e9 to 1e9 (m)" : "-pi to pi (rad)");
         check_bound("spring_max_force", drive.spring_max_force);
     }
+    static bool locks_place(const Definition& drive) { return slides && drive.lower == drive.upper; }
     static Parameters<float> parameters(const Definition& drive)
     {
         Parameters<float> parameters{unit(drive.frame_a.rotation),

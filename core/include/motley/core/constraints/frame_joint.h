@@ -160,6 +160,7 @@ struct FrameJoint {
 
     /// A joint with a stiffness of its own is a spring.
     static bool is_equality(const Definition& joint) { return joint.stiffness.hertz == 0; }
+    static bool locks_place(const Definition& joint) { return linear_rows > 0 && is_equality(joint); }
     template <class Real, class Row, class A, class B>
     static void equality_rows(const Row& row, const A& a, const B& b, EqualityRow<Real>* out)
     {

@@ -216,7 +216,7 @@ struct Manifold {
         const auto& row = whole.in_sweep;
         Real opening[most_points];
         for (int i = 0; i < most_points; ++i) {
-            opening[i] = opening_speed(step, whole.restitution, whole.approach[i], whole.acceleration,
+            opening[i] = opening_speed(whole.restitution, whole.approach[i], whole.acceleration,
                                        row.separation[i], separation_at<Real>(row, i, a, b));
         }
         for (int i = 0; i < restitution_rounds * most_points; ++i) {
