@@ -11,6 +11,16 @@ namespace motley::testing {
 
 inline constexpr float frame_time = 1.0F / 60;
 
+/// Steps of a long run. A tenth of them where a sanitizer watches memory: what is the same step after step is told soon, and slowly.
+constexpr int long_run(int steps)
+{
+#ifdef MOTLEY_SANITIZED
+    return steps / 10;
+#else
+    return steps;
+#endif
+}
+
 inline SolverSettings with_gravity(Vec3<float> gravity)
 {
     SolverSettings settings;

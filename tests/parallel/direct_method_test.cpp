@@ -60,7 +60,7 @@ TEST(DirectMethod, AChainWithAThousandfoldWeightHoldsItsJoints)
     Solver solver(settings);
     double squares = 0, violation = 0;
     int count = 0;
-    for (int step = 0; step < 600; ++step) {
+    for (int step = 0; step < testing::long_run(600); ++step) {
         const StepReport report = solver.step(scene, frame_time);
         ASSERT_EQ(report.status, StepStatus::done);
         ASSERT_EQ(report.bodies_contained, 0);

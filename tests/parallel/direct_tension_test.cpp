@@ -106,7 +106,7 @@ TEST(DirectTension, ChainsHoldAnyLoadAndGainNoEnergy)
             const double before = chain.kinetic_energy() + chain.potential_energy();
             const double height = (load + 10) * g * length * links;  // what the energy may be one per cent of
             double separation = 0, gain = -height;
-            for (int step = 0; step < 600; ++step) {
+            for (int step = 0; step < testing::long_run(600); ++step) {
                 const StepReport report = solver.step(chain.scene, frame_time);
                 ASSERT_EQ(report.status, StepStatus::done);
                 ASSERT_EQ(report.direct_unsolved, 0) << load << " kg, step " << step;
@@ -150,7 +150,7 @@ TEST(DirectTension, FloatingChainsKeepMomentumAndAngularMomentum)
         const double energy = chain.kinetic_energy();
         Solver solver(direct({}));
         double gain = 0;
-        for (int step = 0; step < 300; ++step) {
+        for (int step = 0; step < testing::long_run(300); ++step) {
             ASSERT_EQ(solver.step(chain.scene, frame_time).direct_unsolved, 0);
             gain = std::max(gain, chain.kinetic_energy() / energy - 1);
         }
@@ -242,7 +242,7 @@ TEST(DirectTension, AFallingLoadGoesTheWayOfAChainInAngles)
             settings.substeps = substeps;
             Solver solver(settings);
             double most = 0;
-            for (int step = 0; step < 60; ++step) {
+            for (int step = 0; step < testing::long_run(60); ++step) {
                 solver.step(chain.scene, frame_time);
                 const int fine = 1667;  // of 1e-5 s
                 for (int i = 0; i < fine; ++i) truth.step(static_cast<double>(frame_time) / fine);

@@ -195,7 +195,7 @@ TEST(ExactJoints, LightChainsHoldHeavyLoadsForAMinute)
             Scene scene = loaded_chain(load, level);
             Solver solver(exact_settings());
             double worst = 0;
-            for (int step = 0; step < 3600; ++step) {
+            for (int step = 0; step < testing::long_run(3600); ++step) {
                 const StepReport report = solver.step(scene, frame_time);
                 ASSERT_EQ(report.status, StepStatus::done);
                 ASSERT_EQ(report.bodies_contained, 0) << step;
