@@ -11,7 +11,8 @@ namespace motley::testing {
 
 inline constexpr float frame_time = 1.0F / 60;
 
-/// Steps of a long run. A tenth of them where a sanitizer watches memory: what is the same step after step is told soon, and slowly.
+/// Steps of a long run. Under sanitizers a tenth of them: each takes many times as long there, and touches the same memory as the
+/// one before.
 constexpr int long_run(int steps)
 {
 #ifdef MOTLEY_SANITIZED

@@ -68,9 +68,6 @@ World::Islands World::find_islands(const std::vector<ContactRow>& contacts) cons
                 leader[static_cast<std::size_t>(leader[static_cast<std::size_t>(i)])];
         return i;
     };
-    const auto moves = [&](int i) {
-        return bodies[static_cast<std::size_t>(i)].motion == BodyMotion::dynamic_body;
-    };
     const auto for_each_pair = [&](const auto& work) {
         for (const Joint& joint : joints) work(joint.a, joint.b);
         for (const ContactRow& row : contacts) work(row.point->a, row.point->b);

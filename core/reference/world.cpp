@@ -43,13 +43,9 @@ World::Soft World::softness(double hertz, double damping_ratio, double h)
 bool World::is_planar_pair(int a, int b) const
 {
     const auto flat = [&](int i) {
-        const Body& body = bodies[static_cast<std::size_t>(i)];
-        return body.motion == BodyMotion::dynamic_body && body.model == BodyModel::planar;
+        return moves(i) && bodies[static_cast<std::size_t>(i)].model == BodyModel::planar;
     };
-    const auto fixed = [&](int i) {
-        return bodies[static_cast<std::size_t>(i)].motion != BodyMotion::dynamic_body;
-    };
-    return (flat(a) && (flat(b) || fixed(b))) || (fixed(a) && flat(b));
+    return (flat(a) && (flat(b) || !moves(b))) || (!moves(a) && flat(b));
 }
 
 void World::apply(int a, int b, const Jacobian& jacobian, const Eigen::VectorXd& impulse)
@@ -218,8 +214,7 @@ World::Soft World::contact_softness(int a, int b, double h, const SolverSettings
     const double beta =
         settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
     if (settings.method != Method::soft_step) return {beta / h, 1, 0};
-    const bool on_fixed = bodies[static_cast<std::size_t>(a)].motion != BodyMotion::dynamic_body ||
-                          bodies[static_cast<std::size_t>(b)].motion != BodyMotion::dynamic_body;
+    const bool on_fixed = !moves(a) || !moves(b);
     const double hertz = settings.contact_hertz > 0 ? static_cast<double>(settings.contact_hertz)
                                                     : std::max(30.0, stiffest(h) / 2);
     return softness((on_fixed ? 2 : 1) * hertz, settings.contact_damping_ratio, h);
@@ -452,9 +447,6 @@ double World::opening_speed(int a, int b, const Jacobian& normal, double approac
 /// centre of mass a h dt / 2 too far. What turns is left as it is, but in the plane, where a body alone turns as it moves.
 void World::land_free_groups(double h, double dt, const SolverSettings& settings)
 {
-    const auto moves = [&](int i) {
-        return bodies[static_cast<std::size_t>(i)].motion == BodyMotion::dynamic_body;
-    };
     const std::vector<int> group_of = find_islands({}).of_body;
     struct Group {
         double mass = 0;

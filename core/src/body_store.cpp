@@ -315,8 +315,8 @@ int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, con
             const Vec3<float>& g = flight.gravity;
             const Vec3<float> acceleration{a[0] + g.x, a[1] + g.y, in_plane ? 0 : a[2] + g.z};
             const Vec3<float> now{velocity[0], velocity[1], in_plane ? 0 : velocity[2]};
-            // Neither what stands nor what is contained falls; and forces may have been what it was contained for.
-            const bool falls = kind != BodyKind::fixed && velocity[3] > 0 && flight.is_jointed[row] == 0 &&
+            // Bodies without inverse mass, fixed or contained, do not fall; the acceleration of a contained one may be infinite.
+            const bool falls = velocity[3] > 0 && flight.is_jointed[row] == 0 &&
                                flew_freely(flight.start_along[row], dot(now, acceleration),
                                            flight.seconds * dot(acceleration, acceleration));
             const auto moved = [&](int i, float along) {

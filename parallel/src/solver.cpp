@@ -340,6 +340,7 @@ void Solver::Impl::solve_substeps(Scene& scene, float dt, StepReport& report)
     clock.charge(Stage::restitution);
     sweeper.add_up();
     sweeper.transfer(&ConstraintKernels::store);
+    sweeper.land_free_groups();
     finish(scene, dt, report);
     report.substeps = settings.substeps;
     report.sweeps += settings.substeps * (1 + (projects ? settings.projections : 0));
@@ -504,7 +505,6 @@ FigureSteps Solver::Impl::figure_steps() const
 void Solver::Impl::move_bodies(Scene& scene, StepReport& report)
 {
     std::uint32_t first_slot = 0;
-    if (layout.context.step.flight_excess > 0) sweeper.land_free_groups();
     report.bodies_contained = sweeper.commit(scene.bodies(), first_slot);
     if (report.bodies_contained == 0) return;
     report.first_contained = scene.bodies().id_of_slot(first_slot);

@@ -3,6 +3,7 @@
 #include "motley/core/joint_store.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -71,29 +72,18 @@ ResidualSum sum_residuals(const SweepLists& sweeps)
 void Convergence::tie(std::span<const Placement> placements)
 {
     for (const Placement& placement : placements) {
-        if (placement.is_gap() || placement.is_left_out() || placement.a.kind() == BodyKind::fixed ||
-            placement.b.kind() == BodyKind::fixed)
-            continue;
-        const auto index = [&](BodyRow row) {
-            return first_[static_cast<std::size_t>(row.kind())] + static_cast<std::int32_t>(row.row());
-        };
-        bodies_.tie(index(placement.a), index(placement.b));
+        if (!placement.is_gap() && !placement.is_left_out()) bodies_.tie(placement.a, placement.b);
     }
 }
 
 void Convergence::find_islands(const KernelContext& context, std::span<const Placement> joints,
                                std::span<const Placement> contacts, const SweepLists& sweeps)
 {
-    std::int32_t moving = 0;
-    for (std::size_t kind = 0; kind < moving_kinds; ++kind) {
-        first_[kind] = moving;
-        moving += context.bodies[kind].size;
-    }
-    bodies_.reset(static_cast<std::size_t>(moving));
+    bodies_.reset([&](BodyKind kind) { return context.bodies[static_cast<int>(kind)].size; });
     tie(joints);
     tie(contacts);
     bodies_.flatten();
-    worst_.assign(static_cast<std::size_t>(moving), unseen);
+    worst_.assign(bodies_.size(), unseen);
     islands_ = 0;
     count(joints);
     count(contacts);
@@ -106,9 +96,7 @@ void Convergence::count(std::span<const Placement> placements)
     for (const Placement& placement : placements) {
         if (placement.is_left_out()) continue;
         const BodyRow body = placement.a.kind() == BodyKind::fixed ? placement.b : placement.a;
-        const std::int32_t index =
-            first_[static_cast<std::size_t>(body.kind())] + static_cast<std::int32_t>(body.row());
-        std::int32_t& seen = worst_[static_cast<std::size_t>(bodies_.root(static_cast<std::size_t>(index)))];
+        std::int32_t& seen = worst_[static_cast<std::size_t>(bodies_.root(body))];
         islands_ += seen == unseen ? 1 : 0;
         seen = 0;
     }
@@ -135,11 +123,8 @@ void Convergence::take_wishes(const Scene& scene, const SweepLists& sweeps)
     most_wanted_ = 0;
     wanted_.assign(bodies_.size(), 0);
     for (const Scene::IslandIterations& asked : scene.island_iterations()) {
-        const BodyRow row = scene.bodies().row_of(asked.body);
-        const std::int32_t body =
-            first_[static_cast<std::size_t>(row.kind())] + static_cast<std::int32_t>(row.row());
-        std::int32_t& wanted =
-            wanted_[static_cast<std::size_t>(bodies_.root(static_cast<std::size_t>(body)))];
+        const std::int32_t island = bodies_.root(scene.bodies().row_of(asked.body));
+        std::int32_t& wanted = wanted_[static_cast<std::size_t>(island)];
         wanted = std::max(wanted, asked.at_least);
     }
     std::array<const std::uint32_t*, constraint_type_count> slots{};
@@ -171,7 +156,7 @@ std::int32_t Convergence::island_of(const SweepChunk& chunk, std::int32_t block,
     const BlockBodies& bodies = chunk.streams.bodies[block];
     const BodyKind kind = use_b ? chunk.kind_b : chunk.kind_a;
     const std::int32_t row = (use_b ? bodies.b[lane] : bodies.a[lane]) / offsets_a_row(kind);
-    return bodies_.root(static_cast<std::size_t>(first_[static_cast<std::size_t>(kind)] + row));
+    return bodies_.root({kind, static_cast<std::uint32_t>(row)});
 }
 
 void Convergence::start_over(const SweepLists& sweeps)

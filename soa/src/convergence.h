@@ -4,13 +4,12 @@
 // solved well enough can be left alone while others go on. A block is left alone when all islands in it are.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "batches.h"
-#include "disjoint_sets.h"
+#include "body_sets.h"
 #include "motley/core/scene.h"
 
 namespace motley {
@@ -43,11 +42,9 @@ class Convergence {
     [[nodiscard]] std::int64_t unfinished() const { return unfinished_; }
 
   private:
-    static constexpr int moving_kinds = body_kind_count - 1;
-    std::array<std::int32_t, moving_kinds> first_{};  ///< index of the first row of a kind
-    DisjointSets bodies_;                             ///< moving ones; an island is named by its root
-    std::vector<std::int32_t> worst_;                 ///< bits of m/s, by root
-    std::vector<std::int32_t> wanted_;                ///< sweeps, by root
+    BodySets bodies_;                   ///< an island is named by its root
+    std::vector<std::int32_t> worst_;   ///< bits of m/s, by root
+    std::vector<std::int32_t> wanted_;  ///< sweeps, by root
     std::int64_t islands_ = 0, unfinished_ = 0;
     int most_wanted_ = 0;
 

@@ -1,7 +1,6 @@
 // Groups are found when joints change, and looked at once a step.
 #include "free_groups.h"
 
-#include <array>
 #include <utility>
 
 namespace motley {
@@ -22,41 +21,27 @@ std::size_t row_offset(BodyRow body)
 
 void FreeGroups::find(std::span<const Tie> ties, const BodyStore& bodies)
 {
-    // One number a body, kind after kind.
-    std::array<std::uint32_t, body_kind_count> first{};
-    std::uint32_t count = 0;
-    for (int kind = 0; kind < body_kind_count; ++kind) {
-        first[static_cast<std::size_t>(kind)] = count;
-        count += bodies.rows(static_cast<BodyKind>(kind)).size();
-    }
-    const auto number = [&](BodyRow body) {
-        return first[static_cast<std::size_t>(body.kind())] + body.row();
-    };
-    sets_.reset(count);
-    for (const Tie& tie : ties) {
-        if (is_fixed(tie.a) || is_fixed(tie.b)) continue;
-        sets_.tie(static_cast<std::int32_t>(number(tie.a)), static_cast<std::int32_t>(number(tie.b)));
-    }
+    sets_.reset([&](BodyKind kind) { return bodies.rows(kind).size(); });
+    for (const Tie& tie : ties) sets_.tie(tie.a, tie.b);
     sets_.flatten();
 
     // Groups are numbered in the order of their first tie; then their members are counted and put in line.
     constexpr std::int32_t none = -1, held = -2;
-    std::vector<std::int32_t> group_of_root(count, none);
+    std::vector<std::int32_t> group_of_root(sets_.size(), none);
     const auto group_of = [&](BodyRow body) -> std::int32_t& {
-        return group_of_root[static_cast<std::size_t>(sets_.root(number(body)))];
+        return group_of_root[static_cast<std::size_t>(sets_.root(body))];
     };
     for (const Tie& tie : ties) {
         if (tie.locks_place && is_fixed(tie.a) != is_fixed(tie.b))
             group_of(is_fixed(tie.a) ? tie.b : tie.a) = held;
     }
-    std::vector<std::uint8_t> is_listed(count);
+    std::vector<std::uint8_t> is_listed(sets_.size());
     const auto for_each_member = [&](const auto& work) {
-        is_listed.assign(count, 0);
+        is_listed.assign(sets_.size(), 0);
         for (const Tie& tie : ties) {
             for (const BodyRow body : {tie.a, tie.b}) {
-                if (is_fixed(body) || is_listed[number(body)] != 0 || group_of(body) == held) continue;
-                is_listed[number(body)] = 1;
-                work(body);
+                if (is_fixed(body) || group_of(body) == held) continue;
+                if (std::exchange(is_listed[sets_.number(body)], std::uint8_t{1}) == 0) work(body);
             }
         }
     };
@@ -85,7 +70,7 @@ std::span<const BodyRow> FreeGroups::members(std::int64_t group) const
     return std::span(members_).subspan(begin, end_of_members_[i] - begin);
 }
 
-/// Its mass is not finite when one of them is contained.
+/// Not finite when a member is: then land() finds no free flight in it.
 FreeGroups::Sums FreeGroups::sums_of(const KernelContext& context, std::int64_t group) const
 {
     Sums sums;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "block.h"
-#include "disjoint_sets.h"
+#include "body_sets.h"
 #include "motley/core/body_store.h"
 
 namespace motley {
@@ -16,8 +16,8 @@ class FreeGroups {
     /// A joint between two bodies.
     struct Tie {
         BodyRow a, b;
-        bool
-            locks_place;  ///< holds what it ties to a fixed body at rest along some direction, whatever that does
+        /// If one body is fixed, the other cannot move along some direction, whatever forces do.
+        bool locks_place;
     };
     /// Finds the groups of a scene but those that a lock ties to a fixed body.
     void find(std::span<const Tie> ties, const BodyStore& bodies);
@@ -40,7 +40,7 @@ class FreeGroups {
     std::vector<std::uint32_t> end_of_members_;  ///< by group
     std::vector<BodyRow> members_;               ///< of all groups in line
     std::vector<Vec3<double>> start_momenta_;    ///< by group
-    DisjointSets sets_;
+    BodySets sets_;
 };
 
 }  // namespace motley

@@ -75,19 +75,18 @@ inline void turn_inertia(const BodyArrays& arrays, std::int32_t first, const Tur
     }
 }
 
-/// What sixteen bodies are to be moved back by, s2 per m/s2 of acceleration: see Flight.
+/// What sixteen bodies are to be moved back by, s2 per m/s2 of acceleration: see Flight. `first` is a multiple of sixteen.
 template <BodyKind kind>
 void find_excess(const KernelContext& context, const BodyArrays& arrays, std::int32_t first,
                  float (&excess)[block_lanes])
 {
-    const Lanes excess_here(context.step.flight_excess), seconds(context.step.seconds);
+    const Lanes of_flight(context.step.flight_excess), seconds(context.step.seconds);
     for (int lane = 0; lane < block_lanes; lane += Lanes_width) {
         const RowIndex<kind> index(first + lane);
-        alignas(64) float start[Lanes_width];
-        for (int i = 0; i < Lanes_width; ++i) start[i] = arrays.start_along[first + lane + i];
         const Along along = along_acceleration<kind>(context, arrays, index);
-        const auto is_free = flew_freely(load_lanes(start), along.v_a, seconds * along.a_a);
-        store_lanes(select(is_free, excess_here, Lanes(0)), excess + lane);
+        const Lanes start = load_lanes(arrays.start_along + first + lane);
+        const auto is_free = flew_freely(start, along.v_a, seconds * along.a_a);
+        store_lanes(select(is_free, of_flight, Lanes(0)), excess + lane);
     }
     for (int lane = 0; lane < block_lanes; ++lane)
         excess[lane] = arrays.is_jointed[first + lane] != 0 ? 0 : excess[lane];
@@ -106,7 +105,7 @@ bool commit(const KernelContext& context, std::int32_t first)
     constexpr bool turns_in_plane = kind == BodyKind::planar;
     const Vec3<float>& g = context.step.gravity;
     const FloatQuad gravity{g.x, g.y, turns_in_plane ? 0 : g.z, 0};
-    // Of the numbers of a pose one is no business of this kind; nothing is added by -0 alone.
+    // A planar body does not move along z, the others have no yaw: there -0 is added, which leaves every number as it is, -0 too.
     const PoseQuad nothing{-PoseReal(0), -PoseReal(0), -PoseReal(0), -PoseReal(0)};
     static_assert(sizeof(BodyPose) == sizeof(PoseQuad));
     for (int lane = 0; lane < block_lanes; ++lane) {

@@ -147,7 +147,8 @@ void integrate_velocities(const KernelContext& context, std::int32_t begin, std:
         change_velocity(context, arrays, index, body);
         store_velocity(arrays, index.offsets, body, index.count);
         if constexpr (begins) {
-            // Last: what lies between loads and stores of bodies would have them loaded twice.
+            // Stored last: for all the compiler knows, it could change what change_velocity() has yet to load. A whole bundle
+            // is one store.
             float* to = arrays.start_along + index.offsets[0] / offsets_a_row(kind);
             if (index.count == Lanes_width) {
                 for (int lane = 0; lane < Lanes_width; ++lane) to[lane] = start[lane];

@@ -68,6 +68,10 @@ class World {
     static Soft softness(double hertz, double damping_ratio, double h);
     /// Hz: of the stiffest spring that a substep can follow, or the last one if that was longer.
     [[nodiscard]] double stiffest(double h) const { return 0.25 / std::max(h, last_substep_); }
+    [[nodiscard]] bool moves(int i) const
+    {
+        return bodies[static_cast<std::size_t>(i)].motion == BodyMotion::dynamic_body;
+    }
     [[nodiscard]] bool is_planar_pair(int a, int b) const;
     void apply(int a, int b, const Jacobian& jacobian, const Eigen::VectorXd& impulse);
     void apply(Joint& joint, const Jacobian& jacobian, const Eigen::VectorXd& impulse);
