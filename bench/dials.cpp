@@ -77,7 +77,7 @@ std::vector<Dials> expand(const DialGrid& grid)
 
 std::string label_of(const Dials& dials)
 {
-    const SolverSettings& s = dials.settings;
+    const SolverSettings s = dials.settings.resolved();
     std::string label;
     if (s.method == Method::soft_step) {
         label = fmt::format("soft {} x {}+{}", s.substeps, s.iterations, s.relaxations);

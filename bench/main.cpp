@@ -36,7 +36,8 @@ void write_text(const std::string& path, const std::string& text)
 const std::map<std::string, Method> method_names{{"soft_step", Method::soft_step},
                                                  {"sequential_impulse", Method::sequential_impulse},
                                                  {"direct", Method::direct}};
-const std::map<std::string, DriftCorrection> drift_names{{"none", DriftCorrection::none},
+const std::map<std::string, DriftCorrection> drift_names{{"by_method", DriftCorrection::by_method},
+                                                         {"none", DriftCorrection::none},
                                                          {"baumgarte", DriftCorrection::baumgarte},
                                                          {"projection", DriftCorrection::projection}};
 
@@ -59,13 +60,13 @@ struct SolverCommand {
         app.add_option("--method", settings.method, "soft_step, sequential_impulse or direct")
             ->transform(CLI::CheckedTransformer(method_names));
         app.add_option("--drift-correction", settings.drift_correction,
-                       "sequential_impulse: none, baumgarte or projection")
+                       "sequential_impulse, direct: none, baumgarte or projection; default: the method's")
             ->transform(CLI::CheckedTransformer(drift_names));
         app.add_option("--substeps", settings.substeps, "substeps a step")
             ->check(CLI::Range(1, 1024))
             ->capture_default_str();
-        app.add_option("--iterations", settings.iterations, "sweeps a substep")
-            ->check(CLI::Range(1, 10000))
+        app.add_option("--iterations", settings.iterations, "sweeps a substep; 0: 1, sequential_impulse 8")
+            ->check(CLI::Range(0, 10000))
             ->capture_default_str();
         app.add_option("--relaxations", settings.relaxations, "soft_step: sweeps without bias a substep")
             ->check(CLI::Range(0, 10000))

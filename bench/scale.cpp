@@ -33,7 +33,7 @@ ScaleResult::Size measure_once(std::int64_t people, const ScaleOptions& options)
     size.step_seconds = result.median_step_seconds;
     size.solver_seconds = result.median_solver_seconds;
     const auto stage = [&](Stage s) { return result.times.stages[static_cast<std::size_t>(s)]; };
-    const SolverSettings& settings = run.settings;
+    const SolverSettings settings = run.settings.resolved();
     const double sweeps = stage(Stage::solve) + stage(Stage::relax);
     size.sweep_seconds = sweeps / (static_cast<double>(result.times.steps * settings.substeps *
                                                        (settings.iterations + settings.relaxations)) *

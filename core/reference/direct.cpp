@@ -15,9 +15,10 @@ namespace motley::reference {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-DirectResult World::step_directly(double dt, const SolverSettings& settings,
+DirectResult World::step_directly(double dt, const SolverSettings& asked,
                                   const std::vector<ContactPoint>& points)
 {
+    const SolverSettings settings = asked.resolved();
     const double h = dt / settings.substeps;
     const double warm = last_substep_ > 0 ? std::min(h / last_substep_, 1.0) : 0;
     begin_step();

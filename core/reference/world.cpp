@@ -381,8 +381,9 @@ void World::project(std::vector<ContactRow>& contacts, const SolverSettings& set
     }
 }
 
-void World::step(double dt, const SolverSettings& settings, const std::vector<ContactPoint>& points)
+void World::step(double dt, const SolverSettings& asked, const std::vector<ContactPoint>& points)
 {
+    const SolverSettings settings = asked.resolved();
     const double h = dt / settings.substeps;
     const double warm = settings.warm_start && last_substep_ > 0 ? std::min(1.0, h / last_substep_) : 0;
     const bool soft_step = settings.method == Method::soft_step;

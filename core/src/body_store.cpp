@@ -285,6 +285,15 @@ void BodyStore::derive()
     }
 }
 
+void BodyStore::restore_planar_inertia()
+{
+    BodyRows& r = rows(BodyKind::planar);
+    for (std::uint32_t row = 1; row < r.size(); ++row) {
+        const std::uint32_t slot = r.slot[row];
+        if (slot != 0 && contained[slot] == 0) r.delta[std::size_t{4} * row + 3] = inverse_inertias[slot];
+    }
+}
+
 int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, const Flight& flight,
                       std::uint32_t& contained_slot)
 {

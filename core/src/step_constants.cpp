@@ -24,12 +24,12 @@ void SolverSettings::validate() const
     }
     if (bad_contacts < BadContacts::refuse || bad_contacts > BadContacts::skip)
         refuse("SolverSettings.bad_contacts", static_cast<double>(bad_contacts), "refuse or skip");
-    if (drift_correction < DriftCorrection::none || drift_correction > DriftCorrection::projection) {
+    if (drift_correction < DriftCorrection::by_method || drift_correction > DriftCorrection::projection) {
         refuse("SolverSettings.drift_correction", static_cast<double>(drift_correction),
-               "none, baumgarte or projection");
+               "by_method, none, baumgarte or projection");
     }
     check("SolverSettings.substeps", substeps, 1, 1024, "1 to 1024");
-    check("SolverSettings.iterations", iterations, 1, 10000, "1 to 10000");
+    check("SolverSettings.iterations", iterations, 0, 10000, "0 (the method's) or 1 to 10000");
     check("SolverSettings.relaxations", relaxations, 0, 10000, "0 to 10000");
     check("SolverSettings.projections", projections, 0, 10000, "0 to 10000");
     constexpr double big = 1e9;
@@ -47,6 +47,17 @@ void SolverSettings::validate() const
     check("SolverSettings.restitution_threshold", restitution_threshold, 0, big, "0 to 1e9 (m/s)");
     check("SolverSettings.baumgarte", baumgarte, 0, 1, "0 to 1");
     check("SolverSettings.penetration_slop", penetration_slop, 0, big, "0 to 1e9 (m)");
+}
+
+SolverSettings SolverSettings::resolved() const
+{
+    SolverSettings settings = *this;
+    const bool sweeps_rigidly = method == Method::sequential_impulse;
+    if (iterations == 0) settings.iterations = sweeps_rigidly ? 8 : 1;
+    if (drift_correction == DriftCorrection::by_method)
+        settings.drift_correction =
+            sweeps_rigidly && !exact_joints ? DriftCorrection::projection : DriftCorrection::baumgarte;
+    return settings;
 }
 
 Softness soft(float hertz, float damping_ratio, float substep)

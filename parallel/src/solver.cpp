@@ -255,7 +255,7 @@ void Solver::Impl::decide_on_blocks(const Scene& scene)
 /// The host's settings, with as much work as its budget has room for.
 void Solver::Impl::pick_settings()
 {
-    settings = asked;
+    settings = asked.resolved();
     if (asked.budget_ms == 0) return;
     int& work = asked.method == Method::soft_step ? settings.substeps : settings.iterations;
     work = budget.units_within(static_cast<double>(asked.budget_ms) * 1e-3, work);
@@ -287,6 +287,7 @@ void Solver::Impl::solve_substeps(Scene& scene, float dt, StepReport& report)
     }
     sweeper.begin_free_groups();
     sweeper.transfer(&ConstraintKernels::prepare);
+    if (layout.is_overloaded()) sweeper.sweep(&ConstraintKernels::stiffen);
     // Where nothing has to be known of all between them, a patch is solved, moved and relaxed at one visit.
     const int once = visits_patches_once() ? 1 : 0;
     if (once != 0) sweeper.list_beside_patches();
@@ -506,6 +507,7 @@ void Solver::Impl::move_bodies(Scene& scene, StepReport& report)
 {
     std::uint32_t first_slot = 0;
     report.bodies_contained = sweeper.commit(scene.bodies(), first_slot);
+    if (layout.is_overloaded()) scene.bodies().restore_planar_inertia();
     if (report.bodies_contained == 0) return;
     report.first_contained = scene.bodies().id_of_slot(first_slot);
     scene.bodies().contained_count += static_cast<std::size_t>(report.bodies_contained);

@@ -5,6 +5,7 @@
 // that blocks, their order and so every bit do not depend on the machine.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "motley/core/body_store.h"
@@ -111,6 +112,8 @@ struct KernelContext {
     Replay replay = Replay::nothing;
     bool bodies_are_far = false;  ///< more than a core keeps at hand: sweeps ask for the next block's in time
     BodyArrays bodies[body_kind_count];
+    /// Set by prepare where a joint pulls harder than a substep can follow: then `stiffen` is to be run. See tension.h.
+    std::atomic<bool>* overloaded = nullptr;
 };
 
 /// The kernels of one type and pair: each runs over blocks begin ... end - 1.
@@ -119,6 +122,7 @@ struct ConstraintKernels {
     using Transfer = void (*)(const KernelContext&, const BlockStreams&, const ConstraintData&,
                               std::int32_t begin, std::int32_t end);
     Transfer prepare = nullptr;  ///< definitions and memory -> rows and impulses
+    Sweep stiffen = nullptr;     ///< for this step, inertias of what bears heavy loads; null for what pulls at no arm
     Sweep warm_start = nullptr;
     Sweep solve = nullptr;
     Sweep relax = nullptr;
@@ -131,6 +135,7 @@ struct ConstraintKernels {
     /// CopyBody). Null for pairs with a particle or planar body, and for types that bounce.
     using CopiesSweep = void (*)(const KernelContext&, const BlockStreams&, std::int32_t block, float* body_a,
                                  float* body_b);
+    CopiesSweep stiffen_copies = nullptr;
     CopiesSweep warm_start_copies = nullptr;
     CopiesSweep solve_copies = nullptr;
     CopiesSweep relax_copies = nullptr;

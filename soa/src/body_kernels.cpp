@@ -1,5 +1,4 @@
 // What moves bodies, by row and as copies of figures, and sees what sweeps do to them, for one instruction set: see constraint_kernels.cpp.
-#include "figure.h"
 #include "kernel_prelude.h"
 
 namespace motley {

@@ -12,6 +12,7 @@ void sweep(const KernelContext& context, const FigureBlock& block,
     for (std::size_t i = 0; i < joints.size(); ++i) {
         if (joints[i].in_tree) continue;
         const FigureBlock::Joint& joint = block.joints[i];
+        if (joint.kernels->*kernel == nullptr) continue;
         (joint.kernels->*kernel)(context, joint.streams, joint.block, block.body(joints[i].a),
                                  block.body(joints[i].b));
     }
@@ -82,6 +83,8 @@ void step_figure(const KernelContext& context, const FigureKernels& kernels, con
     const bool relaxes = steps.relaxations > 0;
     transfer(context, block, data, &ConstraintKernels::prepare);
     kernels.load(context, block);
+    if (context.overloaded->load(std::memory_order_relaxed))
+        sweep(context, block, &ConstraintKernels::stiffen_copies);
     for (int substep = 0; substep < steps.substeps; ++substep) {
         kernels.integrate_velocities(context, block);
         if (has_tree && (substep == 0 || !relaxes)) factor_tree(context, kernels, block);

@@ -96,6 +96,13 @@ template <class Body>
     store_velocity(arrays.velocity, offsets, body, count);
 }
 
+[[gnu::always_inline]] inline void store_tensor(float* tensors, const std::int32_t* offsets,
+                                                const Sym3<Lanes>& i, int count)
+{
+    store_quads(tensors, offset_floats, offsets, {i.xx, i.xy, i.xz, i.yy}, count);
+    store_quads(tensors + 4, offset_floats, offsets, {i.yz, i.zz, Lanes(0), Lanes(0)}, count);
+}
+
 /// A turned body has turned inertia.
 template <BodyKind kind>
 [[gnu::always_inline]] inline void turn_inertia(const BodyArrays& arrays, const std::int32_t* offsets,
@@ -125,10 +132,7 @@ template <BodyKind kind>
     store_quads(arrays.delta, offset_floats, offsets, {body.delta.x, body.delta.y, body.delta.z, Lanes(0)},
                 count);
     store_quads(arrays.delta + 4, offset_floats, offsets, {q.x, q.y, q.z, q.w}, count);
-    const Sym3<Lanes>& i = body.inverse_inertia;
-    store_quads(arrays.world_inverse_inertia, offset_floats, offsets, {i.xx, i.xy, i.xz, i.yy}, count);
-    store_quads(arrays.world_inverse_inertia + 4, offset_floats, offsets, {i.yz, i.zz, Lanes(0), Lanes(0)},
-                count);
+    store_tensor(arrays.world_inverse_inertia, offsets, body.inverse_inertia, count);
 }
 [[gnu::always_inline]] inline void store_delta(const BodyArrays&, const std::int32_t*,
                                                const Body<BodyKind::fixed>&, int)
@@ -140,6 +144,11 @@ template <BodyKind kind>
 {
     store_row(body.linear, lanes);
     store_row(body.angular, lanes + 4 * block_lanes);
+}
+[[gnu::always_inline]] inline void store_copy_inertia(const Body<BodyKind::rigid>& body, float* lanes)
+{
+    store_row(body.inverse_inertia, lanes + CopyBody::inverse_inertia * block_lanes);
+    store_row(body.inverse_inertia, lanes + CopyBody::start_inertia * block_lanes);
 }
 /// Asks for the rows of a whole block, with or without its displacements. Fixed bodies are few and stay in cache.
 template <BodyKind kind, bool delta>

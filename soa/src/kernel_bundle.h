@@ -197,6 +197,19 @@ template <BodyKind kind_a, BodyKind kind_b, bool delta>
     prefetch_bodies<kind_b, delta>(b, bodies.b);
 }
 
+/// What a body's inertia is for this step: when it begins, nothing has turned yet.
+template <BodyKind kind>
+[[gnu::noinline]] void store_inertia(const BodyArrays& arrays, const std::int32_t* offsets,
+                                     const Body<kind>& body, int count)
+{
+    if (!arrays.can_move) return;
+    if constexpr (kind == BodyKind::planar) store_delta(arrays, offsets, body, count);
+    if constexpr (kind == BodyKind::rigid) {
+        for (float* tensors : {arrays.world_inverse_inertia, arrays.start_inverse_inertia})
+            store_tensor(tensors, offsets, body.inverse_inertia, count);
+    }
+}
+
 /// What a position solve did to a body: its displacement, and its inertia turned along.
 template <BodyKind kind>
 [[gnu::noinline]] void store_displaced(const BodyArrays& arrays, const std::int32_t* offsets,

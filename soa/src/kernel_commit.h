@@ -67,10 +67,7 @@ inline void turn_inertia(const BodyArrays& arrays, std::int32_t first, const Tur
                                       load_lanes(turns.z + lane), load_lanes(turns.w + lane)},
                           body);
         for (float* tensors : {arrays.world_inverse_inertia, arrays.start_inverse_inertia}) {
-            store_quads(tensors, offset_floats, index.offsets, {world.xx, world.xy, world.xz, world.yy},
-                        index.count);
-            store_quads(tensors + 4, offset_floats, index.offsets, {world.yz, world.zz, Lanes(0), Lanes(0)},
-                        index.count);
+            store_tensor(tensors, index.offsets, world, index.count);
         }
     }
 }

@@ -135,7 +135,44 @@ struct Kernels {
                               bundle.row);
                 }
                 store_row(impulse, bundle.impulse);
+                if constexpr (pulls_at_arms) note_overload(context, load_row<Row>(bundle.row), impulse, a, b);
                 if (bundle.sum != nullptr) clear(bundle.sum);
+            });
+        }
+    }
+
+    static constexpr bool pulls_at_arms = requires(const Row& row, const Impulse& impulse)
+    {
+        Type::template tension<Lanes>(row, impulse);
+    };
+    static void note_overload(const KernelContext& context, const Row& row, const Impulse& impulse,
+                              const A& a, const B& b)
+    {
+        const Tension<Lanes> tension = Type::template tension<Lanes>(row, impulse);
+        const Lanes h(context.step.substep);
+        alignas(64) float beyond[Lanes_width];
+        store_lanes(unbearable_tension(a, tension.arm_a, tension.push_a, h) +
+                        unbearable_tension(b, tension.arm_b, tension.push_b, h),
+                    beyond);
+        for (const float k : beyond) {
+            if (k > 0 && context.overloaded != nullptr)
+                context.overloaded->store(true, std::memory_order_relaxed);
+        }
+    }
+    static void stiffen(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
+                        std::int32_t end)
+    {
+        const Lanes h(context.step.substep);
+        for (std::int32_t block = begin; block < end; ++block) {
+            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+                const Tension<Lanes> tension = Type::template tension<Lanes>(
+                    load_row<Row>(bundle.row), load_row<Impulse>(bundle.impulse));
+                A a = bundle.load_a();
+                B b = bundle.load_b();
+                motley::stiffen(a, tension.arm_a, tension.push_a, h);
+                motley::stiffen(b, tension.arm_b, tension.push_b, h);
+                store_inertia(bundle.arrays_a, bundle.offsets_a, a, bundle.count);
+                store_inertia(bundle.arrays_b, bundle.offsets_b, b, bundle.count);
             });
         }
     }
@@ -292,6 +329,22 @@ struct Kernels {
     static constexpr bool has_copies =
         !Type::has_restitution && kind_a == BodyKind::rigid && kind_b == BodyKind::rigid;
 
+    static void stiffen_copies(const KernelContext& context, const BlockStreams& streams, std::int32_t block,
+                               float* body_a, float* body_b)
+    {
+        const Lanes h(context.step.substep);
+        for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+            const Tension<Lanes> tension =
+                Type::template tension<Lanes>(load_row<Row>(bundle.row), load_row<Impulse>(bundle.impulse));
+            A a = load_row<A>(body_a + bundle.lane);
+            B b = load_row<B>(body_b + bundle.lane);
+            motley::stiffen(a, tension.arm_a, tension.push_a, h);
+            motley::stiffen(b, tension.arm_b, tension.push_b, h);
+            store_copy_inertia(a, body_a + bundle.lane);
+            store_copy_inertia(b, body_b + bundle.lane);
+        });
+    }
+
     static void warm_start_copies(const KernelContext& context, const BlockStreams& streams,
                                   std::int32_t block, float* body_a, float* body_b)
     {
@@ -383,6 +436,8 @@ struct Kernels {
     static void enter_rare(ConstraintKernels& kernels)
     {
         if constexpr (Type::has_restitution) kernels.restitute = restitute;
+        if constexpr (pulls_at_arms) kernels.stiffen = stiffen;
+        if constexpr (pulls_at_arms && has_copies) kernels.stiffen_copies = stiffen_copies;
         kernels.project = project;
     }
 };

@@ -10,9 +10,11 @@
 #include <xsimd/xsimd.hpp>
 #endif
 
+#include "figure.h"
 #include "kernel_entries.h"
 #include "motley/core/equality_row.h"
 #include "motley/core/joint_pose.h"
 #include "motley/core/joint_report.h"
 #include "motley/core/lane_body.h"
 #include "motley/core/lane_residual.h"
+#include "motley/core/tension.h"

@@ -271,6 +271,8 @@ void Layout::point_at(Scene& scene, const StepConstants& step)
                                 static_cast<BodyKind>(kind) != BodyKind::fixed};
     }
     context.bodies_are_far = swept > second_level_cache();
+    overloaded_ = false;
+    context.overloaded = &overloaded_;
 }
 
 void Layout::report(StepReport& report) const

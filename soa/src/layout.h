@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,6 +51,8 @@ class Layout {
     /// The step's numbers and the rows of the bodies.
     KernelContext context;
     void point_at(Scene& scene, const StepConstants& step);
+    /// Once the joints are prepared: some pull harder than a substep can follow (tension.h).
+    [[nodiscard]] bool is_overloaded() const { return overloaded_; }
 
     [[nodiscard]] const SweepLists& sweeps() const { return sweeps_; }
     [[nodiscard]] std::span<const Placement> joint_placements() const { return joint_placements_; }
@@ -99,6 +102,7 @@ class Layout {
     std::vector<FreeGroups::Tie> ties_;
     std::array<std::vector<std::uint8_t>, body_kind_count> is_jointed_;  ///< by kind and row
     std::array<AlignedVector<float>, body_kind_count> start_along_;      ///< see Flight
+    std::atomic<bool> overloaded_ = false;
     std::array<std::vector<RowRange>, body_kind_count> rows_;
     std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< of each range, where the range begins
     ColourMasks joint_masks_, masks_;

@@ -1,5 +1,4 @@
 // All locks of a figure at once, a copy a lane, for one instruction set: see constraint_kernels.cpp.
-#include "figure.h"
 #include "kernel_prelude.h"
 
 namespace motley {

@@ -597,7 +597,7 @@ TEST(BadInput, EverySettingIsChecked)
     refused("method", [](auto& s) { s.method = static_cast<Method>(9); });
     refused("drift_correction", [](auto& s) { s.drift_correction = static_cast<DriftCorrection>(9); });
     refused("substeps", [](auto& s) { s.substeps = 0; });
-    refused("iterations", [](auto& s) { s.iterations = 0; });
+    refused("iterations", [](auto& s) { s.iterations = -1; });
     refused("relaxations", [](auto& s) { s.relaxations = -1; });
     refused("projections", [](auto& s) { s.projections = -1; });
     refused("tolerance", [](auto& s) { s.tolerance = -1; });

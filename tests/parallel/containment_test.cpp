@@ -29,6 +29,7 @@ SolverSettings settings_of(Method method)
 {
     SolverSettings settings;
     settings.method = method;
+    settings.drift_correction = DriftCorrection::baumgarte;  // a push shows in the velocities
     settings.gravity = {0, -10, 0};
     return settings;
 }

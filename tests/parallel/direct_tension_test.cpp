@@ -5,90 +5,18 @@
 #include <cstdio>
 #include <numbers>
 
-#include "rig.h"
+#include "loaded_chain.h"
 
 namespace motley {
 namespace {
 
+using testing::ChainStart;
 using testing::frame_time;
+using testing::LoadedChain;
 
-constexpr double g = 9.81, length = 0.5, inertia_of_unit_mass = 0.0233;
-constexpr int links = 11;  ///< ten of 1 kg, and the load
-
-enum class Start { hanging, level };
-
-struct Chain {
-    Scene scene;
-    std::vector<BodyId> bodies;
-    std::vector<ConstraintId> joints;
-    std::vector<double> masses;
-
-    BodyId add(Vec3<double> position, double angle, double mass, Vec3<float> velocity, float spin)
-    {
-        BodyDefinition link;
-        link.position = position;
-        link.orientation = {0, 0, static_cast<float>(std::sin(angle / 2)),
-                            static_cast<float>(std::cos(angle / 2))};
-        link.mass = static_cast<float>(mass);
-        link.inertia = {0.005F * link.mass,
-                        0,
-                        0,
-                        static_cast<float>(inertia_of_unit_mass) * link.mass,
-                        0,
-                        static_cast<float>(inertia_of_unit_mass) * link.mass};
-        link.linear_velocity = velocity;
-        link.angular_velocity = {0, 0, spin};
-        masses.push_back(mass);
-        bodies.push_back(scene.add_body(link));
-        return bodies.back();
-    }
-    void tie(BodyId a, BodyId b)
-    {
-        const Vec3<float> at_a = a == scene.ground() ? Vec3<float>{} : Vec3<float>{0.25F, 0, 0};
-        joints.push_back(scene.add_joint(BallSocketDefinition{a, b, at_a, {-0.25F, 0, 0}}));
-    }
-    [[nodiscard]] double kinetic_energy() const
-    {
-        double sum = 0;
-        for (std::size_t i = 0; i < bodies.size(); ++i) {
-            const BodyState state = scene.state(bodies[i]);
-            const auto v = convert<double>(state.linear_velocity),
-                       w = convert<double>(state.angular_velocity);
-            sum += masses[i] / 2 * (dot(v, v) + inertia_of_unit_mass * w.z * w.z);
-        }
-        return sum;
-    }
-    [[nodiscard]] double potential_energy() const
-    {
-        double sum = 0;
-        for (std::size_t i = 0; i < bodies.size(); ++i)
-            sum += masses[i] * g * scene.state(bodies[i]).position.y;
-        return sum;
-    }
-    [[nodiscard]] double separation() const
-    {
-        double most = 0;
-        for (const ConstraintId joint : joints)
-            most = std::max(most, std::abs(static_cast<double>(scene.joint_report(joint).error)));
-        return most;
-    }
-};
-
-/// From the ground at the origin. Hanging, it is pushed aside by 1 mm/s.
-Chain loaded_chain(Start start, double load)
-{
-    Chain chain;
-    BodyId before = chain.scene.ground();
-    for (int i = 0; i < links; ++i) {
-        const double middle = length * (i + 0.5), mass = i == links - 1 ? load : 1;
-        const BodyId body = start == Start::level
-                                ? chain.add({middle, 0, 0}, 0, mass, {}, 0)
-                                : chain.add({0, -middle, 0}, -std::numbers::pi / 2, mass, {0.001F, 0, 0}, 0);
-        chain.tie(before, body);
-        before = body;
-    }
-    return chain;
-}
+constexpr double g = LoadedChain::g, length = LoadedChain::length,
+                 inertia_of_unit_mass = LoadedChain::inertia_of_unit_mass;
+constexpr int links = LoadedChain::links;
 
 SolverSettings direct(Vec3<float> gravity)
 {
@@ -99,22 +27,24 @@ SolverSettings direct(Vec3<float> gravity)
 
 TEST(DirectTension, ChainsHoldAnyLoadAndGainNoEnergy)
 {
-    for (const Start start : {Start::hanging, Start::level}) {
+    for (const ChainStart start : {ChainStart::hanging, ChainStart::level}) {
         for (const double load : {1.0, 30.0, 1e3, 1e6}) {
-            Chain chain = loaded_chain(start, load);
+            Scene scene;
+            LoadedChain chain(scene);
+            chain.hang(start, load);
             Solver solver(direct({0, static_cast<float>(-g), 0}));
-            const double before = chain.kinetic_energy() + chain.potential_energy();
-            const double height = (load + 10) * g * length * links;  // what the energy may be one per cent of
+            const double before = chain.energy(), height = chain.height();
             double separation = 0, gain = -height;
             for (int step = 0; step < testing::long_run(600); ++step) {
-                const StepReport report = solver.step(chain.scene, frame_time);
+                const StepReport report = solver.step(scene, frame_time);
                 ASSERT_EQ(report.status, StepStatus::done);
                 ASSERT_EQ(report.direct_unsolved, 0) << load << " kg, step " << step;
                 separation = std::max(separation, chain.separation());
-                gain = std::max(gain, chain.kinetic_energy() + chain.potential_energy() - before);
+                gain = std::max(gain, chain.energy() - before);
             }
             std::printf("%g kg, %s: separation %.2g m, energy grows by %.2g of what the fall can give\n",
-                        load, start == Start::hanging ? "hanging" : "from level", separation, gain / height);
+                        load, start == ChainStart::hanging ? "hanging" : "from level", separation,
+                        gain / height);
             EXPECT_LT(separation, 1e-6) << load;
             EXPECT_LT(gain, 0.01 * height) << load;
         }
@@ -125,7 +55,8 @@ TEST(DirectTension, FloatingChainsKeepMomentumAndAngularMomentum)
 {
     // Links of 1 kg between two weights, spinning end over end and not quite as one.
     for (const double load : {1.0, 100.0, 1e4}) {
-        Chain chain;
+        Scene scene;
+        LoadedChain chain(scene);
         for (int i = 0; i < 12; ++i) {
             const double middle = length * i - 2.75;
             const auto across = static_cast<float>(2 * middle);
@@ -136,7 +67,7 @@ TEST(DirectTension, FloatingChainsKeepMomentumAndAngularMomentum)
         const auto momenta = [&] {
             std::array<double, 3> sums{};
             for (std::size_t i = 0; i < chain.bodies.size(); ++i) {
-                const BodyState state = chain.scene.state(chain.bodies[i]);
+                const BodyState state = scene.state(chain.bodies[i]);
                 const auto v = convert<double>(state.linear_velocity);
                 sums[0] += chain.masses[i] * v.x;
                 sums[1] += chain.masses[i] * v.y;
@@ -151,7 +82,7 @@ TEST(DirectTension, FloatingChainsKeepMomentumAndAngularMomentum)
         Solver solver(direct({}));
         double gain = 0;
         for (int step = 0; step < testing::long_run(300); ++step) {
-            ASSERT_EQ(solver.step(chain.scene, frame_time).direct_unsolved, 0);
+            ASSERT_EQ(solver.step(scene, frame_time).direct_unsolved, 0);
             gain = std::max(gain, chain.kinetic_energy() / energy - 1);
         }
         const std::array<double, 3> after = momenta();
@@ -232,10 +163,11 @@ TEST(DirectTension, AFallingLoadGoesTheWayOfAChainInAngles)
 {
     for (const double load : {1e3, 1e6}) {
         AngleChain truth(load);
-        Chain chain = loaded_chain(Start::level, load);
         double most_before = 1e9;
         for (const int substeps : {4, 16}) {
-            chain = loaded_chain(Start::level, load);
+            Scene scene;
+            LoadedChain chain(scene);
+            chain.hang(ChainStart::level, load);
             truth.angle.setZero();
             truth.rate.setZero();
             SolverSettings settings = direct({0, static_cast<float>(-g), 0});
@@ -243,10 +175,10 @@ TEST(DirectTension, AFallingLoadGoesTheWayOfAChainInAngles)
             Solver solver(settings);
             double most = 0;
             for (int step = 0; step < testing::long_run(60); ++step) {
-                solver.step(chain.scene, frame_time);
+                solver.step(scene, frame_time);
                 const int fine = 1667;  // of 1e-5 s
                 for (int i = 0; i < fine; ++i) truth.step(static_cast<double>(frame_time) / fine);
-                const Vec3<double> at = chain.scene.state(chain.bodies.back()).position;
+                const Vec3<double> at = scene.state(chain.bodies.back()).position;
                 most = std::max(most, (Eigen::Vector2d(at.x, at.y) - truth.load()).norm());
             }
             std::printf("%g kg falling for a second, %d substeps: %.3g m off\n", load, substeps, most);

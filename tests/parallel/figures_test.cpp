@@ -92,6 +92,7 @@ std::vector<SolverSettings> every_way()
     exact.exact_joints = true;
     SolverSettings impulse = soft;
     impulse.method = Method::sequential_impulse;
+    impulse.drift_correction = DriftCorrection::baumgarte;  // figures that project are swept by colour
     impulse.iterations = 6;
     impulse.substeps = 2;
     return {soft, iterated, exact, impulse};

@@ -27,15 +27,16 @@ std::vector<Way> ways()
     soft.gravity = {0, -9.81F, 0};
     SolverSettings iterative = soft;
     iterative.method = Method::sequential_impulse;
+    iterative.drift_correction = DriftCorrection::baumgarte;
     iterative.substeps = 1;
     iterative.iterations = 10;
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 14875667552570768486ULL},
-            {"baumgarte", iterative, 3541547805837373829ULL},
-            {"no drift correction", none, 10926031984305311940ULL},
-            {"projection", projection, 9563929330460450998ULL}};
+    return {{"soft_step", soft, 9802001598944533563ULL},
+            {"baumgarte", iterative, 7495287706603010883ULL},
+            {"no drift correction", none, 6810443865828568700ULL},
+            {"projection", projection, 10622580740719753038ULL}};
 }
 
 /// The state's hash after every step.
@@ -91,8 +92,8 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {10925114057894728310ULL, 1750931909301228940ULL, 11072712023805129995ULL,
-                                    5844263093004727901ULL};
+    const std::uint64_t golden[] = {10925114057894728310ULL, 54875204231851556ULL, 16932254251171265964ULL,
+                                    358815210854192951ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});

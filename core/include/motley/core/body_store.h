@@ -122,6 +122,9 @@ class BodyStore {
     /// `contained_slot`. Returns how many were contained.
     int commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, const Flight& flight,
                std::uint32_t& contained_slot);
+    /// Once a step has committed: planar bodies that were stiffened for it have their own inertia again. That of others is made
+    /// anew by every commit.
+    void restore_planar_inertia();
     /// Gives a contained body its mass back.
     void revive(BodyId body);
     /// Fills in what follows from the rest and is in no file: displacements, inertias, what is counted.

@@ -25,6 +25,7 @@
 //   parameters(definition)                in the units of the lanes
 //   prepare(step, parameters, memory, pose, a, b, impulse&) -> Row      once a step
 //                                         with has_restitution: (..., memory, acceleration, pose, ...), of b beside a
+//   tension<Real>(row, impulse) -> Tension                              if it pulls at the end of an arm: see tension.h
 //   warm_start<Real>(step, row, substep&, impulse, a&, b&)              J and K^-1 where the bodies are now; J^T lambda
 //   solve<Real>(step, swept row, substep, impulse&, a&, b&)             one sweep, as soft as `step` says: rigid to relax
 //   project<Real>(step, row, substep, a&, b&)                           positions along J^T

@@ -22,8 +22,12 @@ enum class Method {
 
 /// What `sequential_impulse` and `direct` do about the position error that velocity constraints leave.
 enum class DriftCorrection {
+    /// projection for `sequential_impulse`, but baumgarte for `direct` and with `exact_joints`
+    by_method,
     none,  ///< nothing: shows the drift
-    baumgarte,  ///< adds beta C / h to the velocity constraint; `direct` also holds what that promises where a substep ends
+    /// Adds beta C / h to the velocity constraint; `direct` also holds what that promises where a substep ends. Sweeps that
+    /// have not converged leave some of it in the velocities: long or loaded chains gain energy.
+    baumgarte,
     projection,  ///< moves positions along J^T after the integration, weighted by inverse mass
 };
 
@@ -37,9 +41,9 @@ enum class BadContacts {
 struct SolverSettings {
     Method method = Method::soft_step;
     int substeps = 4;     ///< 1 to 1024; position and velocity integrations a step
-    int iterations = 1;   ///< 1 to 10000; sweeps a substep (sequential_impulse wants 8 or more)
+    int iterations = 0;   ///< sweeps a substep, 1 to 10000; 0: 1 for soft_step, 8 for sequential_impulse
     int relaxations = 1;  ///< 0 to 10000; soft_step: sweeps without bias a substep
-    /// soft_step, and sequential_impulse without projection: locks (ball-sockets, fixed joints, hinges, sliders and their
+    /// soft_step, and sequential_impulse with baumgarte: locks (ball-sockets, fixed joints, hinges, sliders and their
     /// parts) between rigid bodies are solved all at once, exactly at any mass ratio, where they hang together as a
     /// tree with few loops (24 rows of closing locks at most; nets stay iterative); but not without a fixed body and with a light one
     /// between heavy ones (StepReport::exact_joints_refused). Limits, motors, springs and contacts
@@ -72,13 +76,15 @@ struct SolverSettings {
     float joint_damping_ratio = 2;    ///< >= 0
     float restitution_threshold = 1;  ///< m/s, >= 0: slower impacts do not bounce
 
-    DriftCorrection drift_correction = DriftCorrection::baumgarte;  ///< not of soft_step
+    DriftCorrection drift_correction = DriftCorrection::by_method;  ///< not of soft_step
     float baumgarte = 0.2F;  ///< 0 to 1: share of the error removed a step
     int projections = 2;     ///< 0 to 10000: position sweeps a substep with DriftCorrection::projection
     float penetration_slop = 0.0005F;  ///< m, >= 0: penetration that baumgarte and projection leave alone
 
     /// Throws InvalidInput naming the first field out of its range.
     void validate() const;
+    /// The same with what the method picks picked: `iterations` above 0, and no `by_method`.
+    [[nodiscard]] SolverSettings resolved() const;
 };
 
 }  // namespace motley

@@ -27,7 +27,7 @@ class World {
     std::vector<Joint> joints;  ///< solved in this order, before the contacts
 
     /// One step. Contacts are solved in the order of the list.
-    void step(double dt, const SolverSettings& settings, const std::vector<ContactPoint>& contacts);
+    void step(double dt, const SolverSettings& asked, const std::vector<ContactPoint>& contacts);
 
     /// One step solved simultaneously: every row of a substep at once, to a residual near the rounding of doubles,
     /// instead of one after another; what a sequential method converges to as its iterations grow. Rigid, with the drift
@@ -35,7 +35,7 @@ class World {
     /// with the least norm, contradictory ones are met in the least squares. Restitution comes after the substeps,
     /// contact by contact, as in step(). What bears heavy loads is stiffened against its own turning, and with baumgarte
     /// locks are held at the end of each substep. Impulses of the step before are where the search begins.
-    DirectResult step_directly(double dt, const SolverSettings& settings,
+    DirectResult step_directly(double dt, const SolverSettings& asked,
                                const std::vector<ContactPoint>& contacts);
 
     /// What a contact did, N s: along the normal, and across it, on b.

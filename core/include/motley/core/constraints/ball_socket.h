@@ -14,6 +14,7 @@
 #include "motley/core/joint_pose.h"
 #include "motley/core/joint_report.h"
 #include "motley/core/step_constants.h"
+#include "motley/core/tension.h"
 #include "motley/core/type_list.h"
 
 namespace motley {
@@ -73,6 +74,14 @@ struct BallSocket {
         impulse.push = Real(step.warm_start_scale) * to_space<Vector>(memory.push);
         return Row<Real, A::kind, B::kind>{to_space<Vector>(arm_a), to_space<Vector>(arm_b),
                                            to_space<Vector>(pose.between + arm_b - arm_a)};
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Tension<Real> tension(const Row& row, const Impulse& impulse)
+    {
+        auto arm_a = row.start_arm_a, arm_b = row.start_arm_b;
+        meet_half_way(arm_a, arm_b, row.start_error);
+        return {to_three(arm_a), to_three(arm_b), to_three(-impulse.push), to_three(impulse.push)};
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>

@@ -16,6 +16,7 @@
 #include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
 #include "motley/core/limit.h"
+#include "motley/core/tension.h"
 #include "motley/core/type_list.h"
 
 namespace motley {
@@ -108,6 +109,14 @@ struct Distance {
         impulse.spring = Real(step.warm_start_scale) * memory.spring;
         impulse.limit = Real(step.warm_start_scale) * memory.limit;
         return row;
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Tension<Real> tension(const Row& row, const Impulse& impulse)
+    {
+        const auto along = inverse_or_zero(square_root(dot(row.start_between, row.start_between))) *
+                           ((impulse.spring + impulse.limit) * row.start_between);
+        return {to_three(row.start_arm_a), to_three(row.start_arm_b), to_three(-along), to_three(along)};
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>

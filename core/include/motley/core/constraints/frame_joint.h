@@ -20,6 +20,7 @@
 #include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
 #include "motley/core/small_system.h"
+#include "motley/core/tension.h"
 #include "motley/core/type_list.h"
 #include "motley/core/wrench.h"
 
@@ -127,6 +128,23 @@ struct FrameJoint {
         row.in_sweep = softness_or(step, joint.hertz, joint.damping_ratio, step.joint);
         for (int i = 0; i < rows; ++i) impulse.lambda[i] = Real(step.warm_start_scale) * memory.lambda[i];
         return row;
+    }
+
+    template <class Real, class Row, class Impulse>
+    requires(has_arms) static Tension<Real> tension(const Row& row, const Impulse& impulse)
+    {
+        Vec3<Real> arm_a = row.start.arm_a, arm_b = row.start.arm_b, push{Real(0), Real(0), Real(0)};
+        if constexpr (has_axes) {
+            Vec3<Real> e[3];
+            Real error[rows];
+            linear_rows_of(row.start_frame_a, row.start.separation, e, error);
+            for (int i = 0; i < linear_rows; ++i) push = push + impulse.lambda[i] * e[i];
+            arm_a = arm_a + row.start.separation;
+        } else {
+            push = {impulse.lambda[0], impulse.lambda[1], impulse.lambda[2]};
+            meet_half_way(arm_a, arm_b, row.start.separation);
+        }
+        return {arm_a, arm_b, -push, push};
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>

@@ -1,0 +1,182 @@
+// Light links that bear heavy loads, swept. Independent evidence: conservation of energy and momenta, and the give of a
+// soft joint, T / (m w^2).
+#include <cstdio>
+#include <functional>
+#include <numbers>
+
+#include "loaded_chain.h"
+
+namespace motley {
+namespace {
+
+using testing::ChainStart;
+using testing::frame_time;
+using testing::LoadedChain;
+
+struct Way {
+    const char* name;
+    SolverSettings settings;
+};
+
+std::vector<Way> default_ways()
+{
+    std::vector<Way> ways{{"soft_step", {}}, {"sequential_impulse", {}}, {"exact_joints", {}}};
+    ways[1].settings.method = Method::sequential_impulse;
+    ways[2].settings.exact_joints = true;
+    for (Way& way : ways) way.settings.gravity = {0, static_cast<float>(-LoadedChain::g), 0};
+    return ways;
+}
+
+struct Swing {
+    double separation = 0;
+    double gain = 0;  ///< of energy, as a share of what the fall can give
+    std::int64_t in_lockstep = 0;
+};
+
+Swing swing(Scene& scene, const std::vector<LoadedChain>& chains, const SolverSettings& settings, int steps)
+{
+    Solver solver(settings);
+    std::vector<double> before;
+    for (const LoadedChain& chain : chains) before.push_back(chain.energy());
+    Swing swing;
+    for (int step = 0; step < steps; ++step) {
+        const StepReport report = solver.step(scene, frame_time);
+        EXPECT_EQ(report.status, StepStatus::done);
+        EXPECT_EQ(report.bodies_contained, 0);
+        swing.in_lockstep = report.joints_in_lockstep;
+        for (std::size_t i = 0; i < chains.size(); ++i) {
+            swing.separation = std::max(swing.separation, chains[i].separation());
+            swing.gain = std::max(swing.gain, (chains[i].energy() - before[i]) / chains[i].height());
+        }
+    }
+    return swing;
+}
+
+const char* name_of(ChainStart start)
+{
+    return start == ChainStart::hanging ? "hanging" : "from level";
+}
+
+/// What the joints of the default give way by under a load that has fallen from level, m: three times its weight at two links of 1 kg, at 60 Hz.
+/// Hanging, it is let go unstretched, and goes twice as far as its weight alone would pull it.
+double give(ChainStart start, double load)
+{
+    const double w = 2 * std::numbers::pi * 60,
+                 pull = (start == ChainStart::level ? 3 : 2) * load * LoadedChain::g;
+    return pull / (0.5 * w * w);
+}
+
+TEST(Tension, ChainsGainNoEnergyUnderAnyLoad)
+{
+    for (const Way& way : default_ways()) {
+        for (const ChainStart start : {ChainStart::hanging, ChainStart::level}) {
+            for (const double load : {1.0, 30.0, 300.0, 1e3, 1e4, 1e5, 1e6}) {
+                Scene scene;
+                std::vector<LoadedChain> chains{LoadedChain(scene)};
+                chains[0].hang(start, load);
+                const Swing seen = swing(scene, chains, way.settings, testing::long_run(600));
+                std::printf("%s, %s, %g kg: separation %.3g m, energy grows by %.2g\n", way.name,
+                            name_of(start), load, seen.separation, seen.gain);
+                EXPECT_LT(seen.gain, 0.01) << way.name << ", " << load;
+                if (way.settings.exact_joints) {
+                    EXPECT_LT(seen.separation, 1e-3 * std::max(1.0, 10 / load)) << load;
+                } else if (way.settings.method == Method::soft_step && load == 1e3) {
+                    EXPECT_LT(seen.separation, 1.15 * give(start, load));
+                }
+            }
+        }
+    }
+}
+
+template <class Definition>
+void expect_calm(BodyModel model, int count, const char* name)
+{
+    for (const ChainStart start : {ChainStart::hanging, ChainStart::level}) {
+        for (const double load : {1.0, 1e3, 1e6}) {
+            Scene scene;
+            std::vector<LoadedChain> chains;
+            for (int i = 0; i < count; ++i) {
+                chains.emplace_back(scene, model);
+                chains.back().hang<Definition>(start, load, model == BodyModel::planar ? 0 : 2.0 * i);
+            }
+            const Swing seen = swing(scene, chains, default_ways()[0].settings, testing::long_run(600));
+            std::printf("%s, %s, %g kg: separation %.3g m, energy grows by %.2g\n", name, name_of(start),
+                        load, seen.separation, seen.gain);
+            EXPECT_LT(seen.gain, 0.01) << name << ", " << load;
+            EXPECT_EQ(seen.in_lockstep > 0, count > 1);
+        }
+    }
+}
+
+TEST(Tension, NorDoThoseOfHingesOfThePlaneOrInLockstep)
+{
+    expect_calm<HingeDefinition>(BodyModel::rigid, 1, "hinges");
+    expect_calm<FixedDefinition>(BodyModel::rigid, 1, "fixed joints");
+    expect_calm<BallSocketDefinition>(BodyModel::planar, 1, "planar links");
+    expect_calm<HingeDefinition>(BodyModel::planar, 1, "hinges of planar links");
+    expect_calm<BallSocketDefinition>(BodyModel::rigid, 16, "sixteen alike");
+}
+
+TEST(Tension, PlanarBodiesHaveTheirOwnInertiaAgainWhenAStepIsDone)
+{
+    // Closed form: what is cut loose turns by h torque / I and no slower.
+    Scene scene;
+    LoadedChain chain(scene, BodyModel::planar);
+    chain.hang(ChainStart::hanging, 1e4);
+    Solver solver(default_ways()[0].settings);
+    for (int step = 0; step < 30; ++step) solver.step(scene, frame_time);
+    for (const ConstraintId joint : chain.joints) scene.remove_joint(joint);
+    const float before = scene.state(chain.bodies[4]).angular_velocity.z, torque = 0.1F;
+    scene.set_forces({&chain.bodies[4], 1}, {std::array<Vec3<float>, 1>{}.data(), 1},
+                     {std::array<Vec3<float>, 1>{{{0, 0, torque}}}.data(), 1});
+    solver.step(scene, frame_time);
+    EXPECT_NEAR(scene.state(chain.bodies[4]).angular_velocity.z - before,
+                frame_time * torque / static_cast<float>(LoadedChain::inertia_of_unit_mass), 1e-4);
+}
+
+TEST(Tension, FloatingChainsKeepMomentumAndAngularMomentum)
+{
+    // Links of 1 kg between two weights, end over end and not quite as one.
+    for (const double load : {1.0, 100.0, 1e4}) {
+        Scene scene;
+        LoadedChain chain(scene);
+        for (int i = 0; i < 12; ++i) {
+            const double middle = LoadedChain::length * i - 2.75;
+            const auto across = static_cast<float>(2 * middle);
+            chain.add({middle, 0, 0}, 0, i == 0 || i == 11 ? load : 1, {0.1F, across + 0.05F * (i % 2), 0},
+                      2);
+            if (i > 0) chain.tie(chain.bodies[static_cast<std::size_t>(i - 1)], chain.bodies.back());
+        }
+        const auto momenta = [&] {
+            Vec3<double> sums{};
+            for (std::size_t i = 0; i < chain.bodies.size(); ++i) {
+                const BodyState state = scene.state(chain.bodies[i]);
+                const auto v = convert<double>(state.linear_velocity);
+                sums.x += chain.masses[i] * v.x;
+                sums.y += chain.masses[i] * v.y;
+                sums.z += chain.masses[i] *
+                          (state.position.x * v.y - state.position.y * v.x +
+                           LoadedChain::inertia_of_unit_mass * static_cast<double>(state.angular_velocity.z));
+            }
+            return sums;
+        };
+        const Vec3<double> before = momenta();
+        const double energy = chain.kinetic_energy();
+        Solver solver;
+        double gain = 0;
+        for (int step = 0; step < testing::long_run(300); ++step) {
+            solver.step(scene, frame_time);
+            gain = std::max(gain, chain.kinetic_energy() / energy - 1);
+        }
+        const Vec3<double> after = momenta();
+        std::printf("%g kg afloat for 5 s: p %.2g, L %.2g, energy grows by %.2g\n", load,
+                    std::hypot(after.x - before.x, after.y - before.y) / (0.1 * (2 * load + 10)),
+                    std::abs(after.z - before.z) / before.z, gain);
+        EXPECT_NEAR(after.x, before.x, 1e-4 * (2 * load + 10)) << load;
+        EXPECT_NEAR(after.y, before.y, 1e-4 * (2 * load + 10)) << load;
+        EXPECT_LT(gain, 0.01) << load;
+    }
+}
+
+}  // namespace
+}  // namespace motley
