@@ -149,6 +149,7 @@ std::vector<NamedTie> every_tie()
             {"perpendicular_axes/rigid", rigid, frames<PerpendicularAxesDefinition>()},
             {"slide_drive/rigid", rigid, frames<SlideDriveDefinition>(everything<SlideDriveDefinition>)},
             {"twist_drive/rigid", rigid, frames<TwistDriveDefinition>(everything<TwistDriveDefinition>)},
+            {"euler_drive/rigid", rigid, frames<EulerDriveDefinition>(everything<EulerDriveDefinition>)},
             {"swing_limit/rigid", rigid, frames<SwingLimitDefinition>()},
             {"point_servo/rigid", rigid, joint<PointServoDefinition>(at_anchors<PointServoDefinition>)},
             {"angular_servo/rigid", rigid, frames<AngularServoDefinition>()},

@@ -210,13 +210,21 @@ struct JointCases<DriveDefinition<axis>> {
     static constexpr Keeps keeps = Keeps::both_momenta;
     static bool is_passive(const Definition& drive)
     {
-        return drive.spring_hertz == 0 && drive.motor_speed == 0;
+        return !drive.has_spring() && drive.motor_speed == 0 && drive.armature == 0;
     }
     /// A twist is none where the axes point opposite ways: the drive is meant beside a joint that keeps them together, and
     /// near there it throws free bodies about.
     static bool is_regular(const Definition& drive, const BodyState& a, const BodyState& b)
     {
         if (axis == DriveAxis::slide) return true;
+        if (axis == DriveAxis::euler) {
+            const auto axis_of = [](const BodyState& body, const JointFrame& frame,
+                                    const Vec3<double>& local) {
+                return rotate(body.orientation * unit(convert<double>(frame.rotation)), local);
+            };
+            return std::abs(dot(axis_of(a, drive.frame_a, {1, 0, 0}), axis_of(b, drive.frame_b, {0, 0, 1}))) <
+                   0.9;
+        }
         const auto axis_of = [](const BodyState& body, const JointFrame& frame) {
             return rotate(body.orientation * unit(convert<double>(frame.rotation)), Vec3<double>{1, 0, 0});
         };
@@ -239,7 +247,19 @@ struct JointCases<DriveDefinition<axis>> {
         spring.spring_target = 0.1F;
         weak = spring;
         weak.spring_max_force = 0.2F;
-        return {limits, lock, motor, spring, weak};
+        Definition stiff = spring, damper = motor;
+        stiff.spring_hertz = stiff.spring_damping_ratio = 0;
+        stiff.spring_stiffness = axis == DriveAxis::slide ? 200.0F : 20.0F;
+        stiff.spring_damping = axis == DriveAxis::slide ? 3.0F : 0.3F;
+        damper.spring_damping = axis == DriveAxis::slide ? 5.0F : 0.5F;
+        Definition rotor = limits, geared = stiff;
+        rotor.armature = axis == DriveAxis::slide ? 3.0F : 0.3F;
+        geared.armature = 2 * rotor.armature;
+        if (axis == DriveAxis::euler) {
+            lock.angle = spring.angle = damper.angle = EulerAngle::y;
+            motor.angle = stiff.angle = rotor.angle = EulerAngle::z;
+        }
+        return {limits, lock, motor, spring, weak, stiff, damper, rotor, geared};
     }
 };
 

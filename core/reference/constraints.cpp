@@ -105,9 +105,40 @@ Jacobian frame_jacobian(const Body& a, const Body& b, const Frame& frame_a, cons
     return j;
 }
 
-double drive_value(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b, DriveAxis axis)
+namespace {
+
+/// Angles of R = R_x R_y R_z.
+Eigen::Vector3d euler_angles(const Eigen::Matrix3d& r)
+{
+    return {std::atan2(-r(1, 2), r(2, 2)), std::atan2(r(0, 2), std::hypot(r(0, 0), r(0, 1))),
+            std::atan2(-r(0, 1), r(0, 0))};
+}
+
+/// The angular velocity of b in a is E (x', y', z')^T, E the axes of the three hinges that such a rotation is. These are the
+/// rows of E^-1, over what the velocities are in the world.
+Eigen::RowVector3d euler_row(const Eigen::Matrix3d& rotation_a, const Eigen::Matrix3d& rotation_b,
+                             EulerAngle angle)
+{
+    using Eigen::AngleAxisd, Eigen::Vector3d;
+    const Vector3d angles = euler_angles(rotation_a.transpose() * rotation_b);
+    const Eigen::Quaterniond first(AngleAxisd(angles.x(), Vector3d::UnitX()));
+    const Eigen::Quaterniond second = first * AngleAxisd(angles.y(), Vector3d::UnitY());
+    Eigen::Matrix3d axes;
+    axes << Vector3d::UnitX(), first * Vector3d::UnitY(), second * Vector3d::UnitZ();
+    const Eigen::Matrix3d rows = axes.inverse() * rotation_a.transpose();
+    return rows.row(static_cast<int>(angle));
+}
+
+}  // namespace
+
+double drive_value(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b, DriveAxis axis,
+                   EulerAngle angle)
 {
     const Eigen::Quaterniond rotation_a = a.orientation * frame_a.rotation;
+    if (axis == DriveAxis::euler) {
+        const Eigen::Quaterniond q = rotation_a.conjugate() * (b.orientation * frame_b.rotation);
+        return euler_angles(q.toRotationMatrix())(static_cast<int>(angle));
+    }
     if (axis == DriveAxis::slide) {
         return (rotation_a * Eigen::Vector3d::UnitX())
             .dot(point_error(a, b, frame_a.position, frame_b.position));
@@ -117,7 +148,7 @@ double drive_value(const Body& a, const Body& b, const Frame& frame_a, const Fra
 }
 
 Jacobian drive_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
-                        DriveAxis axis)
+                        DriveAxis axis, EulerAngle angle)
 {
     const Eigen::Vector3d x_a = a.orientation * (frame_a.rotation * Eigen::Vector3d::UnitX());
     const Eigen::Vector3d x_b = b.orientation * (frame_b.rotation * Eigen::Vector3d::UnitX());
@@ -125,7 +156,12 @@ Jacobian drive_jacobian(const Body& a, const Body& b, const Frame& frame_a, cons
         const Eigen::Vector3d d = point_error(a, b, frame_a.position, frame_b.position);
         return direction_jacobian(x_a, arm(a, frame_a.position) + d, arm(b, frame_b.position));
     }
-    const Eigen::Vector3d t = (x_a + x_b) / (1 + x_a.dot(x_b));
+    Eigen::Vector3d t = (x_a + x_b) / (1 + x_a.dot(x_b));
+    if (axis == DriveAxis::euler) {
+        t = euler_row((a.orientation * frame_a.rotation).toRotationMatrix(),
+                      (b.orientation * frame_b.rotation).toRotationMatrix(), angle)
+                .transpose();
+    }
     Jacobian j = Jacobian::Zero(1, 12);
     j.block<1, 3>(0, 3) = -t.transpose();
     j.block<1, 3>(0, 9) = t.transpose();

@@ -121,7 +121,9 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
             low = high = 0;
         }
         assembly.fill(at.group, at.first, jacobian, speed(a, b, jacobian) + bias, low, high, guess);
-        assembly.soften(at.group, at.first, count, row.soft.impulse_scale / row.soft.mass_scale);
+        // Softness is a share of K with the rotor, the problem's K is without.
+        const double without = block.armature > 0 ? 1 + block.armature / mass_of(*row.joint, block)(0, 0) : 1;
+        assembly.soften(at.group, at.first, count, row.soft.impulse_scale / row.soft.mass_scale / without);
         RowGroup& group = assembly.group(at.group);
         const int first = static_cast<int>(at.first);
         if (by_contacts) {
@@ -133,6 +135,18 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
             group.cones.push_back({first, static_cast<int>(count), row.most, 0, 0});
         }
         placed.push_back(std::move(at));
+    }
+    // A rotor is a row that wants the speed that it had, as soft as its inertia is small.
+    std::vector<std::pair<std::size_t, const BlockRow*>> rotors;
+    for (const BlockRow& row : blocks) {
+        if (row.index > 0 || row.block.armature == 0) continue;
+        const Joint& joint = *row.joint;
+        const std::size_t at = assembly.open(joint.a, joint.b, 1);
+        assembly.fill(at, 0, row.block.jacobian,
+                      speed(joint.a, joint.b, row.block.jacobian).array() - joint.rotor_speed, -unbounded,
+                      unbounded, VectorXd::Zero(1));
+        assembly.group(at).softness.setConstant(1, 1, 1 / row.block.armature);
+        rotors.emplace_back(at, &row);
     }
     const double beta =
         settings.drift_correction == DriftCorrection::baumgarte ? static_cast<double>(settings.baumgarte) : 0;
@@ -165,6 +179,10 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
         double& peak = blocks[i].joint->peaks[blocks[i].index];
         peak = std::max(peak, impulse(0));
     }
+    for (const auto& [at, row] : rotors) {
+        row->joint->wrench += wrench_of(row->block.jacobian, assembly.group(at).lambda);
+        row->joint->rotor_speed = speed(row->joint->a, row->joint->b, row->block.jacobian)(0);
+    }
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         ContactRow& row = contacts[i];
         const RowGroup& group = assembly.group(group_of_contact[i]);
@@ -182,7 +200,7 @@ double World::position_error() const
     double squares = 0;
     for (const Joint& joint : joints) {
         for (const Block& block : blocks_of(joint)) {
-            if (block.hertz > 0 || block.kind == Block::Kind::motor) continue;
+            if (block.is_spring() || block.kind == Block::Kind::motor) continue;
             const bool limit = block.is_one_sided();
             squares += (limit ? Eigen::VectorXd(block.error.cwiseMin(0.0)) : block.error).squaredNorm();
         }
@@ -197,7 +215,7 @@ void World::project_directly(const std::vector<ContactRow>& contacts, const Solv
     for (const Joint& joint : joints) {
         for (const Block& block : blocks_of(joint)) {
             // Springs and motors are forces, not positions.
-            if (block.hertz > 0 || block.kind == Block::Kind::motor) continue;
+            if (block.is_spring() || block.kind == Block::Kind::motor) continue;
             const bool limit = block.is_one_sided();
             VectorXd error = block.error;
             if (block.kind == Block::Kind::contact)

@@ -100,7 +100,7 @@ std::vector<World::Hold> World::find_holds(double h) const
             const Block& block = blocks[k];
             // Springs and motors are forces, not positions; a limit is held while it bears.
             const bool bears = block.kind == Block::Kind::limit && joint.impulses[k](0) != 0;
-            if (block.hertz > 0 || !(block.kind == Block::Kind::equality || bears)) continue;
+            if (block.is_spring() || !(block.kind == Block::Kind::equality || bears)) continue;
             holds.push_back(
                 {i, k, block.side, block.error + h * block.side * speed(joint.a, joint.b, block.jacobian)});
         }

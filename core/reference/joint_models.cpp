@@ -117,14 +117,16 @@ class DriveModel : public JointModel {
     }
     [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool, double) const override
     {
-        const Jacobian jacobian = drive_jacobian(a, b, frame_a_, frame_b_, axis_);
-        const double value = drive_value(a, b, frame_a_, frame_b_, axis_);
+        const Jacobian jacobian = drive_jacobian(a, b, frame_a_, frame_b_, axis_, drive_.angle);
+        const double value = drive_value(a, b, frame_a_, frame_b_, axis_, drive_.angle);
         std::vector<Block> blocks;
-        if (drive_.spring_hertz > 0) {
+        if (drive_.has_spring()) {
             blocks.push_back({.jacobian = jacobian,
                               .error = scalar(value - static_cast<double>(drive_.spring_target)),
                               .hertz = drive_.spring_hertz,
                               .damping_ratio = drive_.spring_damping_ratio,
+                              .stiffness = drive_.spring_stiffness,
+                              .damping = drive_.spring_damping,
                               .most = drive_.spring_max_force});
         }
         blocks.push_back({.kind = Block::Kind::motor,
@@ -133,6 +135,7 @@ class DriveModel : public JointModel {
                           .speed = scalar(drive_.motor_speed),
                           .most = drive_.motor_max_force});
         blocks.push_back(limit_block(jacobian, value, drive_.lower, drive_.upper));
+        for (Block& block : blocks) block.armature = drive_.armature;
         return blocks;
     }
 
@@ -455,13 +458,6 @@ Model frame_model(const JointFrame& frame_a, const JointFrame& frame_b, const Jo
 Model drive_model(const SlideDriveDefinition& drive, DriveAxis axis)
 {
     return std::make_shared<DriveModel>(drive, axis);
-}
-Model model_of(const TwistDriveDefinition& drive)
-{
-    return drive_model({drive.body_a, drive.body_b, drive.frame_a, drive.frame_b, drive.lower, drive.upper,
-                        drive.motor_speed, drive.motor_max_force, drive.spring_hertz,
-                        drive.spring_damping_ratio, drive.spring_target, drive.spring_max_force},
-                       DriveAxis::twist);
 }
 
 }  // namespace motley::reference

@@ -132,12 +132,14 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
         BlockRow& row = rows[i];
         const Block& block = row.block;
         row.mass = mass_of(joint, block);
+        if (block.armature > 0) row.mass(0, 0) += block.armature;
         if (block.bounds_torque) {
             row.to_force = block.jacobian.rightCols<3>().transpose();
             row.response = inverse_mass.block<3, 3>(3, 3) + inverse_mass.block<3, 3>(9, 9);
         } else {
             row.to_force.setIdentity(block.jacobian.rows(), block.jacobian.rows());
             row.response = block.jacobian * inverse_mass * block.jacobian.transpose();
+            if (block.armature > 0) row.response(0, 0) = 1 / row.mass(0, 0);
         }
         apply(joint, block.jacobian, row.impulse());
     }
@@ -155,6 +157,11 @@ void World::aim(BlockRow& row, const Eigen::VectorXd& error, double h, const Sol
     row.relax_soft = rigid;
     if (block.kind == Block::Kind::motor) {
         row.soft = rigid;
+    } else if (block.stiffness > 0 || block.damping > 0) {
+        // lambda = -h (k (C + h v) + c v), solved for v with v = v_free + K lambda.
+        const double resistance = block.damping + h * block.stiffness, give = 1 / (h * resistance);
+        const double mass = mass_of(*row.joint, block)(0, 0) + block.armature, k = mass > 0 ? 1 / mass : 0;
+        row.soft = row.relax_soft = {block.stiffness / resistance, k / (k + give), give / (k + give)};
     } else if (block.hertz > 0) {
         row.soft = row.relax_soft = softness(block.hertz, block.damping_ratio, h);
     } else if (contact) {
@@ -190,6 +197,13 @@ void World::solve_block(BlockRow& row, double h, const SolverSettings& settings,
     const Eigen::VectorXd& bias = relax ? row.relax_bias : row.bias;
     const Eigen::VectorXd held = row.impulse();
     const double side = row.block.side;
+    // Of an impulse along the row a rotor that goes along takes its share; and of what others did to the speed since.
+    const double rotor = row.block.armature, to_bodies = rotor > 0 ? 1 - rotor / row.mass(0, 0) : 1;
+    if (rotor > 0) {
+        const Eigen::VectorXd excess =
+            speed(joint.a, joint.b, row.block.jacobian).array() - joint.rotor_speed;
+        apply(joint, row.block.jacobian, -rotor * to_bodies * excess);
+    }
     Eigen::VectorXd wanted =
         held - soft.mass_scale * row.mass * (speed(joint.a, joint.b, row.block.jacobian) + side * bias) -
         soft.impulse_scale * held;
@@ -203,7 +217,8 @@ void World::solve_block(BlockRow& row, double h, const SolverSettings& settings,
         wanted = bounded(held, wanted, row.to_force, row.response,
                          row.response.cwiseAbs().rowwise().sum().maxCoeff(), row.bound());
     }
-    apply(joint, row.block.jacobian, wanted - held);
+    apply(joint, row.block.jacobian, to_bodies * (wanted - held));
+    if (rotor > 0) joint.rotor_speed = speed(joint.a, joint.b, row.block.jacobian)(0);
     row.impulse() = wanted;
     double& peak = row.joint->peaks[row.index];
     peak = std::max(peak, wanted(0));
@@ -230,6 +245,7 @@ void World::begin_step()
         const bool recalls = joint.impulses.empty() && !joint.memory.empty();
         for (const Block& block : blocks_of(joint)) {
             joint.approaches.push_back(speed(joint.a, joint.b, block.jacobian)(0));
+            if (block.armature > 0) joint.rotor_speed = joint.approaches.back();
             if (recalls) joint.impulses.emplace_back(Eigen::VectorXd::Zero(block.error.size()));
         }
         if (recalls) joint.model->recall(joint.memory, joint.impulses);
@@ -364,7 +380,7 @@ void World::project(std::vector<ContactRow>& contacts, const SolverSettings& set
         for (std::size_t i = 0; i < count; ++i) {
             const Block block = blocks_of(joint)[i];
             // Springs and motors are forces, not positions.
-            if (block.hertz > 0 || block.kind == Block::Kind::motor || block.kind == Block::Kind::contact)
+            if (block.is_spring() || block.kind == Block::Kind::motor || block.kind == Block::Kind::contact)
                 continue;
             Eigen::VectorXd error = block.error;
             if (block.kind == Block::Kind::limit) error = block.side * error.cwiseMin(0.0);
@@ -462,7 +478,7 @@ void World::land_free_groups(double h, double dt, const SolverSettings& settings
         group.has_joints = true;
         if ((moves(joint.a) && moves(joint.b)) || joint.model->acts_from_world()) continue;
         for (const Block& block : blocks_of(joint)) {
-            const bool is_lock = block.kind == Block::Kind::equality && block.hertz == 0;
+            const bool is_lock = block.kind == Block::Kind::equality && !block.is_spring();
             group.is_held = group.is_held || (is_lock && !block.jacobian.middleCols<3>(6).isZero(0));
         }
     }

@@ -12,14 +12,18 @@ namespace {
 
 constexpr float half_turn = 3.14159265F;
 
+bool is_driven(const AxisSetup& axis)
+{
+    return axis.motor_max_force != 0 || axis.spring_hertz != 0 || axis.spring_stiffness != 0 ||
+           axis.spring_damping != 0 || axis.armature != 0;
+}
 bool is_locked(const AxisSetup& axis)
 {
-    return axis.lower == 0 && axis.upper == 0 && axis.motor_max_force == 0 && axis.spring_hertz == 0;
+    return axis.lower == 0 && axis.upper == 0 && !is_driven(axis);
 }
 bool is_free(const AxisSetup& axis)
 {
-    return std::isinf(axis.lower) && std::isinf(axis.upper) && axis.motor_max_force == 0 &&
-           axis.spring_hertz == 0;
+    return std::isinf(axis.lower) && std::isinf(axis.upper) && !is_driven(axis);
 }
 
 /// The frame turned so that its x axis is its old axis `axis`, right-handed.
@@ -60,12 +64,13 @@ class Assembler {
 
     std::vector<ConstraintId> assemble()
     {
+        check_rotations();
         check_swing();
         try {
             lock();
             for (int axis = 0; axis < 3; ++axis) {
                 if (!is_locked(joint_.position[axis])) drive<DriveAxis::slide>(joint_.position[axis], axis);
-                if (!is_locked(joint_.rotation[axis])) drive<DriveAxis::twist>(joint_.rotation[axis], axis);
+                if (!is_locked(joint_.rotation[axis])) drive_rotation(axis);
             }
             if (joint_.max_swing < half_turn) {
                 ids_.push_back(scene_.add_joint(SwingLimitDefinition{
@@ -86,6 +91,12 @@ class Assembler {
     Locks linear_, angular_;
     std::vector<ConstraintId> ids_;
 
+    void check_rotations() const
+    {
+        if (joint_.rotations != SixDofRotation::about_axes && joint_.rotations != SixDofRotation::euler)
+            refuse("SixDofDefinition.rotations", static_cast<double>(joint_.rotations),
+                   "about_axes or euler");
+    }
     void check_swing() const
     {
         if (!(joint_.max_swing > 0 && joint_.max_swing <= half_turn * 1.0001F))
@@ -126,6 +137,7 @@ class Assembler {
         if (all) add_locks<LinearLock::none, AngularLock::all>(0);
         if (hinge) add_locks<LinearLock::none, AngularLock::swing>(angular_.odd);
         if (angular_.count != 1) return;
+        if (joint_.rotations == SixDofRotation::euler) return drive_rotation(angular_.odd);
         // About z: y of b stays across x of a. About y: z of b does. About x: the twist itself is held.
         if (angular_.odd == 0) drive<DriveAxis::twist>(joint_.rotation[0], 0);
         if (angular_.odd == 1) {
@@ -135,6 +147,15 @@ class Assembler {
         if (angular_.odd == 2) add_locks<LinearLock::none, AngularLock::perpendicular>(0);
     }
 
+    void drive_rotation(int axis)
+    {
+        if (joint_.rotations == SixDofRotation::euler) {
+            drive<DriveAxis::euler>(joint_.rotation[axis], axis);
+        } else {
+            drive<DriveAxis::twist>(joint_.rotation[axis], axis);
+        }
+    }
+
     template <DriveAxis kind>
     void drive(const AxisSetup& axis, int which)
     {
@@ -142,16 +163,25 @@ class Assembler {
         DriveDefinition<kind> drive;
         drive.body_a = joint_.body_a;
         drive.body_b = joint_.body_b;
-        drive.frame_a = turned_to(joint_.frame_a, which);
-        drive.frame_b = turned_to(joint_.frame_b, which);
+        if constexpr (kind == DriveAxis::euler) {
+            drive.frame_a = joint_.frame_a;
+            drive.frame_b = joint_.frame_b;
+            drive.angle = static_cast<EulerAngle>(which);
+        } else {
+            drive.frame_a = turned_to(joint_.frame_a, which);
+            drive.frame_b = turned_to(joint_.frame_b, which);
+        }
         drive.lower = axis.lower;
         drive.upper = axis.upper;
         drive.motor_speed = axis.motor_speed;
         drive.motor_max_force = axis.motor_max_force;
         drive.spring_hertz = axis.spring_hertz;
         drive.spring_damping_ratio = axis.spring_damping_ratio;
+        drive.spring_stiffness = axis.spring_stiffness;
+        drive.spring_damping = axis.spring_damping;
         drive.spring_target = axis.spring_target;
         drive.spring_max_force = axis.spring_max_force;
+        drive.armature = axis.armature;
         ids_.push_back(scene_.add_joint(drive));
     }
 };

@@ -122,7 +122,8 @@ struct ConstraintKernels {
     using Transfer = void (*)(const KernelContext&, const BlockStreams&, const ConstraintData&,
                               std::int32_t begin, std::int32_t end);
     Transfer prepare = nullptr;  ///< definitions and memory -> rows and impulses
-    Sweep stiffen = nullptr;     ///< for this step, inertias of what bears heavy loads; null for what pulls at no arm
+    /// For this step, the inertias of what bears heavy loads (tension.h). Null for what pulls at no arm.
+    Sweep stiffen = nullptr;
     Sweep warm_start = nullptr;
     Sweep solve = nullptr;
     Sweep relax = nullptr;

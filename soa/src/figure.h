@@ -17,8 +17,8 @@ namespace motley {
 /// A body of a block of copies in lanes: fields of sixteen floats in line, the fields of LaneBody first.
 struct CopyBody {
     static constexpr int inverse_inertia = 14;  ///< field, six: of LaneBody
-    static constexpr int acceleration = 20;   ///< field, three; and three of torque
-    static constexpr int start_inertia = 26;  ///< field, six
+    static constexpr int acceleration = 20;     ///< field, three; and three of torque
+    static constexpr int start_inertia = 26;    ///< field, six
     static constexpr int floats = 32 * block_lanes;
 };
 

@@ -436,8 +436,11 @@ struct Kernels {
     static void enter_rare(ConstraintKernels& kernels)
     {
         if constexpr (Type::has_restitution) kernels.restitute = restitute;
-        if constexpr (pulls_at_arms) kernels.stiffen = stiffen;
-        if constexpr (pulls_at_arms && has_copies) kernels.stiffen_copies = stiffen_copies;
+        // So few bodies bear such loads that one copy of this, of one lane, serves every instruction set.
+        if constexpr (pulls_at_arms && Lanes_width == 1) {
+            kernels.stiffen = stiffen;
+            if constexpr (has_copies) kernels.stiffen_copies = stiffen_copies;
+        }
         kernels.project = project;
     }
 };

@@ -43,13 +43,24 @@ constexpr bool is_mixed(BodyKind a, BodyKind b)
 {
     return a != b && a != BodyKind::fixed && b != BodyKind::fixed;
 }
+/// See joint_type.h.
+template <class Type>
+constexpr bool is_rare()
+{
+    if constexpr (requires { Type::is_rare; }) {
+        return Type::is_rare;
+    } else {
+        return false;
+    }
+}
 /// Bodies of one model, or of one and fixed ones; but not joints of planar bodies about axes, whose rows are mostly of what the
 /// plane forbids: a ball-socket is the hinge of the plane, a distance its rope.
 template <class Type, BodyKind a, BodyKind b>
 constexpr bool is_usual()
 {
-    return !is_mixed(a, b) &&
-           !((a == BodyKind::planar || b == BodyKind::planar) && requires { Type::needs_bodies_that_turn; });
+    return !is_mixed(a, b) && !((a == BodyKind::planar || b == BodyKind::planar) && requires {
+        Type::needs_bodies_that_turn;
+    }) && !is_rare<Type>();
 }
 /// Joints between moving bodies of two models are few in any scene: one copy of them, of one lane, serves every instruction
 /// set, with the same bits. See kernel_table().

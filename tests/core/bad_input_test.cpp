@@ -310,6 +310,7 @@ TEST(BadInput, EveryFieldOfAJointBetweenFramesIsChecked)
     expect_frames_are_checked<FixedDefinition>();
     expect_frames_are_checked<PointOnLineDefinition>();
     expect_frames_are_checked<TwistDriveDefinition>();
+    expect_frames_are_checked<EulerDriveDefinition>();
     expect_frames_are_checked<SwingLimitDefinition>();
     expect_frames_are_checked<AngularServoDefinition>();
     using Hinge = HingeDefinition;
@@ -344,6 +345,16 @@ TEST(BadInput, EveryFieldOfAJointBetweenFramesIsChecked)
         frames<Slide>(
             "spring damping", [](Slide& j, Fixture&) { j.spring_damping_ratio = -1; }, "spring_damping_ratio",
             "-1"),
+        frames<Slide>(
+            "spring stiffness", [](Slide& j, Fixture&) { j.spring_stiffness = -2; }, "spring_stiffness",
+            "-2"),
+        frames<Slide>(
+            "damper", [](Slide& j, Fixture&) { j.spring_damping = infinity; }, "spring_damping", "inf"),
+        frames<Slide>(
+            "rotor", [](Slide& j, Fixture&) { j.armature = -1; }, "armature", "-1"),
+        frames<Slide>(
+            "two springs", [](Slide& j, Fixture&) { j.spring_hertz = 3, j.spring_stiffness = 1; },
+            "spring_hertz", "3"),
         frames<Slide>(
             "spring target", [](Slide& j, Fixture&) { j.spring_target = infinity; }, "spring_target", "inf"),
         frames<Slide>(

@@ -170,6 +170,34 @@ TEST(Reference, DriveJacobiansMatchFiniteDifferencesAlongMotionsThatTheirJointsA
     });
 }
 
+TEST(Reference, EulerAnglesAreThoseOfThreeHingesAndTheirRowsMatchFiniteDifferences)
+{
+    using Eigen::AngleAxisd, Eigen::Vector3d;
+    Random random(12);
+    for_every_pair([&](const Pair& p) {
+        const Eigen::Quaterniond in_a(
+            Eigen::Quaterniond(random.symmetric(), random.symmetric(), random.symmetric(), random.symmetric())
+                .normalized());
+        const Vector3d angles(3 * random.symmetric(), 1.4 * random.symmetric(), 3 * random.symmetric());
+        const Eigen::Quaterniond three_hinges = AngleAxisd(angles.x(), Vector3d::UnitX()) *
+                                                AngleAxisd(angles.y(), Vector3d::UnitY()) *
+                                                AngleAxisd(angles.z(), Vector3d::UnitZ());
+        const Frame a{p.local_a, in_a},
+            b{p.local_b, p.b.orientation.conjugate() * (p.a.orientation * in_a * three_hinges)};
+        for (const EulerAngle angle : {EulerAngle::x, EulerAngle::y, EulerAngle::z}) {
+            const auto value = [&](const Pair& q) {
+                return drive_value(q.a, q.b, a, b, DriveAxis::euler, angle);
+            };
+            EXPECT_NEAR(value(p), angles(static_cast<int>(angle)), 1e-10);
+            const double difference = (value(p.moved(epsilon)) - value(p.moved(-epsilon))) / (2 * epsilon);
+            const double analytic =
+                (drive_jacobian(p.a, p.b, a, b, DriveAxis::euler, angle) * p.velocity())(0);
+            EXPECT_NEAR(difference, analytic,
+                        tolerance * (1 + std::abs(analytic)) / std::pow(std::cos(angles.y()), 2));
+        }
+    });
+}
+
 TEST(Reference, SwingJacobianMatchesFiniteDifferences)
 {
     Random random(11);

@@ -49,6 +49,7 @@ TEST(Readme, BytesALaneAreWhatTheKernelsStream)
                                 "perpendicular axes",
                                 "slide drive",
                                 "twist drive",
+                                "Euler drive",
                                 "swing limit",
                                 "point servo",
                                 "angular servo",

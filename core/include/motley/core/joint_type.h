@@ -11,6 +11,8 @@
 //   using Definition = ...;                                     what the host says
 //   static constexpr bool has_restitution, recomputes_each_substep;
 //   static constexpr bool needs_bodies_that_turn = true;        if particles make no sense
+//   static constexpr bool is_rare = true;                       if few scenes have it: AVX-512 then runs it in lanes of AVX2, SSE2 in
+//                                                             scalar ones
 //   locks_place(definition) -> bool        if what it ties to the world can never fly freely
 //   static constexpr bool only_pulls = true;                    if it is a force: its C is then no error of the scene
 //   template <class Real> struct Parameters, Memory;            per joint: of the definition; from step to step

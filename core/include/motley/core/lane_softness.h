@@ -30,6 +30,44 @@ LaneSoftness<Real> softness_or(const StepConstants& step, const Real& hertz, con
             select(own, a3, Real(usual.impulse_scale)), select(own, Real(1), Real(0))};
 }
 
+/// A spring of a row: of a frequency on the row's own effective mass, or of a stiffness k and a damping c. Both implicit:
+///
+///   h (k C' + c v') = -lambda',  C' = C + h v'    =>    v' + k / (c + h k) C + lambda' / (h (c + h k)) = 0.
+template <class Real>
+struct SpringSoftness {
+    Real rate;  ///< 1/s
+    Real mass_scale,
+        impulse_scale;  ///< of a frequency; where there is no spring nothing is wanted and nothing kept
+    Real give;          ///< 1 / (h (c + h k)); 0 where the spring is no stiffness
+};
+template <class Real>
+SpringSoftness<Real> spring_softness(const StepConstants& step, const Real& hertz, const Real& damping_ratio,
+                                     const Real& stiffness, const Real& damping)
+{
+    const LaneSoftness<Real> own = softness_or(step, hertz, damping_ratio, Softness{0, 0, 1});
+    const Real h(step.substep), resistance = damping + h * stiffness, zero(0);
+    const auto is_stiffness = h * resistance > zero;
+    const Real safe = select(is_stiffness, resistance, Real(1));
+    return {select(is_stiffness, stiffness / safe, own.rate), own.mass_scale, own.impulse_scale,
+            select(is_stiffness, Real(1) / (h * safe), zero)};
+}
+
+/// delta lambda = -mass (J v + rate C) - kept lambda.
+template <class Real>
+struct SoftRow {
+    Real rate, mass, kept;
+};
+/// With K = J M^-1 J^T where the bodies are now, and its inverse, 0 where nothing can move.
+template <class Real>
+SoftRow<Real> soft_row(const SpringSoftness<Real>& spring, const Real& inverse_mass, const Real& mass)
+{
+    const Real zero(0);
+    const auto is_stiffness = (spring.give > zero) & (mass > zero);
+    const Real inverse = Real(1) / select(is_stiffness, inverse_mass + spring.give, Real(1));
+    return {spring.rate, select(is_stiffness, inverse, spring.mass_scale * mass),
+            select(is_stiffness, spring.give * inverse, spring.impulse_scale)};
+}
+
 /// What a sweep solves with: a spring as it is, everything else as soft as the sweep's constants say, which are rigid when
 /// it relaxes.
 template <class Real>

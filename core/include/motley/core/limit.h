@@ -80,11 +80,10 @@ Real beyond_range(const Real& c, const Real& lower, const Real& upper)
 
 /// Of a soft C = 0, bounded. A spring is physics: relaxation leaves it as it is.
 template <class Real>
-Real spring_impulse(const LaneSoftness<Real>& spring, const Real& c, const Real& speed, const Real& mass,
-                    const Real& held, const Real& most)
+Real spring_impulse(const SoftRow<Real>& spring, const Real& c, const Real& speed, const Real& held,
+                    const Real& most)
 {
-    const Real wanted =
-        held - spring.mass_scale * mass * (speed + spring.rate * c) - spring.impulse_scale * held;
+    const Real wanted = held - spring.mass * (speed + spring.rate * c) - spring.kept * held;
     return maximum(minimum(wanted, most), -most);
 }
 

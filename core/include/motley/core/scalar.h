@@ -85,5 +85,12 @@ Real arc_tangent2(const Real& y, const Real& x)
     const Real up = select(steep, Real(1.5707963F) - angle, angle);
     return select(y < Real(0), -up, up);
 }
+/// The same for any x, -pi to pi.
+template <class Real>
+Real full_arc_tangent2(const Real& y, const Real& x)
+{
+    const Real angle = arc_tangent2(y, absolute(x)), pi(3.14159265F);
+    return select(x < Real(0), select(y < Real(0), -pi, pi) - angle, angle);
+}
 
 }  // namespace motley

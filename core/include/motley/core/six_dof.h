@@ -16,24 +16,34 @@ struct AxisSetup {
     float motor_max_force = 0;  ///< N or N m; 0: no motor
     float spring_hertz = 0;     ///< 0: no spring
     float spring_damping_ratio = 0;
-    float spring_target = 0;                                          ///< m or rad
+    float spring_stiffness = 0;  ///< N/m or N m/rad, instead of spring_hertz
+    float spring_damping = 0;    ///< N s/m or N m s/rad
+    float spring_target = 0;     ///< m or rad
     float spring_max_force = std::numeric_limits<float>::infinity();  ///< N or N m
+    float armature = 0;  ///< kg or kg m2: of a rotor geared to the coordinate
 
     static AxisSetup locked() { return {}; }
     static AxisSetup free();
     static AxisSetup limited(float lower, float upper) { return {.lower = lower, .upper = upper}; }
 };
 
-/// Frame b in frame a: three positions along the axes of a, and three rotations about them, 2 atan2(q_i, q_w) of the
-/// quaternion q from a to b; each locked, limited, driven or free. Beside the limits of single rotations a cone may keep x of
+/// What the rotations of a joint of six degrees of freedom are.
+enum class SixDofRotation : std::uint8_t {
+    about_axes,  ///< 2 atan2(q_i, q_w) of the quaternion q from a to b: alike in all directions, whole for one rotation alone
+    euler  ///< EulerAngles, as a chain of three hinges has them
+};
+
+/// Frame b in frame a: three positions along the axes of a, and three rotations (SixDofRotation);
+/// each locked, limited, driven or free. Beside the limits of single rotations a cone may keep x of
 /// b near x of a: for loose joints it has no corners.
 struct SixDofDefinition {
     BodyId body_a{};
     BodyId body_b{};
     JointFrame frame_a{};
     JointFrame frame_b{};
-    AxisSetup position[3];          ///< along x, y, z of frame a
-    AxisSetup rotation[3];          ///< about x (the twist), y, z; limits from -pi to pi
+    AxisSetup position[3];  ///< along x, y, z of frame a
+    AxisSetup rotation[3];  ///< about x (the twist), y, z; limits from -pi to pi
+    SixDofRotation rotations = SixDofRotation::about_axes;
     float max_swing = 3.14159265F;  ///< rad, > 0 to pi: half the opening of the cone; pi: none
     JointStiffness stiffness{};     ///< of the locked coordinates
 };

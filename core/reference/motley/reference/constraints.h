@@ -45,10 +45,12 @@ Jacobian frame_jacobian(const Body& a, const Body& b, const Frame& frame_a, cons
                         LinearLock linear, AngularLock angular);
 
 /// How far b's frame is along x of a's frame, or turned about the x axis that the frames share.
-double drive_value(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b, DriveAxis axis);
+/// `angle`: of an Euler drive.
+double drive_value(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b, DriveAxis axis,
+                   EulerAngle angle = EulerAngle::x);
 /// [-x, -(r_a + d) x x, x, r_b x x], or [0, -t, 0, t] with t = (x_a + x_b) / (1 + x_a . x_b).
 Jacobian drive_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
-                        DriveAxis axis);
+                        DriveAxis axis, EulerAngle angle = EulerAngle::x);
 
 /// The angle between the x axes of the frames, and its row [0, -n, 0, n], n = x_a x x_b / |x_a x x_b|.
 double swing_angle(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b);

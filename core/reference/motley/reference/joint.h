@@ -21,15 +21,18 @@ struct Block {
     Kind kind = Kind::equality;
     Jacobian jacobian{};
     Eigen::VectorXd error{};
-    Eigen::VectorXd speed{};  ///< what J v shall be; empty is zero
-    double side = 1;          ///< of a limit: along the row, or against it
-    double hertz = 0, damping_ratio = 0;
+    Eigen::VectorXd speed{};              ///< what J v shall be; empty is zero
+    double side = 1;                      ///< of a limit: along the row, or against it
+    double hertz = 0, damping_ratio = 0;  ///< of a spring, on the block's own effective mass
+    double stiffness = 0, damping = 0;    ///< of a spring of one row, N/m and N s/m or the same of turning
     double most = std::numeric_limits<double>::infinity();  ///< largest norm of the force, N or N m...
     bool bounds_torque = false;                             ///< ...or of the torque that comes of it
     /// m or 1, of a motor, >= 0: the bound is this times the sum of the joint's contacts instead.
     double most_per_contact = -1;
     double restitution = 0;  ///< of a contact
+    double armature = 0;     ///< of a rotor that goes along with the block's one row, kg or kg m2
 
+    [[nodiscard]] bool is_spring() const { return hertz > 0 || stiffness > 0 || damping > 0; }
     [[nodiscard]] bool is_one_sided() const { return kind == Kind::limit || kind == Kind::contact; }
 };
 
@@ -67,6 +70,7 @@ struct Joint {
     std::shared_ptr<const JointModel> model{};
     std::vector<Eigen::VectorXd> impulses{};  ///< of each block, carried from step to step
     double travelled = 0;
+    double rotor_speed = 0;           ///< J v of what has an armature, as the last solve left it
     std::span<const float> memory{};  ///< where impulses are recalled from while there are none
     /// What the last step did to b, N s where the rows act and N m s beside it.
     Eigen::Matrix<double, 6, 1> wrench = Eigen::Matrix<double, 6, 1>::Zero();

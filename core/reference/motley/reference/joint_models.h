@@ -34,11 +34,15 @@ Model model_of(const FrameJointDefinition<linear, angular>& joint)
 {
     return frame_model(joint.frame_a, joint.frame_b, joint.stiffness, linear, angular);
 }
-inline Model model_of(const SlideDriveDefinition& drive)
+/// All drives have the very fields of a slide drive.
+template <DriveAxis axis>
+Model model_of(const DriveDefinition<axis>& drive)
 {
-    return drive_model(drive, DriveAxis::slide);
+    const auto& [a, b, frame_a, frame_b, lower, upper, motor_speed, motor_max_force, hertz, damping_ratio,
+                 stiffness, damping, target, max_force, armature, angle] = drive;
+    return drive_model({a, b, frame_a, frame_b, lower, upper, motor_speed, motor_max_force, hertz,
+                        damping_ratio, stiffness, damping, target, max_force, armature, angle},
+                       axis);
 }
-/// A twist drive has the very fields of a slide drive.
-Model model_of(const TwistDriveDefinition& drive);
 
 }  // namespace motley::reference

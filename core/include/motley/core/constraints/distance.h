@@ -133,8 +133,10 @@ struct Distance {
     {
         const Real before = impulse.spring + impulse.limit;
         Real speed = dot(substep.axis, velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a));
-        const Real spring = spring_impulse(in_sweep.spring, substep.length - in_sweep.rest_length, speed,
-                                           substep.mass, impulse.spring, in_sweep.spring_max_impulse);
+        const SoftRow<Real> soft{in_sweep.spring.rate, in_sweep.spring.mass_scale * substep.mass,
+                                 in_sweep.spring.impulse_scale};
+        const Real spring = spring_impulse(soft, substep.length - in_sweep.rest_length, speed, impulse.spring,
+                                           in_sweep.spring_max_impulse);
         speed = speed + substep.inverse_mass * (spring - impulse.spring);
         impulse.spring = spring;
         impulse.limit = range_impulse(step, substep.length, in_sweep.min_length, in_sweep.max_length, speed,

@@ -2,6 +2,13 @@
 //
 //   slide   C = x_a . d, d = p_b - p_a        row [-x_a, -(r_a + d) x x_a, x_a, r_b x x_a]
 //   twist   C = 2 atan2(v . x, w), q = q_a* q_b, w >= 0    row [0, -t, 0, t], t = (x_a + x_b) / (1 + x_a . x_b)
+//   euler   n = z_b x x_a:   x: C = atan2(-y_a . z_b, z_a . z_b),  t = n x z_b / n^2
+//                            y: C = atan2(x_a . z_b, |n|),         t = n / |n|
+//                            z: C = atan2(-x_a . y_b, x_a . x_b),  t = x_a x n / n^2
+//
+// A rotor of inertia I_r that is geared to C is one body with the others along the row: with K = J M^-1 J^T an impulse changes
+// the speed by K s of it, s = 1 / (1 + K I_r), and s of it comes to the bodies. What others have changed of their speed since is
+// shared with the rotor first: it goes by s of that.
 //
 // One row and up to three impulses along it: the motor's, bounded by its force times h; the spring's, soft; the
 // limit's, >= 0 at the lower end and <= 0 at the upper. They are solved one after another on a speed that each
@@ -30,6 +37,9 @@ struct Drive {
     static constexpr bool recomputes_each_substep = true;
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr bool slides = drive_axis == DriveAxis::slide;
+    static constexpr bool is_euler = drive_axis == DriveAxis::euler;
+    /// Few joints are said so: see is_usual() in kernels.h.
+    static constexpr bool is_rare = is_euler;
     /// Stands for no limit: far enough to be slack for ever, small enough to stay finite.
     static constexpr float far_away = 1e12F;
     static constexpr float half_turn = 3.14159265F;
@@ -48,14 +58,23 @@ struct Drive {
         Vec3<Real> a, b;
     };
 
+    /// Which Euler angle: 1 for it, 0 for the others.
+    template <class Real>
+    struct Which {
+        Real x, y, z;
+    };
+
     template <class Real>
     struct Parameters {
         Quat<Real> rotation_a, rotation_b;
         Real lower, upper;
         Real motor_speed, motor_max_force;
         Real spring_hertz, spring_damping_ratio;
+        Real spring_stiffness, spring_damping;
         Real spring_target, spring_max_force;
+        Real armature;
         [[no_unique_address]] IfNeeded<slides, Anchors<Real>> anchors;
+        [[no_unique_address]] IfNeeded<is_euler, Which<Real>, 1> which;
     };
     template <class Real>
     struct Memory {
@@ -67,24 +86,31 @@ struct Drive {
         Real lower, upper;
         Real motor_speed, motor_max_impulse;
         Real spring_target, spring_max_impulse;
-        LaneSoftness<Real> spring;  ///< mass_scale 0 and impulse_scale 1 where there is none
+        Real spring_rate;
+        Real armature;  ///< I_r
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
         [[no_unique_address]] IfNeeded<slides, Arms<Real>> start_arms;
         Quat<Real> start_frame_a, start_frame_b;
+        [[no_unique_address]] IfNeeded<is_euler, Which<Real>, 1> which;
+        SpringSoftness<Real> spring;
         InSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         Vec3<Real> axis;  ///< x_a or t
         [[no_unique_address]] IfNeeded<slides, Levers<Real>> levers;
-        Real inverse_mass, mass;  ///< K and its inverse
-        Real value;               ///< C
+        Real inverse_mass, mass;        ///< K s and its inverse
+        Real share;                     ///< s
+        Real value;                     ///< C
+        Real spring_mass, spring_kept;  ///< see SoftRow
+        Real start_speed;               ///< of the rotor, when the substep began
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
         Real motor, spring, limit;
+        Real rotor_speed;  ///< m/s or rad/s: no impulse, but what the last sweep left
     };
 
     static void validate(const Definition& drive, const JointBodies& bodies)
@@ -96,10 +122,21 @@ struct Drive {
         if (!std::isinf(drive.lower)) check_range("lower", drive.lower, -most, most, range);
         if (!std::isinf(drive.upper)) check_range("upper", drive.upper, -most, most, range);
         if (!(drive.lower <= drive.upper)) refuse("lower", drive.lower, "at most upper");
+        if (is_euler && !(drive.angle >= EulerAngle::x && drive.angle <= EulerAngle::z))
+            refuse("angle", static_cast<double>(drive.angle), "x, y or z");
         check_range("motor_speed", drive.motor_speed, -1e9F, 1e9F, "a finite value from -1e9 to 1e9");
         check_range("motor_max_force", drive.motor_max_force, 0, 1e12F, "a finite value from 0 to 1e12");
         check_range("spring_hertz", drive.spring_hertz, 0, 1e6F, "0 (no spring) or up to 1e6 (Hz)");
         check_range("spring_damping_ratio", drive.spring_damping_ratio, 0, 1e6F, "0 to 1e6");
+        check_range("spring_stiffness", drive.spring_stiffness, 0, 1e12F,
+                    slides ? "0 to 1e12 (N/m)" : "0 to 1e12 (N m/rad)");
+        check_range("spring_damping", drive.spring_damping, 0, 1e12F,
+                    slides ? "0 to 1e12 (N s/m)" : "0 to 1e12 (N m s/rad)");
+        if (drive.spring_hertz > 0 && (drive.spring_stiffness > 0 || drive.spring_damping > 0)) {
+            refuse("spring_hertz", drive.spring_hertz,
+                   "0 where spring_stiffness or spring_damping say what the spring is");
+        }
+        check_range("armature", drive.armature, 0, 1e10F, slides ? "0 to 1e10 (kg)" : "0 to 1e10 (kg m2)");
         check_range("spring_target", drive.spring_target, -most, most,
                     slides ? "-1e9 to 1e9 (m)" : "-pi to pi (rad)");
         check_bound("spring_max_force", drive.spring_max_force);
@@ -115,16 +152,23 @@ struct Drive {
                                      drive.motor_max_force,
                                      drive.spring_hertz,
                                      drive.spring_damping_ratio,
+                                     drive.spring_stiffness,
+                                     drive.spring_damping,
                                      drive.spring_target,
                                      std::fmin(drive.spring_max_force, largest_force),
+                                     drive.armature,
                                      {}};
         if constexpr (slides) parameters.anchors = {drive.frame_a.position, drive.frame_b.position};
+        if constexpr (is_euler) {
+            const auto share = [&](EulerAngle angle) { return drive.angle == angle ? 1.0F : 0.0F; };
+            parameters.which = {share(EulerAngle::x), share(EulerAngle::y), share(EulerAngle::z)};
+        }
         return parameters;
     }
 
     template <class Real, class A, class B>
     static auto prepare(const StepConstants& step, const Parameters<Real>& drive, const Memory<Real>& memory,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
+                        const JointPose<Real, A::kind, B::kind>& pose, const A& a, const B& b,
                         Impulse<Real, A::kind, B::kind>& impulse)
     {
         Row<Real, A::kind, B::kind> row;
@@ -135,19 +179,24 @@ struct Drive {
         }
         row.start_frame_a = to_world(pose.orientation_a, drive.rotation_a);
         row.start_frame_b = to_world(pose.orientation_b, drive.rotation_b);
+        if constexpr (is_euler) row.which = drive.which;
         row.in_sweep.lower = drive.lower;
         row.in_sweep.upper = drive.upper;
         row.in_sweep.motor_speed = drive.motor_speed;
         row.in_sweep.motor_max_impulse = Real(step.substep) * drive.motor_max_force;
         row.in_sweep.spring_target = drive.spring_target;
         row.in_sweep.spring_max_impulse = Real(step.substep) * drive.spring_max_force;
-        // Without a spring nothing is wanted and nothing is kept: impulse_scale 1 forgets.
-        row.in_sweep.spring =
-            softness_or(step, drive.spring_hertz, drive.spring_damping_ratio, Softness{0, 0, 1});
+        row.spring = spring_softness(step, drive.spring_hertz, drive.spring_damping_ratio,
+                                     drive.spring_stiffness, drive.spring_damping);
+        row.in_sweep.spring_rate = row.spring.rate;
+        row.in_sweep.armature = drive.armature;
         const Real warm(step.warm_start_scale);
         impulse.motor = warm * memory.motor;
         impulse.spring = warm * memory.spring;
         impulse.limit = warm * memory.limit;
+        SubstepRow<Real, A::kind, B::kind> start;
+        build<Real>(row, start, a, b);
+        impulse.rotor_speed = speed_of(start, a, b);
         return row;
     }
 
@@ -156,6 +205,7 @@ struct Drive {
                            A& a, B& b)
     {
         build<Real>(row, substep, a, b);
+        substep.start_speed = impulse.rotor_speed;
         const Real lambda = impulse.motor + impulse.spring + impulse.limit;
         push(substep, lambda, a, b);
     }
@@ -166,21 +216,27 @@ struct Drive {
     {
         const Real before = impulse.motor + impulse.spring + impulse.limit;
         Real speed = speed_of(substep, a, b);
+        const Real excess = speed - impulse.rotor_speed;
+        const Real to_rotor = in_sweep.armature * substep.share * excess;
+        speed = select(in_sweep.armature > Real(0), impulse.rotor_speed + substep.share * excess, speed);
 
         const auto change_to = [&](Real& held, const Real& wanted) {
             speed = speed + substep.inverse_mass * (wanted - held);
             held = wanted;
         };
-        change_to(impulse.spring,
-                  spring_impulse(in_sweep.spring, substep.value - in_sweep.spring_target, speed, substep.mass,
-                                 impulse.spring, in_sweep.spring_max_impulse));
+        change_to(impulse.spring, spring_impulse(SoftRow<Real>{in_sweep.spring_rate, substep.spring_mass,
+                                                               substep.spring_kept},
+                                                 substep.value - in_sweep.spring_target, speed,
+                                                 impulse.spring, in_sweep.spring_max_impulse));
         const Real motor = impulse.motor - substep.mass * (speed - in_sweep.motor_speed);
         change_to(impulse.motor,
                   maximum(minimum(motor, in_sweep.motor_max_impulse), -in_sweep.motor_max_impulse));
         change_to(impulse.limit, range_impulse(step, substep.value, in_sweep.lower, in_sweep.upper, speed,
                                                substep.mass, impulse.limit));
 
-        push(substep, impulse.motor + impulse.spring + impulse.limit - before, a, b);
+        impulse.rotor_speed = speed;
+        push(substep, substep.share * (impulse.motor + impulse.spring + impulse.limit - before) - to_rotor, a,
+             b);
     }
 
     template <class Real, class Row, class Substep, class A, class B>
@@ -188,7 +244,8 @@ struct Drive {
     {
         Substep now;
         build<Real>(row, now, a, b);
-        const Real lambda = -(now.mass * beyond_range(now.value, row.in_sweep.lower, row.in_sweep.upper));
+        const Real lambda =
+            -(now.share * now.mass * beyond_range(now.value, row.in_sweep.lower, row.in_sweep.upper));
         if constexpr (slides) {
             displace(a, -(lambda * now.axis), -(lambda * now.levers.a));
             displace(b, lambda * now.axis, lambda * now.levers.b);
@@ -206,10 +263,11 @@ struct Drive {
     }
 
     template <class Real, class Row, class Substep, class Impulse>
-    static Wrench<Real> wrench(const Row&, const Substep& substep, const Impulse& impulse)
+    static Wrench<Real> wrench(const Row& row, const Substep& substep, const Impulse& impulse)
     {
         const Vec3<Real> none{Real(0), Real(0), Real(0)};
-        const Vec3<Real> effort = (impulse.motor + impulse.spring + impulse.limit) * substep.axis;
+        const Real to_rotor = row.in_sweep.armature * (impulse.rotor_speed - substep.start_speed);
+        const Vec3<Real> effort = (impulse.motor + impulse.spring + impulse.limit - to_rotor) * substep.axis;
         return slides ? Wrench<Real>{effort, none} : Wrench<Real>{none, effort};
     }
 
@@ -220,22 +278,51 @@ struct Drive {
         const Quat<double> frame_a = a.orientation * unit(convert<double>(drive.frame_a.rotation));
         const Quat<double> frame_b = b.orientation * unit(convert<double>(drive.frame_b.rotation));
         const Vec3<double> d = anchor_separation(a, b, drive.frame_a.position, drive.frame_b.position);
-        const Quat<double> q = conjugate(frame_a) * frame_b;
-        const double value =
-            slides ? dot(axis_x(frame_a), d) : 2 * std::atan2(q.w < 0 ? -q.x : q.x, std::abs(q.w));
+        const double value = slides     ? dot(axis_x(frame_a), d)
+                             : is_euler ? euler_angle(drive.angle, frame_a, frame_b)
+                                        : twist_of(conjugate(frame_a) * frame_b);
         const double wrong = std::fmax(0.0, std::fmax(static_cast<double>(drive.lower) - value,
                                                       value - static_cast<double>(drive.upper)));
         JointReport report;
         (slides ? report.error : report.angle_error) = static_cast<float>(wrong);
         if (memory.limit != 0) {
             report.state = memory.limit > 0 ? JointState::lower : JointState::upper;
-        } else if (drive.motor_max_force > 0 || drive.spring_hertz > 0) {
+        } else if (drive.motor_max_force > 0 || drive.has_spring()) {
             report.state = JointState::active;
         }
         return report;
     }
 
   private:
+    static double twist_of(const Quat<double>& q)
+    {
+        return 2 * std::atan2(q.w < 0 ? -q.x : q.x, std::abs(q.w));
+    }
+    static double euler_angle(EulerAngle angle, const Quat<double>& frame_a, const Quat<double>& frame_b)
+    {
+        const Vec3<double> x_a = axis_x(frame_a), z_b = axis_z(frame_b), n = cross(z_b, x_a);
+        if (angle == EulerAngle::x) return std::atan2(-dot(axis_y(frame_a), z_b), dot(axis_z(frame_a), z_b));
+        if (angle == EulerAngle::y) return std::atan2(dot(x_a, z_b), std::sqrt(dot(n, n)));
+        return std::atan2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));
+    }
+    /// Axis and value of the angle that each lane is about.
+    template <class Real, class Substep>
+    static void build_euler(const Which<Real>& which, const Quat<Real>& frame_a, const Quat<Real>& frame_b,
+                            Substep& substep)
+    {
+        const Vec3<Real> x_a = axis_x(frame_a), z_b = axis_z(frame_b), n = cross(z_b, x_a);
+        // Each axis is 1 long at least, or pushing along it would turn ever faster; and within a degree and a half of a right angle
+        // those of x and z grow no further.
+        const Real over_length = Real(1) / square_root(maximum(dot(n, n), Real(1e-30F)));
+        const Real steepness = minimum(over_length, Real(38));
+        substep.axis = (which.x * steepness * over_length) * cross(n, z_b) + (which.y * over_length) * n +
+                       (which.z * steepness * over_length) * cross(x_a, n);
+        const Real x = full_arc_tangent2(-dot(axis_y(frame_a), z_b), dot(axis_z(frame_a), z_b)),
+                   y = arc_tangent2(dot(x_a, z_b), square_root(dot(n, n))),
+                   z = full_arc_tangent2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));
+        substep.value = which.x * x + which.y * y + which.z * z;
+    }
+
     template <class Real, class Row, class Substep, class A, class B>
     static void build(const Row& row, Substep& substep, const A& a, const B& b)
     {
@@ -255,18 +342,29 @@ struct Drive {
                 dot(substep.levers.b, over_inertia(b, substep.levers.b));
         } else {
             const Quat<Real> frame_b = turn_of(b) * row.start_frame_b;
-            const Quat<Real> q = relative_rotation(frame_a, frame_b);
-            const Vec3<Real> x_a = axis_x(frame_a), x_b = axis_x(frame_b);
-            // The axes of a hinge never come near opposite; without one, half a turn of swing has no twist.
-            const Real scale = Real(1) / maximum(Real(1) + dot(x_a, x_b), Real(0.01F));
-            substep.axis = scale * (x_a + x_b);
-            substep.value = Real(2) * arc_tangent2(q.x, q.w);
+            if constexpr (is_euler) {
+                build_euler(row.which, frame_a, frame_b, substep);
+            } else {
+                const Quat<Real> q = relative_rotation(frame_a, frame_b);
+                const Vec3<Real> x_a = axis_x(frame_a), x_b = axis_x(frame_b);
+                // The axes of a hinge never come near opposite; without one, half a turn of swing has no twist.
+                const Real scale = Real(1) / maximum(Real(1) + dot(x_a, x_b), Real(0.01F));
+                substep.axis = scale * (x_a + x_b);
+                substep.value = Real(2) * arc_tangent2(q.x, q.w);
+            }
             substep.inverse_mass =
                 dot(substep.axis, over_inertia(a, substep.axis) + over_inertia(b, substep.axis));
         }
         const Real size = slides ? linear_size(a) + linear_size(b) : angular_size(a) + angular_size(b);
         const auto usable = substep.inverse_mass > Real(rounding_share) * size;
-        substep.mass = select(usable, inverse_or_zero(substep.inverse_mass), Real(0));
+        const Real mass = select(usable, inverse_or_zero(substep.inverse_mass), Real(0));
+        substep.share =
+            select(usable, Real(1) / (Real(1) + substep.inverse_mass * row.in_sweep.armature), Real(1));
+        substep.inverse_mass = substep.share * substep.inverse_mass;
+        substep.mass = select(usable, mass + row.in_sweep.armature, Real(0));
+        const SoftRow<Real> spring = soft_row(row.spring, substep.inverse_mass, substep.mass);
+        substep.spring_mass = spring.mass;
+        substep.spring_kept = spring.kept;
     }
 
     template <class Substep, class A, class B>
@@ -294,6 +392,6 @@ struct Drive {
 };
 
 /// The constraint types of this header.
-using DriveTypes = TypeList<Drive<DriveAxis::slide>, Drive<DriveAxis::twist>>;
+using DriveTypes = TypeList<Drive<DriveAxis::slide>, Drive<DriveAxis::twist>, Drive<DriveAxis::euler>>;
 
 }  // namespace motley

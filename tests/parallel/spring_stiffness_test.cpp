@@ -1,0 +1,257 @@
+// Springs and dampers in N m/rad and N m s/rad, and rotors. Independent evidence: closed forms.
+#include <array>
+#include <numbers>
+
+#include "rig.h"
+
+namespace motley {
+namespace {
+
+using testing::axis_along;
+using testing::box;
+using testing::frame_time;
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+/// About z through both centres: a hinge, and what drives it.
+ConstraintId hang_on(Scene& scene, BodyId a, BodyId b, TwistDriveDefinition drive)
+{
+    const JointFrame about_z{{}, axis_along(2)};
+    scene.add_joint(HingeDefinition{a, b, about_z, about_z});
+    drive.body_a = a;
+    drive.body_b = b;
+    drive.frame_a = drive.frame_b = about_z;
+    return scene.add_joint(drive);
+}
+
+void twist(Scene& scene, BodyId body, float torque)
+{
+    const std::array<Vec3<float>, 1> none{}, torques{{{0, 0, torque}}};
+    scene.set_forces({&body, 1}, none, torques);
+}
+
+double angle_of(const BodyState& state)
+{
+    return 2 * std::atan2(state.orientation.z, state.orientation.w);
+}
+
+TEST(SpringStiffness, GivesByTorqueOverStiffnessWhateverHangsOnIt)
+{
+    for (const float mass : {1e-3F, 2.0F, 500.0F}) {
+        Scene scene;
+        const BodyId wheel = scene.add_body(box({0, 0, 0}, mass));
+        // Damped critically: c = 2 sqrt(k I).
+        const float k = 40, damping = 2 * std::sqrt(k * 0.25F * mass);
+        const ConstraintId spring =
+            hang_on(scene, scene.ground(), wheel, {.spring_stiffness = k, .spring_damping = damping});
+        twist(scene, wheel, 6);
+        Solver solver;
+        testing::run(scene, solver, 20);
+        EXPECT_NEAR(angle_of(scene.state(wheel)), 6.0 / 40, 1e-4) << mass;
+        EXPECT_NEAR(scene.joint_report(spring).torque.z, -6, 6e-3) << mass;
+    }
+}
+
+TEST(SpringStiffness, SwingsWithTheRootOfStiffnessOverInertia)
+{
+    Scene scene;
+    const BodyId wheel = scene.add_body(box({0, 0, 0}));
+    const float inertia = 0.5F, k = 4 * pi * pi * inertia;  // once a second
+    hang_on(scene, scene.ground(), wheel, {.spring_stiffness = k, .spring_target = 0.5F});
+    SolverSettings settings;
+    settings.substeps = 32;
+    Solver solver(settings);
+    double last_rate = 0, first = 0, last = 0;
+    int crossings = 0;
+    for (int step = 0; step < 60 * 6; ++step) {
+        solver.step(scene, frame_time);
+        const double rate = scene.state(wheel).angular_velocity.z;
+        if (last_rate > 0 && rate <= 0) {  // at the far end
+            const double t = (step + last_rate / (last_rate - rate)) / 60;
+            if (crossings++ == 0) first = t;
+            last = t;
+        }
+        last_rate = rate;
+    }
+    ASSERT_GT(crossings, 4);
+    EXPECT_NEAR((last - first) / (crossings - 1), 1.0, 0.01);
+}
+
+TEST(SpringStiffness, SpringsInSeriesThroughALightBodyAddUp)
+{
+    // A frequency would be that of the light body, and as good as no spring between the others.
+    // Sweeps take the longer to tell of a load what lies beyond the lighter a body is; at once, any will do.
+    for (const float light : {1e-6F, 1e-3F, 1.0F}) {
+        Scene scene;
+        const BodyId between = scene.add_body(box({0, 0, 0}, light)), wheel = scene.add_body(box({0, 0, 0}));
+        const ConstraintId first =
+            hang_on(scene, scene.ground(), between, {.spring_stiffness = 30, .spring_damping = 3});
+        const ConstraintId second =
+            hang_on(scene, between, wheel, {.spring_stiffness = 60, .spring_damping = 6});
+        twist(scene, wheel, 6);
+        SolverSettings settings;
+        if (light < 1e-3F) settings.method = Method::direct;
+        Solver solver(settings);
+        testing::run(scene, solver, 20);
+        EXPECT_NEAR(angle_of(scene.state(between)), 6.0 / 30, 1e-3) << light;
+        EXPECT_NEAR(angle_of(scene.state(wheel)), 6.0 / 30 + 6.0 / 60, 1e-3) << light;
+        EXPECT_NEAR(scene.joint_report(first).torque.z, -6, 0.03) << light;
+        EXPECT_NEAR(scene.joint_report(second).torque.z, -6, 0.03) << light;
+    }
+}
+
+TEST(SpringStiffness, ADamperAloneSlowsByItsShareEachSubstep)
+{
+    // I (w' - w) = -h c w'.
+    for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
+        Scene scene;
+        BodyDefinition definition = box({0, 0, 0});
+        definition.angular_velocity = {0, 0, 5};
+        const BodyId wheel = scene.add_body(definition);
+        hang_on(scene, scene.ground(), wheel, {.spring_damping = 2});
+        SolverSettings settings;
+        settings.method = method;
+        Solver solver(settings);
+        testing::run(scene, solver, 0.5);
+        const double h = static_cast<double>(frame_time) / 4;
+        EXPECT_NEAR(scene.state(wheel).angular_velocity.z, 5 * std::pow(1 + h * 2 / 0.5, -120), 2e-5)
+            << static_cast<int>(method);
+    }
+}
+
+TEST(SpringStiffness, OfASlideBearsAWeightByItsStiffness)
+{
+    for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
+        Scene scene;
+        const BodyId lift = scene.add_body(box({0, 0, 0}, 3));
+        const JointFrame upright{{}, axis_along(1)};
+        scene.add_joint(SliderDefinition{scene.ground(), lift, upright, upright});
+        SlideDriveDefinition spring{.body_a = scene.ground(), .body_b = lift};
+        spring.frame_a = spring.frame_b = upright;
+        spring.spring_stiffness = 600;
+        spring.spring_damping = 80;
+        scene.add_joint(spring);
+        SolverSettings settings = testing::with_gravity({0, -10, 0});
+        settings.method = method;
+        Solver solver(settings);
+        testing::run(scene, solver, 5);
+        EXPECT_NEAR(scene.state(lift).position.y, -3.0 * 10 / 600, 1e-4) << static_cast<int>(method);
+    }
+}
+
+TEST(SpringStiffness, NoStiffnessIsTooMuchForASubstep)
+{
+    // Far stiffer than a substep can follow it is a lock, and no energy comes of it.
+    Scene scene;
+    BodyDefinition definition = box({0, 0, 0});
+    definition.angular_velocity = {0, 0, 1};
+    const BodyId wheel = scene.add_body(definition);
+    hang_on(scene, scene.ground(), wheel, {.spring_stiffness = 1e12F});
+    Solver solver;
+    for (int step = 0; step < 600; ++step) {
+        solver.step(scene, frame_time);
+        ASSERT_LT(std::abs(scene.state(wheel).angular_velocity.z), 1.0F);
+        ASSERT_LT(std::abs(angle_of(scene.state(wheel))), 1e-4);
+    }
+}
+
+TEST(SpringStiffness, IsOneOfASixDofJointsCoordinates)
+{
+    Scene scene;
+    const BodyId wheel = scene.add_body(box({0, 0, 0}));
+    SixDofDefinition joint;
+    joint.body_a = scene.ground();
+    joint.body_b = wheel;
+    joint.rotation[2] = {.spring_stiffness = 40, .spring_damping = 9};
+    joint.rotation[2].lower = -1;
+    joint.rotation[2].upper = 1;
+    EXPECT_EQ(add_six_dof(scene, joint).size(), 2);
+    twist(scene, wheel, 6);
+    Solver solver;
+    testing::run(scene, solver, 10);
+    EXPECT_NEAR(angle_of(scene.state(wheel)), 6.0 / 40, 1e-3);
+}
+
+// ---- armature ---------------------------------------------------------------------------------------------------------
+
+TEST(Armature, AddsToTheInertiaThatATorqueMoves)
+{
+    for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
+        for (const float rotor : {0.01F, 1.5F, 1e3F}) {
+            Scene scene;
+            const BodyId wheel = scene.add_body(box({0, 0, 0}));
+            hang_on(scene, scene.ground(), wheel, {.armature = rotor});
+            const float torque = 2 * (0.5F + rotor);
+            twist(scene, wheel, torque);
+            SolverSettings settings;
+            settings.method = method;
+            Solver solver(settings);
+            testing::run(scene, solver, 1);
+            EXPECT_NEAR(scene.state(wheel).angular_velocity.z, 2, 1e-3) << rotor;
+        }
+    }
+}
+
+TEST(Armature, OfALightLinkIsAllThatASpringSwings)
+{
+    // Once a second, by the rotor all but alone: the link has a thousandth of its inertia.
+    Scene scene;
+    const BodyId link = scene.add_body(box({0, 0, 0}, 2e-3F));
+    const float rotor = 0.5F;
+    hang_on(scene, scene.ground(), link,
+            {.spring_stiffness = 4 * pi * pi * rotor, .spring_target = 0.5F, .armature = rotor});
+    SolverSettings settings;
+    settings.substeps = 32;
+    Solver solver(settings);
+    int crossings = 0;
+    double last_rate = 0, first = 0, last = 0;
+    for (int step = 0; step < 60 * 6; ++step) {
+        solver.step(scene, frame_time);
+        const double rate = scene.state(link).angular_velocity.z;
+        if (last_rate > 0 && rate <= 0) {
+            last = (step + last_rate / (last_rate - rate)) / 60;
+            if (crossings++ == 0) first = last;
+        }
+        last_rate = rate;
+    }
+    ASSERT_GT(crossings, 4);
+    EXPECT_NEAR((last - first) / (crossings - 1), 1.0, 0.01);
+}
+
+TEST(Armature, OfTwoFloatingWheelsKeepsTheirAngularMomentumAndTheRotors)
+{
+    // The rotor goes with the difference of their speeds: a torque on one moves both, by the equations
+    //   (I_1 + r) w_1' - r w_2' = 0,   -r w_1' + (I_2 + r) w_2' = T.
+    for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
+        Scene scene;
+        const BodyId one = scene.add_body(box({0, 0, 0}, 2)), two = scene.add_body(box({0, 0, 0}, 6));
+        const double i_1 = 0.5, i_2 = 1.5, r = 4, torque = 3;
+        hang_on(scene, one, two, {.armature = static_cast<float>(r)});
+        twist(scene, two, static_cast<float>(torque));
+        SolverSettings settings;
+        settings.method = method;
+        Solver solver(settings);
+        testing::run(scene, solver, 1);
+        const double determinant = (i_1 + r) * (i_2 + r) - r * r;
+        EXPECT_NEAR(scene.state(one).angular_velocity.z, r * torque / determinant, 1e-3);
+        EXPECT_NEAR(scene.state(two).angular_velocity.z, (i_1 + r) * torque / determinant, 1e-3);
+        EXPECT_NEAR(i_1 * static_cast<double>(scene.state(one).angular_velocity.z) +
+                        i_2 * static_cast<double>(scene.state(two).angular_velocity.z),
+                    torque, 1e-4);
+    }
+}
+
+TEST(Armature, ReportsWhatItTakesFromTheBodies)
+{
+    Scene scene;
+    const BodyId wheel = scene.add_body(box({0, 0, 0}));
+    const ConstraintId drive = hang_on(scene, scene.ground(), wheel, {.armature = 1.5F});
+    twist(scene, wheel, 4);
+    Solver solver;
+    testing::run(scene, solver, 1);
+    // 4 N m on 2 kg m2: 1.5 of them are the rotor's.
+    EXPECT_NEAR(scene.joint_report(drive).torque.z, -1.5 * 2, 3e-3);
+}
+
+}  // namespace
+}  // namespace motley
