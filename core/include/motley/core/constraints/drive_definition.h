@@ -15,8 +15,8 @@ enum class DriveAxis : std::uint8_t {
 };
 
 /// Angles of b's frame in a's: first about x, then about the y that this has turned, then about the z that both have turned
-/// (x-y'-z'', R = R_x R_y R_z), as a chain of three hinges has them. At half a right angle of y from a right one x and z have begun to be
-/// the same axis, at a right angle they are: nothing tells them apart there.
+/// (x-y'-z'', R = R_x R_y R_z), as a chain of three hinges has them. Where y comes to a right angle x and z are the same axis, and
+/// beyond it both are half a turn off: let limits keep y from there.
 enum class EulerAngle : std::uint8_t {
     x,  ///< -pi to pi
     y,  ///< -pi/2 to pi/2
