@@ -157,6 +157,7 @@ struct Drive {
                                      drive.spring_target,
                                      std::fmin(drive.spring_max_force, largest_force),
                                      drive.armature,
+                                     {},
                                      {}};
         if constexpr (slides) parameters.anchors = {drive.frame_a.position, drive.frame_b.position};
         if constexpr (is_euler) {
