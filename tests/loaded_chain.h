@@ -11,6 +11,10 @@
 namespace motley::testing {
 
 enum class ChainStart { hanging, level };
+inline const char* name_of(ChainStart start)
+{
+    return start == ChainStart::hanging ? "hanging" : "from level";
+}
 
 class LoadedChain {
   public:
@@ -46,7 +50,7 @@ class LoadedChain {
         bodies.push_back(scene_.add_body(link));
         return bodies.back();
     }
-    /// End to end; to the ground at a height z, where a joint of frames holds the angle that b has now.
+    /// End to end; to the ground at z, where a joint of frames holds the angle that b has now.
     template <class Definition = BallSocketDefinition>
     void tie(BodyId a, BodyId b, double z = 0, double angle = 0)
     {
@@ -82,6 +86,30 @@ class LoadedChain {
             tie<Definition>(before, body, z, angle);
             before = body;
         }
+    }
+    /// Afloat, ten links between two loads, spinning end over end and not quite as one.
+    void set_afloat(double load)
+    {
+        for (int i = 0; i < 12; ++i) {
+            const double middle = length * i - 2.75;
+            const auto across = static_cast<float>(2 * middle);
+            add({middle, 0, 0}, 0, i == 0 || i == 11 ? load : 1, {0.1F, across + 0.05F * (i % 2), 0}, 2);
+            if (i > 0) tie(bodies[static_cast<std::size_t>(i - 1)], bodies.back());
+        }
+    }
+    /// kg m/s along x and y, and kg m2/s about z through the origin.
+    [[nodiscard]] Vec3<double> momenta() const
+    {
+        Vec3<double> sums{};
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            const BodyState state = scene_.state(bodies[i]);
+            const auto v = convert<double>(state.linear_velocity);
+            sums.x += masses[i] * v.x;
+            sums.y += masses[i] * v.y;
+            sums.z += masses[i] * (state.position.x * v.y - state.position.y * v.x +
+                                   inertia_of_unit_mass * static_cast<double>(state.angular_velocity.z));
+        }
+        return sums;
     }
     [[nodiscard]] double kinetic_energy() const
     {

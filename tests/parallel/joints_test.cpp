@@ -1,7 +1,7 @@
 // Joints against motions that are known in closed form, and against each other.
 #include <algorithm>
 
-#include "rig.h"
+#include "swing.h"
 
 namespace motley {
 namespace {
@@ -199,20 +199,7 @@ TEST(TwistDrive, ASpringSwingsWithItsFrequency)
     SolverSettings settings;
     settings.substeps = 32;
     Solver solver(settings);
-    double last_rate = 0, first = 0, last = 0;
-    int crossings = 0;
-    for (int step = 0; step < 60 * 6; ++step) {
-        solver.step(scene, dt);
-        const double rate = scene.state(wheel).angular_velocity.z;
-        if (last_rate > 0 && rate <= 0) {  // at the far end
-            const double t = (step + last_rate / (last_rate - rate)) / 60;
-            if (crossings++ == 0) first = t;
-            last = t;
-        }
-        last_rate = rate;
-    }
-    ASSERT_GT(crossings, 4);
-    EXPECT_NEAR((last - first) / (crossings - 1), 1.0, 0.01);
+    EXPECT_NEAR(testing::swing_period(scene, solver, wheel, 6), 1.0, 0.01);
 }
 
 TEST(TwistDrive, AHingedBarRestsAtItsLimitAndReportsWhichOne)

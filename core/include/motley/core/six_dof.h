@@ -29,8 +29,8 @@ struct AxisSetup {
 
 /// What the rotations of a joint of six degrees of freedom are.
 enum class SixDofRotation : std::uint8_t {
-    about_axes,  ///< 2 atan2(q_i, q_w) of the quaternion q from a to b: alike in all directions, whole for one rotation alone
-    euler  ///< EulerAngles, as a chain of three hinges has them
+    about_axes,  ///< 2 atan2(q_i, q_w) of the quaternion q from a to b: alike in all directions; where one rotation moves alone, its angle
+    euler        ///< EulerAngles, as a chain of three hinges has them
 };
 
 /// Frame b in frame a: three positions along the axes of a, and three rotations (SixDofRotation);

@@ -7,7 +7,7 @@
 //
 //   I' = I + 2 max(0, h r . P - 1 / b),   b = tr I^-1 - n . I^-1 n,   n = r / |r|,
 //
-// and the frequency, h r . P / I', stays below a half whatever the load. Twice, because P is of the step before. All
+// and (h w)^2 = h r . P / I', w the frequency, stays below 1 whatever the load; an explicit substep follows up to 4. Twice, because P is of the step before. All
 // directions alike, which inverts nothing that may be singular. Velocities stay as they are: nothing is slowed down that turns
 // as one, and nothing at all is changed of what bears loads that a substep can follow.
 // (Mass scaling by geometric stiffness; M. Tournier and others, Stable Constrained Dynamics, 2015, S. Andrews and others,

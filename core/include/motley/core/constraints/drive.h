@@ -38,7 +38,7 @@ struct Drive {
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr bool slides = drive_axis == DriveAxis::slide;
     static constexpr bool is_euler = drive_axis == DriveAxis::euler;
-    /// Few joints are said so: see is_usual() in kernels.h.
+    /// Few joints count Euler angles: see joint_type.h.
     static constexpr bool is_rare = is_euler;
     /// Stands for no limit: far enough to be slack for ever, small enough to stay finite.
     static constexpr float far_away = 1e12F;
@@ -306,13 +306,13 @@ struct Drive {
         if (angle == EulerAngle::y) return std::atan2(dot(x_a, z_b), std::sqrt(dot(n, n)));
         return std::atan2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));
     }
-    /// Axis and value of the angle that each lane is about.
+    /// t and C of the angle that each lane asks for.
     template <class Real, class Substep>
     static void build_euler(const Which<Real>& which, const Quat<Real>& frame_a, const Quat<Real>& frame_b,
                             Substep& substep)
     {
         const Vec3<Real> x_a = axis_x(frame_a), z_b = axis_z(frame_b), n = cross(z_b, x_a);
-        // Each axis is 1 long at least, or pushing along it would turn ever faster; and within a degree and a half of a right angle
+        // t must never be shorter than 1, or the impulse that reaches a speed along it would grow without bound; and within a degree and a half of a right angle
         // those of x and z grow no further.
         const Real over_length = Real(1) / square_root(maximum(dot(n, n), Real(1e-30F)));
         const Real steepness = minimum(over_length, Real(38));
