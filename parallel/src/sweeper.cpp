@@ -83,7 +83,7 @@ void run_chunks(const KernelContext& context, const KernelTable& kernels, std::s
 
 }  // namespace
 
-void Sweeper::sweep_across(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+void Sweeper::sweep_beside_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
     // The overflow first and in order, so that the colours have the last word.
     const SweepLists& sweeps = layout_.sweeps();
@@ -110,7 +110,7 @@ void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_
     // Relaxation goes the other way round, so that a patch that was solved last may be moved and relaxed while it is in cache.
     const bool patches_first = kernel == &ConstraintKernels::relax;
     if (patches_first) sweep_patches(kernel, at_least);
-    sweep_across(kernel, at_least);
+    sweep_beside_patches(kernel, at_least);
     if (!patches_first) sweep_patches(kernel, at_least);
 }
 
@@ -163,32 +163,54 @@ class StreamsAhead {
 
 }  // namespace
 
-void Sweeper::visit_patches()
+void Sweeper::move_patch(const KernelContext& context, std::int64_t patch)
+{
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        const auto move = layout_.kernels().bodies[kind].integrate_listed;
+        if (move == nullptr) continue;
+        const std::span<const BodyRow> bodies =
+            layout_.intake.patches.bodies_of(static_cast<std::size_t>(patch), static_cast<BodyKind>(kind));
+        move(context, bodies.data(), static_cast<std::int32_t>(bodies.size()));
+    }
+}
+
+/// Relaxing leaves the memory idle: time to ask for what whoever does this patch will most likely do next.
+void Sweeper::relax_patch(const KernelContext& context, std::int64_t patch)
+{
+    constexpr std::int32_t blocks_at_a_time = 8;
+    const SweepLists& sweeps = layout_.sweeps();
+    const bool is_last = patch + 1 == static_cast<std::int64_t>(sweeps.patches.size());
+    StreamsAhead ahead(is_last ? std::span<const SweepChunk>() : sweeps.of_patch(patch + 1));
+    for (const SweepChunk& chunk : sweeps.of_patch(patch)) {
+        for_each_piece(chunk.begin, chunk.end, blocks_at_a_time, [&](std::int32_t begin, std::int32_t end) {
+            ahead.ask_for(end - begin);
+            chunk.kernels->relax(context, chunk.streams, begin, end);
+        });
+    }
+}
+
+void Sweeper::visit_patches(std::span<const PlanStage> stages)
 {
     const SweepLists& sweeps = layout_.sweeps();
     // What was solved a moment ago is at hand.
     KernelContext at_hand = layout_.context;
     at_hand.bodies_are_far = false;
-    const auto count = static_cast<std::int64_t>(sweeps.patches.size());
-    runner_.run(count, [&](std::int64_t patch) {
-        const std::span<const SweepChunk> chunks = sweeps.of_patch(patch);
-        run_chunks(layout_.context, layout_.kernels(), chunks, &ConstraintKernels::solve, every_block);
-        for (int kind = 0; kind < body_kind_count; ++kind) {
-            const auto move = layout_.kernels().bodies[kind].integrate_listed;
-            if (move == nullptr) continue;
-            const std::span<const BodyRow> bodies = layout_.intake.patches.bodies_of(
-                static_cast<std::size_t>(patch), static_cast<BodyKind>(kind));
-            move(at_hand, bodies.data(), static_cast<std::int32_t>(bodies.size()));
-        }
-        // Relaxing leaves the memory idle: time to ask for what whoever does this patch will most likely do next.
-        constexpr std::int32_t blocks_at_a_time = 8;
-        StreamsAhead ahead(patch + 1 < count ? sweeps.of_patch(patch + 1) : std::span<const SweepChunk>());
-        for (const SweepChunk& chunk : chunks) {
-            for_each_piece(chunk.begin, chunk.end, blocks_at_a_time,
-                           [&](std::int32_t begin, std::int32_t end) {
-                               ahead.ask_for(end - begin);
-                               chunk.kernels->relax(at_hand, chunk.streams, begin, end);
-                           });
+    runner_.run(static_cast<std::int64_t>(sweeps.patches.size()), [&](std::int64_t patch) {
+        for (const PlanStage& stage : stages) {
+            switch (stage.operation) {
+                case Operation::solve:
+                    run_chunks(layout_.context, layout_.kernels(), sweeps.of_patch(patch),
+                               &ConstraintKernels::solve, every_block);
+                    break;
+                case Operation::integrate_positions:
+                    move_patch(at_hand, patch);
+                    break;
+                case Operation::relax:
+                    relax_patch(at_hand, patch);
+                    break;
+                default:
+                    break;
+            }
         }
     });
 }
@@ -220,14 +242,14 @@ void Sweeper::move_beside_patches()
     }
 }
 
-void Sweeper::step_lone_figures(const FigureSteps& steps)
+void Sweeper::step_lone_figures(const Plan& plan)
 {
     const std::span<const std::int32_t> lone = layout_.figures.lone();
     runner_.run(static_cast<std::int64_t>(lone.size()), [&](std::int64_t i, int worker) {
         const auto block = static_cast<std::size_t>(lone[static_cast<std::size_t>(i)]);
         step_figure(layout_.context, layout_.kernels().figures,
                     workspaces_[static_cast<std::size_t>(worker)].take_in(layout_.figures.blocks()[block]),
-                    layout_.data(), steps);
+                    layout_.data(), plan);
     });
 }
 

@@ -26,17 +26,17 @@ class Sweeper {
     /// Runs a kernel over every block; or over those that are not finished and want at least so many sweeps.
     void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least = every_block);
     /// Runs a kernel over every block that is in no patch.
-    void sweep_across(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least = every_block);
+    void sweep_beside_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel,
+                              int at_least = every_block);
     /// Adds what constraints did in a substep to what they did in those before it.
     void add_up();
-    /// Solves each patch, moves its bodies and relaxes it, at one visit. Between sweep_across(solve) and
-    /// move_beside_patches() with sweep_across(relax) it makes the same bits as the three stages one by one.
-    void visit_patches();
+    /// Runs these stages over one patch after another: `solve`, `integrate_positions` and `relax`. See visit_patches_once().
+    void visit_patches(std::span<const PlanStage> stages);
     /// x += h v of all bodies that no patch lists, which are looked for once a step.
     void list_beside_patches();
     void move_beside_patches();
-    /// All substeps of the figures that nothing else touches.
-    void step_lone_figures(const FigureSteps& steps);
+    /// The whole plan over the figures that nothing else touches.
+    void step_lone_figures(const Plan& plan);
     /// What is left to do for figures that something touches, where they have trees: prepare_tree(), begin_tree() and solve_tree().
     void prepare_touched_trees();
     void begin_touched_trees();
@@ -54,6 +54,8 @@ class Sweeper {
     std::vector<FigureWorkspace> workspaces_;  ///< one a worker
 
     void sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
+    void move_patch(const KernelContext& context, std::int64_t patch);
+    void relax_patch(const KernelContext& context, std::int64_t patch);
     template <class Work>
     void for_each_free_group(const Work& work);
     template <class Work>

@@ -106,8 +106,7 @@ void ContactIntake::remember(ContactCache& cache, std::uint32_t i, std::uint32_t
     memory_index[i] = same_bodies ? static_cast<std::int32_t>(before) + 1 : 0;
 }
 
-/// Checks a part of the list, and finds again what lies about where it lay.
-void ContactIntake::walk(Scene& scene, std::span<const Contact> contacts, std::int64_t part)
+void ContactIntake::check_and_match(Scene& scene, std::span<const Contact> contacts, std::int64_t part)
 {
     ContactCache& cache = scene.contact_cache();
     ContactCache::Walk walk(cache, part);
@@ -146,8 +145,8 @@ void ContactIntake::walk(Scene& scene, std::span<const Contact> contacts, std::i
     if (bounces) bounces_.store(true, std::memory_order_relaxed);
 }
 
-/// Looks up what the walk missed, with the table's cache misses overlapping.
-void ContactIntake::trace(ContactCache& cache, std::int64_t part)
+/// With the table's cache misses overlapping.
+void ContactIntake::look_up(ContactCache& cache, std::int64_t part)
 {
     constexpr std::size_t ahead = 12;
     const std::span<const std::uint32_t> missed = cache.missed(part);
@@ -199,9 +198,10 @@ void check_arm(std::size_t index, const std::string& field, const Vec3<float>& a
 
 }  // namespace
 
-std::string ContactIntake::error(const Scene& scene, std::span<const Contact> contacts) const
+std::string ContactIntake::first_error(const Scene& scene, std::span<const Contact> contacts) const
 {
     const std::size_t bad = first_bad_.load(std::memory_order_relaxed);
+    if (bad == none) return {};
     const Contact& c = contacts[bad];
     try {
         check_body(scene, bad, "body_a", c.body_a);

@@ -1,4 +1,4 @@
-// The substeps of a block of copies, in the order of Solver's.
+// A plan run over a block of copies.
 #include "figure_step.h"
 
 namespace motley {
@@ -69,43 +69,91 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
     kernels.factor(block);
 }
 
+/// Runs the stages of a plan that are of a figure; the others are of the whole scene.
+class CopiesRunner {
+  public:
+    CopiesRunner(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
+                 std::span<const ConstraintData> data)
+        : context_(context),
+          kernels_(kernels),
+          block_(block),
+          data_(data),
+          has_tree_(block.shape->has_tree()),
+          has_others_(block.shape->has_joints_beside_tree())
+    {
+    }
+    void run(const PlanStage& stage) const
+    {
+        switch (stage.operation) {
+            case Operation::prepare:
+                transfer(context_, block_, data_, &ConstraintKernels::prepare);
+                kernels_.load(context_, block_);
+                break;
+            case Operation::stiffen:
+                if (context_.overloaded->load(std::memory_order_relaxed))
+                    sweep(context_, block_, &ConstraintKernels::stiffen_copies);
+                break;
+            case Operation::add_up_impulses:
+                add_up(context_, block_);
+                break;
+            case Operation::integrate_velocities:
+                kernels_.integrate_velocities(context_, block_);
+                break;
+            case Operation::factor_trees:
+                if (has_tree_) factor_tree(context_, kernels_, block_);
+                break;
+            case Operation::begin_trees:
+                if (has_tree_) begin_tree(block_);
+                break;
+            case Operation::warm_start:
+                sweep(context_, block_, &ConstraintKernels::warm_start_copies);
+                break;
+            case Operation::solve_trees:
+                if (has_tree_ && has_others_) kernels_.solve(block_, context_.step.exact_rate);
+                break;
+            case Operation::solve:
+                iterate(&ConstraintKernels::solve_copies, stage.times, context_.step.exact_rate);
+                break;
+            case Operation::integrate_positions:
+                kernels_.integrate_positions(context_, block_);
+                break;
+            case Operation::relax:
+                iterate(&ConstraintKernels::relax_copies, stage.times, 0);
+                break;
+            case Operation::store:
+                kernels_.store(context_, block_);
+                transfer(context_, block_, data_, &ConstraintKernels::store);
+                break;
+            default:
+                break;
+        }
+    }
+
+  private:
+    const KernelContext& context_;
+    const FigureKernels& kernels_;
+    const FigureBlock& block_;
+    std::span<const ConstraintData> data_;
+    bool has_tree_, has_others_;
+
+    void iterate(ConstraintKernels::CopiesSweep ConstraintKernels::*kernel, int times, float rate) const
+    {
+        // Locks alone are solved by their first sweep.
+        const int sweeps = has_others_ ? times : 1;
+        for (int i = 0; i < sweeps; ++i) {
+            sweep(context_, block_, kernel);
+            if (has_tree_) kernels_.solve(block_, rate);
+        }
+    }
+};
+
 }  // namespace
 
 void step_figure(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
-                 std::span<const ConstraintData> data, const FigureSteps& steps)
+                 std::span<const ConstraintData> data, const Plan& plan)
 {
-    const bool has_tree = block.shape->has_tree();
-    const bool has_others = block.shape->has_joints_beside_tree();
-    // Locks alone are solved by their first sweep.
-    const auto sweeps = [&](int wanted) { return has_others || wanted == 0 ? wanted : 1; };
-    // Impulses act where the bodies are, or angular momentum is lost: so the tree is factored again before it relaxes. The next
-    // substep begins there and needs no other factors.
-    const bool relaxes = steps.relaxations > 0;
-    transfer(context, block, data, &ConstraintKernels::prepare);
-    kernels.load(context, block);
-    if (context.overloaded->load(std::memory_order_relaxed))
-        sweep(context, block, &ConstraintKernels::stiffen_copies);
-    for (int substep = 0; substep < steps.substeps; ++substep) {
-        kernels.integrate_velocities(context, block);
-        if (has_tree && (substep == 0 || !relaxes)) factor_tree(context, kernels, block);
-        if (has_tree) begin_tree(block);
-        if (has_others) sweep(context, block, &ConstraintKernels::warm_start_copies);
-        // Limits and motors shall see bodies that hold together.
-        if (has_tree && has_others) kernels.solve(block, context.step.exact_rate);
-        for (int i = 0; i < sweeps(steps.iterations); ++i) {
-            if (has_others) sweep(context, block, &ConstraintKernels::solve_copies);
-            if (has_tree) kernels.solve(block, context.step.exact_rate);
-        }
-        kernels.integrate_positions(context, block);
-        if (has_tree && relaxes) factor_tree(context, kernels, block);
-        for (int i = 0; i < sweeps(steps.relaxations); ++i) {
-            if (has_others) sweep(context, block, &ConstraintKernels::relax_copies);
-            if (has_tree) kernels.solve(block, 0);
-        }
-        if (has_others) add_up(context, block);
-    }
-    kernels.store(context, block);
-    transfer(context, block, data, &ConstraintKernels::store);
+    const CopiesRunner runner(context, kernels, block, data);
+    for_each_stage(plan, [&](const PlanStage& stage, int) { runner.run(stage); });
 }
 
 void prepare_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)

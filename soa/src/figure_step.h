@@ -4,18 +4,14 @@
 #include <span>
 
 #include "figure.h"
+#include "plan.h"
 
 namespace motley {
 
-/// What is done in each substep.
-struct FigureSteps {
-    int substeps, iterations, relaxations;
-};
-
-/// The whole step of a block that nothing but its own joints touches, in cache: prepare, all substeps, store. `data` is
-/// that of each type.
+/// The whole step of a block that nothing but its own joints touches, in cache. `data` is that of each type; stages of the
+/// plan that are of the whole scene are left to whoever runs that.
 void step_figure(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
-                 std::span<const ConstraintData> data, const FigureSteps& steps);
+                 std::span<const ConstraintData> data, const Plan& plan);
 
 // Of blocks that something else touches, what is left to do beside ordinary sweeps: the tree.
 /// Factors where the bodies are: before each substep; or, with relaxations, before the first substep and after each move.

@@ -1,0 +1,229 @@
+// See plan_runner.h.
+#include "plan_runner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "motley/core/joint_store.h"
+#include "motley/reference/scene_step.h"
+
+namespace motley {
+
+void PlanRunner::run(const Plan& plan, const Plan& figure_plan, const Step& step, StepClock& clock)
+{
+    layout_.context.replay = plan.replays_warm_starts ? Replay::next_time : Replay::nothing;
+    int of_substep = -1;
+    for_each_stage(plan, [&](const PlanStage& stage, int substep) {
+        if (substep != of_substep) solves_in_substep_ = 0;
+        of_substep = substep;
+        clock.enter(stage_of(stage.operation));
+        run_stage(stage, substep, plan, figure_plan, step);
+    });
+    // A warm start in each, replayed or swept.
+    step.report.sweeps += plan.substeps;
+}
+
+void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan, const Plan& figure_plan,
+                           const Step& step)
+{
+    switch (stage.operation) {
+        case Operation::find_islands:
+            convergence_.find_islands(layout_.context, layout_.joint_placements(),
+                                      layout_.contact_placements(), layout_.sweeps());
+            convergence_.take_wishes(step.scene, layout_.sweeps());
+            break;
+        case Operation::note_momenta:
+            sweeper_.begin_free_groups();
+            break;
+        case Operation::prepare:
+            sweeper_.transfer(&ConstraintKernels::prepare);
+            break;
+        case Operation::stiffen:
+            if (layout_.is_overloaded()) sweeper_.sweep(&ConstraintKernels::stiffen);
+            break;
+        case Operation::list_bodies_beside_patches:
+            sweeper_.list_beside_patches();
+            break;
+        case Operation::step_figures:
+            sweeper_.step_lone_figures(figure_plan);
+            break;
+        case Operation::solve_directly: {
+            const reference::DirectResult result =
+                reference::step_directly(step.scene, step.dt, step.settings, step.contacts);
+            step.report.direct_violation = result.violation;
+            step.report.direct_unsolved = result.unsolved;
+            break;
+        }
+        case Operation::add_up_impulses:
+            sweeper_.add_up();
+            break;
+        case Operation::integrate_velocities:
+            sweeper_.integrate(substep == 0 ? &BodyKernels::begin_velocities
+                                            : &BodyKernels::integrate_velocities);
+            break;
+        case Operation::factor_trees:
+            sweeper_.prepare_touched_trees();
+            break;
+        case Operation::begin_trees:
+            sweeper_.begin_touched_trees();
+            break;
+        case Operation::warm_start:
+            sweeper_.sweep(&ConstraintKernels::warm_start);
+            if (plan.replays_warm_starts) layout_.context.replay = Replay::last_substep;
+            break;
+        case Operation::solve_trees:
+            sweeper_.solve_touched_trees(layout_.context.step.exact_rate);
+            break;
+        case Operation::solve:
+            sweep(&ConstraintKernels::solve, stage, step);
+            break;
+        case Operation::measure:
+            measure_residual(step);
+            break;
+        case Operation::visit_patches:
+            sweeper_.visit_patches(plan.visit);
+            break;
+        case Operation::integrate_positions:
+            if (stage.where == Where::beside_patches) {
+                sweeper_.move_beside_patches();
+            } else {
+                sweeper_.integrate(&BodyKernels::integrate_positions);
+            }
+            break;
+        case Operation::integrate_on:
+            sweeper_.integrate(&BodyKernels::integrate_on);
+            break;
+        case Operation::project:
+            for (int i = 0; i < stage.times; ++i) sweeper_.sweep(&ConstraintKernels::project);
+            step.report.sweeps += stage.times;
+            break;
+        case Operation::relax:
+            sweep(&ConstraintKernels::relax, stage, step);
+            break;
+        case Operation::restitute:
+            sweeper_.sweep(&ConstraintKernels::restitute);
+            break;
+        case Operation::store:
+            sweeper_.transfer(&ConstraintKernels::store);
+            break;
+        case Operation::land:
+            sweeper_.land_free_groups();
+            break;
+        case Operation::move_bodies:
+            move_bodies(step);
+            break;
+    }
+}
+
+/// Sweeps as often as a stage says, and counts.
+void PlanRunner::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, const PlanStage& stage,
+                       const Step& step)
+{
+    int sweeps = stage.times;
+    if (stage.where == Where::beside_patches) {
+        sweeper_.sweep_beside_patches(kernel);  // the visit of the patches is the rest of the same sweep
+    } else {
+        sweeps = step.picks_islands ? iterate_by_island(kernel, stage.times, step)
+                                    : iterate(kernel, stage.times, step);
+    }
+    step.report.sweeps += sweeps;
+    if (kernel != &ConstraintKernels::solve) return;
+    solves_in_substep_ += sweeps;
+    step.report.iterations = std::max(step.report.iterations, solves_in_substep_);
+}
+
+/// Impulses of trees are not among those that a warm start applies.
+bool PlanRunner::renews(const SolverSettings& settings) const
+{
+    return sweeps_long(settings) && layout_.figures.touched_trees().empty();
+}
+
+void PlanRunner::renew_after(int done, int most)
+{
+    if (done % Renewal::sweeps == 0 || done == most) renewal_.renew();
+}
+
+int PlanRunner::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int times, const Step& step)
+{
+    const bool renewing = renews(step.settings);
+    if (renewing) renewal_.begin();
+    for (int done = 1; done <= times; ++done) {
+        sweeper_.sweep(kernel);
+        sweeper_.solve_touched_trees(exact_rate(kernel));
+        if (renewing) renew_after(done, times);
+    }
+    return times;
+}
+
+/// Sweeps until every island is within the tolerance, `times` times at most; more often where the host asked for more. Returns
+/// how often.
+int PlanRunner::iterate_by_island(ConstraintKernels::Sweep ConstraintKernels::*kernel, int times,
+                                  const Step& step)
+{
+    const float tolerance = step.settings.tolerance;
+    const bool renewing = renews(step.settings);
+    if (renewing) renewal_.begin();
+    convergence_.start_over(layout_.sweeps());
+    // Wishes are for what solves, not for what relaxes.
+    const int most =
+        kernel == &ConstraintKernels::solve ? std::max(times, convergence_.most_wanted()) : times;
+    int done = 0;
+    while (done < most && convergence_.unfinished() > 0) {
+        ++done;
+        // Measuring costs about a sweep: early for what is nearly solved, then only now and then.
+        const bool measured = tolerance > 0 && (done == 2 || done % 4 == 0 || done == most);
+        layout_.context.measure = measured ? Measure::while_solving : Measure::nothing;
+        sweeper_.sweep(kernel, done <= times ? 0 : done);
+        sweeper_.solve_touched_trees(exact_rate(kernel));
+        if (measured) convergence_.judge(layout_.sweeps(), tolerance);
+        if (renewing) renew_after(done, most);
+    }
+    layout_.context.measure = Measure::nothing;
+    return done;
+}
+
+/// Exact joints correct positions while they solve, and not while they relax.
+float PlanRunner::exact_rate(ConstraintKernels::Sweep ConstraintKernels::*kernel) const
+{
+    return kernel == &ConstraintKernels::solve ? layout_.context.step.exact_rate : 0;
+}
+
+/// What is left of the constraints as the bodies are now.
+void PlanRunner::measure_residual(const Step& step)
+{
+    StepReport& report = step.report;
+    if (step.settings.tolerance > 0) {
+        report.islands = convergence_.islands();
+        report.islands_above_tolerance = convergence_.unfinished();
+    }
+    if (!step.settings.measures && step.settings.budget_ms == 0) return;
+    convergence_.start_over(layout_.sweeps());
+    layout_.context.measure = Measure::without_solving;
+    sweeper_.sweep(&ConstraintKernels::solve);
+    layout_.context.measure = Measure::nothing;
+    const ResidualSum sum = sum_residuals(layout_.sweeps());
+    const auto constraints = static_cast<double>(std::max<std::int64_t>(1, sum.constraints));
+    report.measures.residual_norm = std::sqrt(sum.energy);
+    report.measures.residual_rms = std::sqrt(sum.squares / constraints);
+    report.measures.residual_max = sum.largest;
+}
+
+void PlanRunner::move_bodies(const Step& step)
+{
+    Scene& scene = step.scene;
+    std::uint32_t first_slot = 0;
+    step.report.bodies_contained = sweeper_.commit(scene.bodies(), first_slot);
+    if (layout_.is_overloaded()) scene.bodies().restore_planar_inertia();
+    if (step.report.bodies_contained == 0) return;
+    step.report.first_contained = scene.bodies().id_of_slot(first_slot);
+    scene.bodies().contained_count += static_cast<std::size_t>(step.report.bodies_contained);
+    scene.joints().version.reset();  // theirs are left out from now on
+}
+
+bool PlanRunner::sweeps_long(const SolverSettings& settings)
+{
+    return std::max(settings.iterations, settings.relaxations) > Renewal::sweeps;
+}
+
+}  // namespace motley

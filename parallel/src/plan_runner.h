@@ -1,0 +1,57 @@
+// Runs the plan of a step over the colours of a whole scene.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "convergence.h"
+#include "layout.h"
+#include "plan.h"
+#include "renewal.h"
+#include "step_clock.h"
+#include "sweeper.h"
+
+namespace motley {
+
+class PlanRunner {
+  public:
+    PlanRunner(Sweeper& sweeper, Layout& layout)
+        : sweeper_(sweeper), layout_(layout), renewal_(sweeper, layout)
+    {
+    }
+
+    /// What decides how a step is run beside its plan.
+    struct Step {
+        Scene& scene;
+        std::span<const Contact> contacts;
+        float dt;  ///< s
+        const SolverSettings& settings;
+        bool picks_islands;  ///< some islands want more sweeps than others: see Convergence
+        StepReport& report;
+    };
+    /// Runs the stages of `plan`; figures that nothing else touches are run by `figure_plan`, which has no stages fused.
+    void run(const Plan& plan, const Plan& figure_plan, const Step& step, StepClock& clock);
+
+    /// With more sweeps than this, velocities are made anew from impulses between them; see Renewal.
+    static bool sweeps_long(const SolverSettings& settings);
+
+  private:
+    Sweeper& sweeper_;
+    Layout& layout_;
+    Convergence convergence_;
+    Renewal renewal_;
+    int solves_in_substep_ = 0;
+
+    void run_stage(const PlanStage& stage, int substep, const Plan& plan, const Plan& figure_plan,
+                   const Step& step);
+    void sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, const PlanStage& stage, const Step& step);
+    int iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int times, const Step& step);
+    int iterate_by_island(ConstraintKernels::Sweep ConstraintKernels::*kernel, int times, const Step& step);
+    [[nodiscard]] bool renews(const SolverSettings& settings) const;
+    void renew_after(int done, int most);
+    [[nodiscard]] float exact_rate(ConstraintKernels::Sweep ConstraintKernels::*kernel) const;
+    void measure_residual(const Step& step);
+    void move_bodies(const Step& step);
+};
+
+}  // namespace motley
