@@ -155,6 +155,7 @@ std::vector<NamedTie> every_tie()
             {"angular_servo/rigid", rigid, frames<AngularServoDefinition>()},
             {"gear/rigid", rigid, joint<GearDefinition>()},
             {"rack_and_pinion/rigid", rigid, joint<RackAndPinionDefinition>()},
+            {"screw/rigid", rigid, joint<ScrewDefinition>(at_anchors<ScrewDefinition>)},
             {"pulley/rigid", rigid, joint<PulleyDefinition>([](PulleyDefinition& pulley, Vec3<float> arm) {
                  at_anchors(pulley, arm);
                  pulley.point_a = {-1, 30, 0};

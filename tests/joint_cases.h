@@ -331,6 +331,17 @@ struct JointCases<RackAndPinionDefinition> {
 };
 
 template <>
+struct JointCases<ScrewDefinition> {
+    static constexpr Keeps keeps = Keeps::both_momenta;
+    static bool is_passive(const ScrewDefinition&) { return true; }
+    static std::vector<ScrewDefinition> of(const JointPlace& at)
+    {
+        const Vec3<float> on_a = at.anchor_on_a(), on_b = at.anchor_on_b();
+        return {{at.a, at.b, on_a, on_b, at.axis(false), 0.3F}, {at.a, at.b, on_a, on_b, at.axis(true), -2}};
+    }
+};
+
+template <>
 struct JointCases<PulleyDefinition> {
     static constexpr Keeps keeps = Keeps::nothing;  // the wheels are the world's
     static bool is_passive(const PulleyDefinition&) { return true; }
@@ -402,7 +413,7 @@ constexpr bool fits(int kind_a, int kind_b)
     constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
     using Store = std::tuple_element_t<static_cast<std::size_t>(type), decltype(JointStores::stores)>;
     if (kind_a > 2 && kind_b > 2) return false;
-    if constexpr (requires { Store::Type::needs_bodies_that_turn; }) return kind_a != 0 && kind_b != 0;
+    if constexpr (Store::Type::needs_bodies_that_turn) return kind_a != 0 && kind_b != 0;
     return true;
 }
 

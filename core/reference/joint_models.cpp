@@ -291,6 +291,57 @@ class TransmissionModel : public JointModel {
     bool slides_;
 };
 
+/// What b has slid along the axis of a, less what it has screwed.
+class ScrewModel : public JointModel {
+  public:
+    explicit ScrewModel(const ScrewDefinition& screw)
+        : axis_a_(eigen(screw.axis_a).normalized()),
+          local_a_(eigen(screw.local_anchor_a)),
+          local_b_(eigen(screw.local_anchor_b)),
+          metres_a_radian_(static_cast<double>(screw.pitch) / (2 * EIGEN_PI))
+    {
+    }
+    [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool,
+                                            double travelled) const override
+    {
+        const Eigen::Vector3d x = a.orientation * axis_a_, arm_b = b.orientation * local_b_;
+        const Eigen::Vector3d to_b = b.position + arm_b - a.position;
+        Jacobian jacobian = Jacobian::Zero(1, 12);
+        jacobian.block<1, 3>(0, 0) = -x.transpose();
+        jacobian.block<1, 3>(0, 3) = (metres_a_radian_ * x - to_b.cross(x)).transpose();
+        jacobian.block<1, 3>(0, 6) = x.transpose();
+        jacobian.block<1, 3>(0, 9) = (arm_b.cross(x) - metres_a_radian_ * x).transpose();
+        return {{.jacobian = jacobian, .error = scalar(travelled)}};
+    }
+    [[nodiscard]] double travel(const Body& start_a, const Body& start_b, const Body& a,
+                                const Body& b) const override
+    {
+        const Eigen::Vector3d axis_b = start_b.orientation.conjugate() * (start_a.orientation * axis_a_);
+        return slide(a, b) - slide(start_a, start_b) -
+               metres_a_radian_ * (turn_about(start_b, b, axis_b) - turn_about(start_a, a, axis_a_));
+    }
+    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
+                                             double travelled) const override
+    {
+        return {impulses[0](0), travelled};
+    }
+    [[nodiscard]] double travelled_in(const float* memory) const override
+    {
+        return static_cast<double>(memory[1]);
+    }
+
+  private:
+    Eigen::Vector3d axis_a_, local_a_, local_b_;
+    double metres_a_radian_;
+
+    [[nodiscard]] double slide(const Body& a, const Body& b) const
+    {
+        const Eigen::Vector3d d =
+            b.position + b.orientation * local_b_ - a.position - a.orientation * local_a_;
+        return (a.orientation * axis_a_).dot(d);
+    }
+};
+
 class PulleyModel : public JointModel {
   public:
     explicit PulleyModel(const PulleyDefinition& pulley) : pulley_(pulley) {}
@@ -441,6 +492,10 @@ Model model_of(const GearDefinition& gear)
 Model model_of(const RackAndPinionDefinition& rack)
 {
     return std::make_shared<TransmissionModel>(eigen(rack.axis_a), eigen(rack.axis_b), rack.travel, true);
+}
+Model model_of(const ScrewDefinition& screw)
+{
+    return std::make_shared<ScrewModel>(screw);
 }
 Model model_of(const PulleyDefinition& pulley)
 {

@@ -268,10 +268,8 @@ void Scene::set_joint(ConstraintId joint, const Definition& definition)
     if (definition.body_a != now.body_a || definition.body_b != now.body_b)
         refuse("set_joint.definition", "other bodies", "the bodies of the joint");
     Type::validate(definition, check_joint_bodies(type, definition.body_a, definition.body_b));
-    if constexpr (requires { Type::equality_count; }) {
-        // What locks is laid out by itself.
-        if (Type::is_equality(definition) != Type::is_equality(now)) joints_->version.reset();
-    }
+    // What locks is laid out by itself.
+    if (Type::is_equality(definition) != Type::is_equality(now)) joints_->version.reset();
     store.define(index, definition);
 }
 

@@ -33,14 +33,16 @@ struct FigureNode {
     std::int64_t jacobian;  ///< EqualityRows; once factored, what kernel_tree_rows.h keeps of them
     std::int64_t response;  ///< M'^-1 J^T, six floats a row
     std::int64_t factor;    ///< of K = J M'^-1 J^T
-    std::int64_t
-        target;  ///< K^-1 of what the rows lack; a float a row. Before it is factored: lambda of the last
-                 ///< substep times its length, N s2
-    std::int64_t change;  ///< of the body's velocity, six. Until it is factored: the pivots of M
-    std::int64_t mass;    ///< M', of the body and all that hangs on it: lower triangle; then its factor
-    std::int64_t force;   ///< on the body, of what hangs on it, six
-    std::int64_t kept;    ///< the body's velocity while responses are tried, six
-    std::int64_t pull;    ///< what stiffened locks take from its spin at the first solve, three
+    std::int64_t target;    ///< K^-1 of what the rows lack; a float a row
+    std::int64_t change;    ///< of the body's velocity, six
+    std::int64_t mass;      ///< M', of the body and all that hangs on it: lower triangle
+    std::int64_t force;     ///< on the body, of what hangs on it, six
+    std::int64_t kept;      ///< the body's velocity while responses are tried, six
+    std::int64_t pull;      ///< what stiffened locks take from its spin at the first solve, three
+    // What is done with once the node is factored, and lies where something else will lie then:
+    std::int64_t tension;  ///< at `target`: lambda of the last substep times its length, N s2; a float a row
+    std::int64_t pivots;   ///< at `change`: of M, six
+    std::int64_t mass_factor;  ///< at `mass`, which it takes the place of: of M'
     struct Lock {
         int joint;  ///< of the shape
         int first_row, rows;
@@ -77,16 +79,19 @@ struct FigureShape {
     std::vector<FigureClosure> closures;
     int closure_rows = 0;
     std::int64_t closure_jacobian = 0, closure_factor = 0, closure_target = 0;  ///< as those of a node
+    std::int64_t closure_alone =
+        0;  ///< at closure_target, until it is factored: J M^-1 J^T of a row's two bodies alone
     std::int64_t system_floats = 0;
 
-    /// Makes the tree of all locks, and the closures of its loops. False, and neither, when the loops are too many.
-    bool plant_tree();
     [[nodiscard]] bool has_tree() const { return !nodes.empty(); }
     [[nodiscard]] bool has_joints_beside_tree() const
     {
         return std::any_of(joints.begin(), joints.end(), [](const Joint& joint) { return !joint.in_tree; });
     }
 };
+
+/// Makes the tree of all locks of a shape, and the closures of its loops. False, and neither, when the loops are too many.
+bool build_tree(FigureShape& shape);
 
 /// Up to sixteen copies.
 struct FigureBlock {

@@ -61,7 +61,7 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
     for (const FigureNode& node : block.shape->nodes) {
         for (const FigureNode::Lock& lock : node.locks)
             locate(lock.joint, block.system + node.jacobian + row_floats * lock.first_row,
-                   block.system + node.target + block_lanes * lock.first_row);
+                   block.system + node.tension + block_lanes * lock.first_row);
     }
     for (const FigureClosure& closure : block.shape->closures)
         locate(closure.joint, block.system + block.shape->closure_jacobian + row_floats * closure.first_row,

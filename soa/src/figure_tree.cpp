@@ -9,101 +9,157 @@ namespace {
 constexpr int most_rows = 6;           ///< that a body can hang by
 constexpr int most_closure_rows = 24;  ///< their system is dense, and each row costs a sweep of the tree
 
-}  // namespace
-
-bool FigureShape::plant_tree()
+std::size_t at(int index)
 {
-    const auto moves = [&](int body) { return bodies[static_cast<std::size_t>(body)] == BodyKind::rigid; };
-    std::vector<std::vector<int>> locks_on(bodies.size());
-    std::vector<std::uint8_t> hangs(joints.size(), 0);  // is part of the tree
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-        if (joints[i].equalities == 0) continue;
-        locks_on[static_cast<std::size_t>(joints[i].a)].push_back(static_cast<int>(i));
-        locks_on[static_cast<std::size_t>(joints[i].b)].push_back(static_cast<int>(i));
-    }
-    const auto other_end = [&](int joint, int body) {
-        const Joint& j = joints[static_cast<std::size_t>(joint)];
-        return j.a == body ? j.b : j.a;
-    };
+    return static_cast<std::size_t>(index);
+}
 
-    // What is reached hangs on what it was reached from: from fixed bodies first, then from some body of what floats.
-    std::vector<FigureNode> reached;
-    std::vector<int> node_of(bodies.size(), -1);
-    const auto hang = [&](int body, int parent) {
+/// Builds the tree of a shape: first who hangs on whom, then which locks close loops, then where the numbers of each node are.
+class TreeBuilder {
+  public:
+    explicit TreeBuilder(FigureShape& shape)
+        : shape_(shape),
+          locks_on_(shape.bodies.size()),
+          node_of_(shape.bodies.size(), none),
+          is_in_node_(shape.joints.size(), 0)
+    {
+    }
+    bool build()
+    {
+        list_locks();
+        hang_all_bodies();
+        find_closures();
+        if (closure_rows_ > most_closure_rows || nodes_.empty()) return false;
+        lay_out();
+        hand_over();
+        return true;
+    }
+
+  private:
+    static constexpr int none = -1;
+    FigureShape& shape_;
+    std::vector<std::vector<int>> locks_on_;  ///< joints, by body
+    std::vector<int> node_of_;                ///< by body
+    std::vector<std::uint8_t> is_in_node_;    ///< by joint
+    std::vector<FigureNode> nodes_;           ///< what is hung on before what hangs on it
+    std::size_t spread_ = 0;                  ///< nodes whose neighbours all hang
+    std::vector<FigureClosure> closures_;
+    int closure_rows_ = 0;
+
+    [[nodiscard]] bool moves(int body) const { return shape_.bodies[at(body)] == BodyKind::rigid; }
+    [[nodiscard]] bool hangs(int body) const { return node_of_[at(body)] != none; }
+    [[nodiscard]] int other_end(int joint, int body) const
+    {
+        const FigureShape::Joint& j = shape_.joints[at(joint)];
+        return j.a == body ? j.b : j.a;
+    }
+
+    void list_locks()
+    {
+        for (std::size_t i = 0; i < shape_.joints.size(); ++i) {
+            const FigureShape::Joint& joint = shape_.joints[i];
+            if (joint.equalities == 0) continue;
+            locks_on_[at(joint.a)].push_back(static_cast<int>(i));
+            locks_on_[at(joint.b)].push_back(static_cast<int>(i));
+        }
+    }
+    /// What is reached hangs on what it was reached from: from fixed bodies first, then from some body of what floats.
+    void hang_all_bodies()
+    {
+        const int bodies = static_cast<int>(shape_.bodies.size());
+        for (int body = 0; body < bodies; ++body) {
+            if (moves(body)) continue;
+            for (const int joint : locks_on_[at(body)]) {
+                const int next = other_end(joint, body);
+                if (!hangs(next)) hang(next, body);
+                spread();
+            }
+        }
+        for (int body = 0; body < bodies; ++body) {
+            if (!moves(body) || hangs(body) || locks_on_[at(body)].empty()) continue;
+            hang(body, none);
+            spread();
+        }
+    }
+    void spread()
+    {
+        for (; spread_ < nodes_.size(); ++spread_) {
+            const int body = nodes_[spread_].body;
+            for (const int joint : locks_on_[at(body)]) {
+                const int next = other_end(joint, body);
+                if (moves(next) && !hangs(next)) hang(next, body);
+            }
+        }
+    }
+    /// By all locks between the two, as far as a body has rows for them.
+    void hang(int body, int parent)
+    {
         FigureNode node{};
         node.body = body;
         node.parent = parent;
-        node.parent_node = parent < 0 ? -1 : node_of[static_cast<std::size_t>(parent)];
-        for (const int joint : locks_on[static_cast<std::size_t>(body)]) {
-            const Joint& j = joints[static_cast<std::size_t>(joint)];
+        node.parent_node = parent == none ? none : node_of_[at(parent)];
+        for (const int joint : locks_on_[at(body)]) {
+            const FigureShape::Joint& j = shape_.joints[at(joint)];
             if (other_end(joint, body) != parent || node.rows + j.equalities > most_rows) continue;
-            hangs[static_cast<std::size_t>(joint)] = 1;
+            is_in_node_[at(joint)] = 1;
             node.locks.push_back({joint, node.rows, j.equalities, j.locks_point, j.a == body});
             node.rows += j.equalities;
         }
-        node_of[static_cast<std::size_t>(body)] = static_cast<int>(reached.size());
-        reached.push_back(std::move(node));
-    };
-    std::size_t spread = 0;
-    const auto grow = [&] {
-        for (; spread < reached.size(); ++spread) {
-            const int body = reached[spread].body;
-            for (const int joint : locks_on[static_cast<std::size_t>(body)]) {
-                const int next = other_end(joint, body);
-                if (moves(next) && node_of[static_cast<std::size_t>(next)] < 0) hang(next, body);
-            }
-        }
-    };
-    for (int body = 0; body < static_cast<int>(bodies.size()); ++body) {
-        if (moves(body)) continue;
-        for (const int joint : locks_on[static_cast<std::size_t>(body)]) {
-            const int next = other_end(joint, body);
-            if (node_of[static_cast<std::size_t>(next)] < 0) hang(next, body);
-            grow();
+        node_of_[at(body)] = static_cast<int>(nodes_.size());
+        nodes_.push_back(std::move(node));
+    }
+    void find_closures()
+    {
+        for (std::size_t i = 0; i < shape_.joints.size(); ++i) {
+            const int equalities = shape_.joints[i].equalities;
+            if (equalities == 0 || is_in_node_[i] != 0) continue;
+            closures_.push_back({static_cast<int>(i), closure_rows_, equalities});
+            closure_rows_ += equalities;
         }
     }
-    for (int body = 0; body < static_cast<int>(bodies.size()); ++body) {
-        if (!moves(body) || node_of[static_cast<std::size_t>(body)] >= 0 ||
-            locks_on[static_cast<std::size_t>(body)].empty())
-            continue;
-        hang(body, -1);
-        grow();
+    /// Where the numbers of nodes and closures begin in FigureBlock::system.
+    void lay_out()
+    {
+        std::int64_t end = 0;
+        const auto take = [&](int floats) {
+            return std::exchange(end, end + std::int64_t{floats} * block_lanes);
+        };
+        constexpr int row_floats = FigureNode::row_floats / block_lanes;
+        for (FigureNode& node : nodes_) {
+            node.jacobian = take(row_floats * node.rows);
+            node.response = take(6 * node.rows);
+            node.factor = take(node.rows * (node.rows + 1) / 2);
+            node.target = node.tension = take(node.rows);
+            node.change = node.pivots = take(6);
+            node.mass = node.mass_factor = take(21);
+            node.force = take(6);
+            node.kept = take(6);
+            node.pull = take(3);
+        }
+        shape_.closure_jacobian = take(row_floats * closure_rows_);
+        shape_.closure_factor = take(closure_rows_ * (closure_rows_ + 1) / 2);
+        shape_.closure_target = shape_.closure_alone = take(closure_rows_);
+        shape_.system_floats = end;
     }
-    std::vector<FigureClosure> loops;
-    int loop_rows = 0;
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-        if (joints[i].equalities == 0 || hangs[i] != 0) continue;
-        loops.push_back({static_cast<int>(i), loop_rows, joints[i].equalities});
-        loop_rows += joints[i].equalities;
+    /// What hangs comes before what it hangs on.
+    void hand_over()
+    {
+        const int count = static_cast<int>(nodes_.size());
+        for (FigureNode& node : nodes_) {
+            if (node.parent_node != none) node.parent_node = count - 1 - node.parent_node;
+        }
+        for (FigureShape::Joint& joint : shape_.joints) joint.in_tree = joint.equalities > 0;
+        shape_.nodes.assign(std::make_move_iterator(nodes_.rbegin()), std::make_move_iterator(nodes_.rend()));
+        shape_.closures = std::move(closures_);
+        shape_.closure_rows = closure_rows_;
     }
-    if (loop_rows > most_closure_rows || reached.empty()) return false;
+};
 
-    const int count = static_cast<int>(reached.size());
-    std::int64_t end = 0;
-    const auto take = [&](int floats) {
-        return std::exchange(end, end + std::int64_t{floats} * block_lanes);
-    };
-    for (FigureNode& node : reached) {
-        node.jacobian = take(FigureNode::row_floats / block_lanes * node.rows);
-        node.response = take(6 * node.rows);
-        node.factor = take(node.rows * (node.rows + 1) / 2);
-        node.target = take(node.rows);
-        node.change = take(6);
-        node.mass = take(21);
-        node.force = take(6);
-        node.kept = take(6);
-        node.pull = take(3);
-        if (node.parent_node >= 0) node.parent_node = count - 1 - node.parent_node;
-    }
-    for (Joint& joint : joints) joint.in_tree = joint.equalities > 0;
-    closures = std::move(loops);
-    closure_rows = loop_rows;
-    closure_jacobian = take(FigureNode::row_floats / block_lanes * loop_rows);
-    closure_factor = take(loop_rows * (loop_rows + 1) / 2);
-    closure_target = take(loop_rows);
-    system_floats = end;
-    nodes.assign(std::make_move_iterator(reached.rbegin()), std::make_move_iterator(reached.rend()));
-    return true;
+}  // namespace
+
+bool build_tree(FigureShape& shape)
+{
+    return TreeBuilder(shape).build();
 }
 
 }  // namespace motley

@@ -297,7 +297,7 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
         // Too few of them, and nothing to be solved exactly.
         if (!exact && copies.size() < fewest_copies) continue;
         std::unique_ptr<FigureShape> shape = shape_of(members, copies.front());
-        const bool has_tree = exact && members.is_refused[copies.front()] == 0 && shape->plant_tree();
+        const bool has_tree = exact && members.is_refused[copies.front()] == 0 && build_tree(*shape);
         if (!has_tree && shape->bodies.size() > most_bodies) continue;
         for (std::size_t first = 0; first < copies.size(); first += block_lanes) {
             const std::size_t count = std::min<std::size_t>(block_lanes, copies.size() - first);

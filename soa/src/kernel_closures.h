@@ -65,7 +65,7 @@ inline void factor_closures(const FigureBlock& figure, int lane)
 {
     const FigureShape& shape = *figure.shape;
     float* k = figure.system + shape.closure_factor + lane;
-    float* own = figure.system + shape.closure_target + lane;
+    float* alone = figure.system + shape.closure_alone + lane;
     const auto at = [&](int row, int column) { return k + in_triangle(row, column) * block_lanes; };
     const Vec3<Lanes> still{Lanes(0), Lanes(0), Lanes(0)};
     const auto stop = [&] {
@@ -83,7 +83,7 @@ inline void factor_closures(const FigureBlock& figure, int lane)
     }
     for_each_closure_row(figure, lane, [&](const ClosureRow& pushed, int column) {
         stop();
-        store_lanes(push_along(pushed, Lanes(1)), own + column * block_lanes);
+        store_lanes(push_along(pushed, Lanes(1)), alone + column * block_lanes);
         sweep_tree(figure, 0, TreeSweep::answers, lane);
         for_each_closure_row(figure, lane, [&](const ClosureRow& seen, int row) {
             if (row < column) return;
@@ -114,7 +114,7 @@ inline void factor_closures(const FigureBlock& figure, int lane)
             pivot = pivot - scaled * l;
             store_lanes(l, at(i, j));
         }
-        const auto usable = pivot > Lanes(closure_rounding) * load_lanes(own + i * block_lanes);
+        const auto usable = pivot > Lanes(closure_rounding) * load_lanes(alone + i * block_lanes);
         store_lanes(select(usable, inverse_or_zero(pivot), Lanes(0)), at(i, i));
     }
 }

@@ -6,12 +6,12 @@
 
 /// The part of a row that a sweep reads: what the type has set apart; else all of it, unless there is a substep row.
 struct NothingInSweep {};
-template <bool recomputes, class Row>
+template <bool has_substep_row, class Row>
 const auto& swept(const Row& row)
 {
     if constexpr (requires { row.in_sweep; }) {
         return row.in_sweep;
-    } else if constexpr (!recomputes) {
+    } else if constexpr (!has_substep_row) {
         return row;
     } else {
         static constexpr NothingInSweep nothing;
@@ -28,12 +28,12 @@ struct Kernels {
     using Impulse = typename Type::template Impulse<Lanes, kind_a, kind_b>;
     using Parameters = typename Type::template Parameters<Lanes>;
     using Memory = typename Type::template Memory<Lanes>;
-    using Swept = std::remove_cvref_t<decltype(swept<Type::recomputes_each_substep>(std::declval<Row>()))>;
-    /// What is made anew each substep is made by its warm start from where the bodies are; others look in each sweep.
-    static constexpr bool sees_delta_once = Type::recomputes_each_substep;
-    static constexpr bool is_joint = requires { typename Type::Definition; };
+    static constexpr bool has_substep_row = !std::is_empty_v<Substep>;
+    using Swept = std::remove_cvref_t<decltype(swept<has_substep_row>(std::declval<Row>()))>;
+    /// A substep row is made from where the bodies are; what has none looks in each sweep.
+    static constexpr bool sees_delta_once = has_substep_row;
     /// What substeps are added up as: contacts have the same rows in all of them, those of joints turn.
-    using Sum = std::conditional_t<is_joint, Wrench<Lanes>, Impulse>;
+    using Sum = std::conditional_t<Type::is_contact, Impulse, Wrench<Lanes>>;
     static constexpr int row_stride = fields_of<Row> * block_lanes;
     static constexpr int substep_stride = fields_of<Substep> * block_lanes;
     static constexpr int impulse_stride = fields_of<Impulse> * block_lanes;
@@ -46,10 +46,7 @@ struct Kernels {
     [[gnu::always_inline]] static VelocitiesOut velocities_out(const BodyArrays& arrays,
                                                                const std::int32_t* offsets, Nowhere& nowhere)
     {
-        constexpr bool may_be_fixed = kind == BodyKind::rigid && requires
-        {
-            typename Type::Definition;
-        };
+        constexpr bool may_be_fixed = kind == BodyKind::rigid && !Type::is_contact;
         const bool moves = !may_be_fixed || arrays.can_move;
         return {moves ? arrays.velocity : nowhere.row, moves ? offsets : nowhere.offsets};
     }
@@ -76,17 +73,48 @@ struct Kernels {
         }
     }
 
-    /// Of b beside a, by forces and gravity alone: what restitution asks.
-    static Vec3<Lanes> parting_acceleration(const KernelContext& context, const Bundle& bundle, const A& a,
-                                            const B& b)
-    {
-        return free_acceleration(context.step, bundle.arrays_b, bundle.offsets_b, b) -
-               free_acceleration(context.step, bundle.arrays_a, bundle.offsets_a, a);
-    }
+    /// What a type may ask when a step begins: see StepStart.
+    struct Start {
+        const KernelContext& context;
+        const ConstraintData& data;
+        const Bundle& bundle;
+
+        [[nodiscard]] const StepConstants& step() const { return context.step; }
+        [[nodiscard]] JointPose<Lanes, kind_a, kind_b> pose() const
+        {
+            return {between_bodies<kind_a, kind_b>(bundle.arrays_a, bundle.offsets_a, bundle.arrays_b,
+                                                   bundle.offsets_b),
+                    load_orientation<kind_a>(bundle.arrays_a, bundle.offsets_a),
+                    load_orientation<kind_b>(bundle.arrays_b, bundle.offsets_b)};
+        }
+        [[nodiscard]] FromWorldPoints<Lanes> from_world_points() const
+        {
+            const auto points = [&](int lane) -> const WorldPoints& {
+                return data.world_points[bundle.constraint[lane]];
+            };
+            return {from_points<kind_a>(bundle.arrays_a, bundle.offsets_a,
+                                        [&](int lane) -> const Vec3<double>& { return points(lane).a; }),
+                    from_points<kind_b>(bundle.arrays_b, bundle.offsets_b,
+                                        [&](int lane) -> const Vec3<double>& { return points(lane).b; })};
+        }
+        [[nodiscard]] Vec3<Lanes> acceleration(const A& a, const B& b) const
+        {
+            return free_acceleration(context.step, bundle.arrays_b, bundle.offsets_b, b) -
+                   free_acceleration(context.step, bundle.arrays_a, bundle.offsets_a, a);
+        }
+    };
+
+    /// The bodies of a step that is done, loaded when they are asked for.
+    struct End {
+        const Bundle& bundle;
+        [[nodiscard]] A a() const { return bundle.load_a(); }
+        [[nodiscard]] B b() const { return bundle.load_b(); }
+    };
 
     static void prepare(const KernelContext& context, const BlockStreams& streams, const ConstraintData& data,
                         std::int32_t begin, std::int32_t end)
     {
+        static_assert(ConstraintType<Type, Start, End, Lanes, kind_a, kind_b>, "see constraint_type.h");
         for (std::int32_t block = begin; block < end; ++block) {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 const auto parameters =
@@ -99,52 +127,17 @@ struct Kernels {
                 const auto memory = gather_struct<Memory>(data.memory_in, data.memory_stride, entry);
                 const A a = bundle.load_a();
                 const B b = bundle.load_b();
+                const Start start{context, data, bundle};
                 Impulse impulse;
-                if constexpr (requires { typename Type::Definition; }) {
-                    const JointPose<Lanes, kind_a, kind_b> pose{
-                        between_bodies<kind_a, kind_b>(bundle.arrays_a, bundle.offsets_a, bundle.arrays_b,
-                                                       bundle.offsets_b),
-                        load_orientation<kind_a>(bundle.arrays_a, bundle.offsets_a),
-                        load_orientation<kind_b>(bundle.arrays_b, bundle.offsets_b)};
-                    if constexpr (requires { &Type::world_points; }) {
-                        const auto points = [&](int lane) -> const WorldPoints& {
-                            return data.world_points[bundle.constraint[lane]];
-                        };
-                        const WorldPose<Lanes, kind_a, kind_b> in_world{
-                            pose,
-                            from_points<kind_a>(
-                                bundle.arrays_a, bundle.offsets_a,
-                                [&](int lane) -> const Vec3<double>& { return points(lane).a; }),
-                            from_points<kind_b>(
-                                bundle.arrays_b, bundle.offsets_b,
-                                [&](int lane) -> const Vec3<double>& { return points(lane).b; })};
-                        store_row(Type::prepare(context.step, parameters, memory, in_world, a, b, impulse),
-                                  bundle.row);
-                    } else if constexpr (Type::has_restitution) {
-                        store_row(
-                            Type::prepare(context.step, parameters, memory,
-                                          parting_acceleration(context, bundle, a, b), pose, a, b, impulse),
-                            bundle.row);
-                    } else {
-                        store_row(Type::prepare(context.step, parameters, memory, pose, a, b, impulse),
-                                  bundle.row);
-                    }
-                } else {
-                    store_row(Type::prepare(context.step, parameters, memory,
-                                            parting_acceleration(context, bundle, a, b), a, b, impulse),
-                              bundle.row);
-                }
+                const Row row = Type::prepare(start, parameters, memory, a, b, impulse);
+                store_row(row, bundle.row);
                 store_row(impulse, bundle.impulse);
-                if constexpr (pulls_at_arms) note_overload(context, load_row<Row>(bundle.row), impulse, a, b);
+                if constexpr (Type::pulls_at_arms) note_overload(context, row, impulse, a, b);
                 if (bundle.sum != nullptr) clear(bundle.sum);
             });
         }
     }
 
-    static constexpr bool pulls_at_arms = requires(const Row& row, const Impulse& impulse)
-    {
-        Type::template tension<Lanes>(row, impulse);
-    };
     static void note_overload(const KernelContext& context, const Row& row, const Impulse& impulse,
                               const A& a, const B& b)
     {
@@ -177,6 +170,17 @@ struct Kernels {
         }
     }
 
+    /// What a constraint is in this substep, and its impulses of the last one.
+    [[gnu::always_inline]] static void begin_substep(const Bundle& bundle, A& a, B& b)
+    {
+        const auto row = load_row<Row>(bundle.row);
+        const auto impulse = load_row<Impulse>(bundle.impulse);
+        Substep substep;
+        Type::template prepare_substep<Lanes>(row, impulse, substep, a, b);
+        Type::template warm_start<Lanes>(row, substep, impulse, a, b);
+        store_row(substep, bundle.substep);
+    }
+
     static void warm_start(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
                            std::int32_t end)
     {
@@ -185,10 +189,7 @@ struct Kernels {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
-                Substep substep;
-                Type::template warm_start<Lanes>(context.step, load_row<Row>(bundle.row), substep,
-                                                 load_row<Impulse>(bundle.impulse), a, b);
-                if constexpr (Type::recomputes_each_substep) store_row(substep, bundle.substep);
+                begin_substep(bundle, a, b);
                 bundle.store_velocities(a, b);
             });
         }
@@ -226,7 +227,7 @@ struct Kernels {
                 B b = bundle.load_b();
                 auto impulse = load_row<Impulse>(bundle.impulse);
                 const auto row = load_row<Row>(bundle.row);
-                Type::template solve<Lanes>(step, swept<Type::recomputes_each_substep>(row),
+                Type::template solve<Lanes>(step, swept<has_substep_row>(row),
                                             load_row<Substep>(bundle.substep), impulse, a, b);
                 store_row(impulse, bundle.impulse);
                 bundle.store_velocities(a, b);
@@ -258,8 +259,7 @@ struct Kernels {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
-                Type::template project<Lanes>(context.step, load_row<Row>(bundle.row),
-                                              load_row<Substep>(bundle.substep), a, b);
+                Type::template project<Lanes>(context.step, load_row<Row>(bundle.row), a, b);
                 store_displaced(bundle.arrays_a, bundle.offsets_a, a, bundle.count);
                 store_displaced(bundle.arrays_b, bundle.offsets_b, b, bundle.count);
             });
@@ -275,11 +275,11 @@ struct Kernels {
     static Sum summand(const Bundle& bundle)
     {
         const auto impulse = load_row<Impulse>(bundle.impulse);
-        if constexpr (is_joint) {
+        if constexpr (Type::is_contact) {
+            return impulse;
+        } else {
             return Type::template wrench<Lanes>(load_row<Row>(bundle.row), load_row<Substep>(bundle.substep),
                                                 impulse);
-        } else {
-            return impulse;
         }
     }
 
@@ -305,21 +305,16 @@ struct Kernels {
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 const auto row = load_row<Row>(bundle.row);
                 const auto impulse = load_row<Impulse>(bundle.impulse);
-                Memory memory;
-                // Some remember how far their bodies have gone.
-                if constexpr (requires(A a, B b) { Type::template remember<Lanes>(row, impulse, a, b); }) {
-                    memory = Type::template remember<Lanes>(row, impulse, bundle.load_a(), bundle.load_b());
-                } else {
-                    memory = Type::template remember<Lanes>(row, impulse);
-                }
+                const End bodies{bundle};
+                Memory memory = Type::template remember<Lanes>(row, impulse, bodies);
                 scatter_finite(memory, data.memory_out, data.memory_stride, bundle.constraint, bundle.count);
-                if constexpr (is_joint) {
+                if constexpr (Type::is_contact) {
+                    if (bundle.sum != nullptr)
+                        memory = Type::template remember<Lanes>(row, load_row<Sum>(bundle.sum), bodies);
+                    scatter_finite(memory, data.step_out, data.step_stride, bundle.constraint, bundle.count);
+                } else {
                     scatter_finite(load_row<Sum>(bundle.sum), data.step_out, data.step_stride,
                                    bundle.constraint, bundle.count);
-                } else {
-                    if (bundle.sum != nullptr)
-                        memory = Type::template remember<Lanes>(row, load_row<Sum>(bundle.sum));
-                    scatter_finite(memory, data.step_out, data.step_stride, bundle.constraint, bundle.count);
                 }
             });
         }
@@ -351,10 +346,7 @@ struct Kernels {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
             A a = load_row<A>(body_a + bundle.lane);
             B b = load_row<B>(body_b + bundle.lane);
-            Substep substep;
-            Type::template warm_start<Lanes>(context.step, load_row<Row>(bundle.row), substep,
-                                             load_row<Impulse>(bundle.impulse), a, b);
-            if constexpr (Type::recomputes_each_substep) store_row(substep, bundle.substep);
+            begin_substep(bundle, a, b);
             store_copy_velocity(a, body_a + bundle.lane);
             store_copy_velocity(b, body_b + bundle.lane);
         });
@@ -379,8 +371,8 @@ struct Kernels {
             B b = load_row<B>(body_b + bundle.lane);
             auto impulse = load_row<Impulse>(bundle.impulse);
             const auto row = load_row<Row>(bundle.row);
-            Type::template solve<Lanes>(step, swept<Type::recomputes_each_substep>(row),
-                                        load_row<Substep>(bundle.substep), impulse, a, b);
+            Type::template solve<Lanes>(step, swept<has_substep_row>(row), load_row<Substep>(bundle.substep),
+                                        impulse, a, b);
             store_row(impulse, bundle.impulse);
             store_copy_velocity(a, body_a + bundle.lane);
             store_copy_velocity(b, body_b + bundle.lane);
@@ -426,7 +418,7 @@ struct Kernels {
     {
         kernels.prepare = prepare;
         kernels.store = store;
-        if constexpr (has_copies && requires { Type::equality_count; }) {
+        if constexpr (has_copies && Type::equality_count > 0) {
             kernels.equality_rows = equality_rows;
             kernels.equality_count = Type::equality_count;
         }
@@ -437,7 +429,7 @@ struct Kernels {
     {
         if constexpr (Type::has_restitution) kernels.restitute = restitute;
         // So few bodies bear such loads that one copy of this, of one lane, serves every instruction set.
-        if constexpr (pulls_at_arms && Lanes_width == 1) {
+        if constexpr (Type::pulls_at_arms && Lanes_width == 1) {
             kernels.stiffen = stiffen;
             if constexpr (has_copies) kernels.stiffen_copies = stiffen_copies;
         }

@@ -308,7 +308,7 @@ inline void stiffen_locks(const FigureBlock& figure, const FigureNode& node, flo
         const float* rows = system + node.jacobian + lock.first_row * FigureNode::row_floats;
         const auto x = load_row<EqualityRow<Lanes>>(rows);
         const auto y = load_row<EqualityRow<Lanes>>(rows + FigureNode::row_floats);
-        auto tension = load_row<Vec3<Lanes>>(system + node.target + lock.first_row * block_lanes);
+        auto tension = load_row<Vec3<Lanes>>(system + node.tension + lock.first_row * block_lanes);
         if (lock.reversed) tension = -tension;
         stiffen(load_row<Mover>(figure.body(node.body) + lane), lever_of_point(x.lever_b, y.lever_b), tension,
                 system + node.mass, system + node.pull);
@@ -333,17 +333,17 @@ inline void factor_tree(const FigureBlock& figure, int lane)
         Row6 pivots;
         pivots_of(body, mass, pivots);
         store_row(mass, system + node.mass);
-        store_array(pivots, system + node.change);
+        store_array(pivots, system + node.pivots);
         store_row(Vec3<Lanes>{Lanes(0), Lanes(0), Lanes(0)}, system + node.pull);
     }
     for (const FigureNode& node : nodes) stiffen_locks(figure, node, system, lane);
     for (const FigureNode& node : nodes) {
         const Mover body = load_row<Mover>(figure.body(node.body) + lane);
         Row6 pivots_alone;
-        load_array(system + node.change, pivots_alone);
+        load_array(system + node.pivots, pivots_alone);
         auto factor = load_row<Triangle<6>>(system + node.mass);
         factor_mass(body, pivots_alone, factor);
-        store_row(factor, system + node.mass);
+        store_row(factor, system + node.mass_factor);
         float* parent_mass =
             node.parent_node < 0 ? nullptr : system + nodes[static_cast<std::size_t>(node.parent_node)].mass;
         with_rows(node,
@@ -371,7 +371,7 @@ inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, i
     for (const FigureNode& node : nodes) {
         Row6 change;
         load_array(system + node.force, change);
-        solve_in_place(load_factor<6>(system + node.mass), change);
+        solve_in_place(load_factor<6>(system + node.mass_factor), change);
         store_array(change, system + node.change);
         float* parent_force = parent_of(node, &FigureNode::force);
         with_rows(node, [&]<class Rows>(Rows*) {

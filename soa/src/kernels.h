@@ -35,42 +35,27 @@ constexpr bool occurs()
 {
     constexpr bool moves = a != BodyKind::fixed || b != BodyKind::fixed;
     constexpr bool has_particle = a == BodyKind::particle || b == BodyKind::particle;
-    return is_built(a) && is_built(b) && moves &&
-           !(has_particle && requires { Type::needs_bodies_that_turn; });
+    return is_built(a) && is_built(b) && moves && !(has_particle && Type::needs_bodies_that_turn);
 }
 /// Moving bodies of two models.
 constexpr bool is_mixed(BodyKind a, BodyKind b)
 {
     return a != b && a != BodyKind::fixed && b != BodyKind::fixed;
 }
-/// See joint_type.h.
-template <class Type>
-constexpr bool is_rare()
-{
-    if constexpr (requires { Type::is_rare; }) {
-        return Type::is_rare;
-    } else {
-        return false;
-    }
-}
 /// Bodies of one model, or of one and fixed ones; but not joints of planar bodies about axes, whose rows are mostly of what the
 /// plane forbids: a ball-socket is the hinge of the plane, a distance its rope.
 template <class Type, BodyKind a, BodyKind b>
 constexpr bool is_usual()
 {
-    return !is_mixed(a, b) && !((a == BodyKind::planar || b == BodyKind::planar) && requires {
-        Type::needs_bodies_that_turn;
-    }) && !is_rare<Type>();
+    const bool is_planar = a == BodyKind::planar || b == BodyKind::planar;
+    return !is_mixed(a, b) && !(is_planar && Type::needs_bodies_that_turn) && !Type::is_rare;
 }
 /// Joints between moving bodies of two models are few in any scene: one copy of them, of one lane, serves every instruction
 /// set, with the same bits. See kernel_table().
 template <class Type, BodyKind a, BodyKind b>
 constexpr bool is_left_to_scalar()
 {
-    return Lanes_width > 1 && is_mixed(a, b) && requires
-    {
-        typename Type::Definition;
-    };
+    return Lanes_width > 1 && is_mixed(a, b) && !Type::is_contact;
 }
 
 /// Of a joint that does not ask which of its bodies are fixed: such a body is a rigid one without inverse mass.
@@ -78,11 +63,7 @@ template <class Type, BodyKind kind, BodyKind partner>
 constexpr BodyKind computed_as()
 {
     constexpr bool joins_rigid = kind == BodyKind::fixed && partner == BodyKind::rigid;
-    return joins_rigid && requires
-    {
-        typename Type::Definition;
-    }
-    &&!Type::has_restitution ? BodyKind::rigid : kind;
+    return joins_rigid && !Type::is_contact && !Type::has_restitution ? BodyKind::rigid : kind;
 }
 
 template <KernelShare share, class Type, BodyKind a, BodyKind b>

@@ -85,20 +85,12 @@ void Layout::place_joints(Scene& scene)
                 continue;
             }
             if (store.colours[i] == no_colour) store.colours[i] = joint_masks_.take_first(a, b);
-            int equalities = 0;
-            bool locks_point = false;
-            if constexpr (requires { Type::equality_count; }) {
-                equalities = Type::is_equality(store.definitions[i]) ? Type::equality_count : 0;
-                locks_point = Type::locks_point;
-            }
+            const int equalities = Type::is_equality(store.definitions[i]) ? Type::equality_count : 0;
             candidates_.push_back({{a, b, static_cast<std::int32_t>(i),
                                     static_cast<std::uint8_t>(contact_type_count + type), store.colours[i]},
                                    equalities,
-                                   locks_point});
-            bool locks_place = false;
-            if constexpr (requires { Type::locks_place(store.definitions[i]); })
-                locks_place = Type::locks_place(store.definitions[i]);
-            ties_.push_back({a, b, locks_place});
+                                   Type::locks_point});
+            ties_.push_back({a, b, Type::locks_place(store.definitions[i])});
         }
     });
     find_groups(bodies);

@@ -451,6 +451,32 @@ TEST(BadInput, EveryFieldOfAServoATransmissionAndAPulleyIsChecked)
     for (const Case& c : cases) expect_refused(c);
 }
 
+TEST(BadInput, EveryFieldOfAScrewIsChecked)
+{
+    using Screw = ScrewDefinition;
+    const Case cases[] = {
+        bodies<Screw>(
+            "a particle", [](Screw& j, Fixture& f) { j.body_a = f.particle; }, "body_a", "particle"),
+        bodies<Screw>(
+            "b particle", [](Screw& j, Fixture& f) { j.body_b = f.particle; }, "body_b", "particle"),
+        bodies<Screw>(
+            "anchor a", [](Screw& j, Fixture&) { j.local_anchor_a.y = nan; }, "local_anchor_a.y", "nan"),
+        bodies<Screw>(
+            "anchor b", [](Screw& j, Fixture&) { j.local_anchor_b.x = 2e9F; }, "local_anchor_b.x", "2e+09"),
+        bodies<Screw>(
+            "no axis",
+            [](Screw& j, Fixture&) {
+                j.axis_a = {0, 0, 0};
+            },
+            "axis_a", "0"),
+        bodies<Screw>(
+            "pitch", [](Screw& j, Fixture&) { j.pitch = nan; }, "pitch", "nan"),
+        bodies<Screw>(
+            "pitch too large", [](Screw& j, Fixture&) { j.pitch = 2e6F; }, "pitch", "2000000"),
+    };
+    for (const Case& c : cases) expect_refused(c);
+}
+
 TEST(BadInput, AJointIsSaidAnewOnlyAsWhatItIs)
 {
     const auto ball_socket = [](Fixture& f) { return BallSocketDefinition{f.rigid, f.planar, {}, {}}; };

@@ -183,6 +183,69 @@ TEST(RackAndPinion, MovesAsTheInertiaOfBothSays)
     EXPECT_LT(scene.joint_report(joint).error, 1e-3F);
 }
 
+/// A nut of mass m and inertia I about an upright screw, held on its axis.
+BodyId add_nut(Scene& scene, BodyId bolt, double height, float mass, float inertia)
+{
+    BodyDefinition nut = box({0, height, 0}, mass);
+    nut.inertia = {inertia, 0, 0, inertia, 0, inertia};
+    const BodyId id = scene.add_body(nut);
+    const float half = 0.70710678F;
+    const JointFrame upright{{0, 0, 0}, {0, 0, half, half}};  // x along y
+    const JointFrame on_bolt{{0, static_cast<float>(height - scene.state(bolt).position.y), 0},
+                             upright.rotation};
+    scene.add_joint(PointOnLineDefinition{bolt, id, on_bolt, upright});
+    scene.add_joint(ParallelAxesDefinition{bolt, id, on_bolt, upright});
+    return id;
+}
+
+TEST(Screw, ANutRunsDownAsMassAndInertiaSay)
+{
+    // (m + I / p^2) a = m g with p = pitch / (2 pi); closed form.
+    const float mass = 2, inertia = 0.05F, pitch = 0.5F;
+    Scene scene;
+    const BodyId bolt = scene.add_body({.motion = BodyMotion::static_body});
+    const BodyId nut = add_nut(scene, bolt, 0, mass, inertia);
+    const ConstraintId thread =
+        scene.add_joint(ScrewDefinition{.body_a = bolt, .body_b = nut, .axis_a = {0, 1, 0}, .pitch = pitch});
+    Solver solver(with_gravity({0, -9.81F, 0}));
+    run(scene, solver, 2);
+    const double p = static_cast<double>(pitch) / (2 * pi);
+    const double acceleration = -9.81 * static_cast<double>(mass) /
+                                (static_cast<double>(mass) + static_cast<double>(inertia) / (p * p));
+    EXPECT_NEAR(scene.state(nut).linear_velocity.y, 2 * acceleration, 1e-3 * std::abs(2 * acceleration));
+    EXPECT_NEAR(scene.state(nut).angular_velocity.y, 2 * acceleration / p,
+                1e-3 * std::abs(2 * acceleration / p));
+    EXPECT_LT(scene.joint_report(thread).error, 1e-4F);
+    std::printf("a = %.5f m/s2 (%.5f), %.1f turns, off its thread by %.1e m\n",
+                static_cast<double>(scene.state(nut).linear_velocity.y) / 2, acceleration,
+                scene.state(nut).position.y / static_cast<double>(pitch),
+                static_cast<double>(scene.joint_report(thread).error));
+}
+
+TEST(Screw, AThousandTurnsMoveItAThousandPitches)
+{
+    // Held by what is counted: the slide beside turns counted from the poses.
+    const float pitch = -0.02F;
+    Scene scene;
+    const BodyId bolt = scene.add_body({.motion = BodyMotion::static_body});
+    const BodyId nut = add_nut(scene, bolt, 0, 1, 0.01F);
+    scene.add_joint(ScrewDefinition{.body_a = bolt, .body_b = nut, .axis_a = {0, 1, 0}, .pitch = pitch});
+    scene.set_velocity(nut, {0, pitch * 15, 0}, {0, 15 * 2 * static_cast<float>(pi), 0});
+    Solver solver;
+    double turned = 0;
+    while (turned < 1000 * 2 * pi) {
+        const auto angle = [&] {
+            const Quat<double> q = scene.state(nut).orientation;
+            return 2 * std::atan2(q.y, q.w);
+        };
+        const double before = angle();
+        solver.step(scene, testing::frame_time);
+        turned += std::remainder(angle() - before, 2 * pi);
+    }
+    const double wanted = static_cast<double>(pitch) * turned / (2 * pi);
+    EXPECT_NEAR(scene.state(nut).position.y, wanted, 1e-5) << "of 20 m";
+}
+
 TEST(Pulley, TwoWeightsFallAsAtwoodsMachine)
 {
     // a = g (m_b - m_a) / (m_a + m_b), tension 2 m_a m_b g / (m_a + m_b).

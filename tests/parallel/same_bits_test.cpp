@@ -92,8 +92,8 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {4815694046850052330ULL, 15849000652399950134ULL, 5573244792828541963ULL,
-                                    10710082232256421044ULL};
+    const std::uint64_t golden[] = {13881538364930902116ULL, 2550485250564829622ULL, 12320483843182051208ULL,
+                                    12576899400685872705ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});
@@ -105,7 +105,11 @@ TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAft
                 << way.name << " on " << threads << " threads";
         }
         if (steps == golden_steps) {
-            EXPECT_EQ(scalar.back(), golden[number++]) << way.name << ": compilers disagree";
+            EXPECT_EQ(scalar.back(), golden[number++])
+                << way.name
+                << ": this build makes other bits than the one that the golden hash is of. Where a type of "
+                << "constraint, its cases or its maths have changed on purpose, every build has to make the "
+                   "new one.";
         }
     }
 }

@@ -1,4 +1,4 @@
-// The README's bytes a lane are what the kernels stream.
+// The bytes a lane in bench/README.md are what the kernels stream.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -20,18 +20,18 @@ int bytes(const KernelTable& table, int type, BodyKind kind)
 
 TEST(Readme, BytesALaneAreWhatTheKernelsStream)
 {
-    std::ifstream file(MOTLEY_README);
-    ASSERT_TRUE(file) << MOTLEY_README;
+    std::ifstream file(MOTLEY_BENCH_README);
+    ASSERT_TRUE(file) << MOTLEY_BENCH_README;
     std::map<std::string, std::string> bytes_cells;  // of the table's rows, by their first cell
     bool in_section = false;
     for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("## ")) in_section = line == "## Bodies and constraints";
+        if (line.starts_with("## ")) in_section = line == "## Kernels of every constraint";
         if (!in_section || !line.starts_with("| ")) continue;
         std::vector<std::string> cells;
         std::istringstream cut(line.substr(1));
         for (std::string cell; std::getline(cut, cell, '|');)
             cells.push_back(cell.substr(1, cell.size() > 1 ? cell.size() - 2 : 0));
-        if (cells.size() > 3) bytes_cells[cells[0]] = cells[3];
+        if (cells.size() > 1) bytes_cells[cells[0]] = cells[1];
     }
     // The table's rows by their beginnings, in the order of the list of types.
     const char* const rows[] = {"contact, smooth",
@@ -56,8 +56,11 @@ TEST(Readme, BytesALaneAreWhatTheKernelsStream)
                                 "gear",
                                 "rack and pinion",
                                 "pulley",
-                                "manifold"};
-    static_assert(std::size(rows) == constraint_type_count, "a row for every type");
+                                "manifold",
+                                "screw"};
+    static_assert(std::size(rows) == constraint_type_count,
+                  "every type of constraint_types.h has a row here, in the order of the list, and one in the "
+                  "table of bench/README.md");
     for (const Isa isa : available_isas()) {
         const KernelTable& table = kernel_table(isa);
         for (int type = 0; type < constraint_type_count; ++type) {
@@ -65,7 +68,8 @@ TEST(Readme, BytesALaneAreWhatTheKernelsStream)
             const std::string measured = std::to_string(bytes(table, type, BodyKind::planar)) + " / " +
                                          std::to_string(bytes(table, type, BodyKind::rigid));
             const auto row = bytes_cells.lower_bound(name);
-            ASSERT_TRUE(row != bytes_cells.end() && row->first.starts_with(name)) << name;
+            ASSERT_TRUE(row != bytes_cells.end() && row->first.starts_with(name))
+                << "bench/README.md lacks the row | " << name << " | " << measured << " | ... |";
             EXPECT_EQ(row->second, measured) << name << " on " << isa_name(isa);
         }
     }

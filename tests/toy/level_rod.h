@@ -8,10 +8,8 @@
 #include <cmath>
 #include <memory>
 
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/ball_socket_definition.h"
-#include "motley/core/joint_checks.h"
-#include "motley/core/joint_pose.h"
-#include "motley/core/joint_report.h"
 #include "motley/core/limit.h"
 #include "motley/core/type_list.h"
 
@@ -29,10 +27,8 @@ class JointModel;
 }
 std::shared_ptr<const reference::JointModel> model_of(const LevelRodDefinition& joint);
 
-struct LevelRod {
+struct LevelRod : ConstraintTraits {
     using Definition = LevelRodDefinition;
-    static constexpr bool has_restitution = false;
-    static constexpr bool recomputes_each_substep = true;
 
     template <class Real>
     struct Parameters {
@@ -48,7 +44,7 @@ struct LevelRod {
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
-        Real mass, error;
+        Real effective_mass, error;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -61,19 +57,21 @@ struct LevelRod {
     }
     static Parameters<float> parameters(const Definition& joint) { return {joint.offset}; }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& joint, const Memory<Real>& memory,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& joint, const Memory<Real>& memory,
+                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
     {
-        impulse.lambda = Real(step.warm_start_scale) * memory.lambda;
-        return Row<Real, A::kind, B::kind>{pose.between.y - joint.offset};
+        impulse.lambda = Real(start.step().warm_start_scale) * memory.lambda;
+        return Row<Real, A::kind, B::kind>{start.pose().between.y - joint.offset};
     }
-    template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
-                           A& a, B& b)
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse&, Substep& substep, const A& a, const B& b)
     {
         build<Real>(row, substep, a, b);
+    }
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row&, const Substep&, const Impulse& impulse, A& a, B& b)
+    {
         apply_impulse(a, at_centre<A, B, Real>(), -up<A, B>(impulse.lambda));
         apply_impulse(b, at_centre<A, B, Real>(), up<A, B>(impulse.lambda));
     }
@@ -82,23 +80,23 @@ struct LevelRod {
                       B& b)
     {
         const Real speed = b.linear.y - a.linear.y;
-        const Real wanted = lock_impulse(step, substep.error, speed, substep.mass, impulse.lambda);
+        const Real wanted = lock_impulse(step, substep.error, speed, substep.effective_mass, impulse.lambda);
         const Real change = wanted - impulse.lambda;
         impulse.lambda = wanted;
         apply_impulse(a, at_centre<A, B, Real>(), -up<A, B>(change));
         apply_impulse(b, at_centre<A, B, Real>(), up<A, B>(change));
     }
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants&, const Row& row, A& a, B& b)
     {
-        Substep now;
+        SubstepRow<Real, A::kind, B::kind> now;
         build<Real>(row, now, a, b);
-        const Real push = -(now.mass * now.error);
+        const Real push = -(now.effective_mass * now.error);
         apply_displacement(a, at_centre<A, B, Real>(), -up<A, B>(push));
         apply_displacement(b, at_centre<A, B, Real>(), up<A, B>(push));
     }
-    template <class Real, class Row, class Impulse>
-    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
     {
         return {impulse.lambda};
     }
@@ -134,7 +132,7 @@ struct LevelRod {
     {
         const auto e = up<A, B>(Real(1));
         const auto centre = at_centre<A, B, Real>();
-        substep.mass =
+        substep.effective_mass =
             inverse_or_zero(dot(e, (inverse_point_mass(a, centre) + inverse_point_mass(b, centre)) * e));
         substep.error = row.start_error + b.delta.y - a.delta.y;
     }

@@ -1,5 +1,5 @@
 // The one list of constraint types. Storage, batches, kernels and typed tests follow from it: to add a joint, write its
-// header x.h as joint_type.h says, with the list XTypes of its types at its end, and put that name into JointTypes.
+// header x.h as constraint_type.h says, with the list XTypes of its types at its end, and put that name into JointTypes.
 #pragma once
 
 #include "motley/core/constraints/ball_socket.h"
@@ -9,6 +9,7 @@
 #include "motley/core/constraints/frame_joint.h"
 #include "motley/core/constraints/manifold.h"
 #include "motley/core/constraints/pulley.h"
+#include "motley/core/constraints/screw.h"
 #include "motley/core/constraints/servo.h"
 #include "motley/core/constraints/swing_limit.h"
 #include "motley/core/constraints/transmission.h"
@@ -17,7 +18,7 @@ namespace motley {
 
 /// The lists of the headers above, which are what the build compiles kernels by: contacts first, then joints.
 using ConstraintLists = TypeList<ContactTypes, BallSocketTypes, DistanceTypes, FrameJointTypes, DriveTypes,
-                                 SwingLimitTypes, ServoTypes, TransmissionTypes, PulleyTypes, ManifoldTypes>;
+                                 SwingLimitTypes, ServoTypes, TransmissionTypes, PulleyTypes, ManifoldTypes, ScrewTypes>;
 
 template <class Lists>
 struct JointTypesOf;

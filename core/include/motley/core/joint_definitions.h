@@ -7,6 +7,7 @@
 #include "motley/core/constraints/frame_joint_definition.h"
 #include "motley/core/constraints/manifold_definition.h"
 #include "motley/core/constraints/pulley_definition.h"
+#include "motley/core/constraints/screw_definition.h"
 #include "motley/core/constraints/servo_definition.h"
 #include "motley/core/constraints/swing_limit_definition.h"
 #include "motley/core/constraints/transmission_definition.h"

@@ -46,10 +46,10 @@ struct JointPose {
     Orientation<Real, b> orientation_b;
 };
 
-/// Beside it, for joints with points in the world: x_a - point_a and x_b - point_b, subtracted in double.
-template <class Real, BodyKind a, BodyKind b>
-struct WorldPose : JointPose<Real, a, b> {
-    Vec3<Real> from_point_a, from_point_b;
+/// Of joints with points in the world: x_a - point_a and x_b - point_b, subtracted in double.
+template <class Real>
+struct FromWorldPoints {
+    Vec3<Real> a, b;
 };
 
 /// Two points of the world that a joint is defined by.

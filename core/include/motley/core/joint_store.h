@@ -14,7 +14,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/joint_pose.h"
 #include "motley/core/joint_report.h"
-#include "motley/core/joint_type.h"
+#include "motley/core/constraint_type.h"
 
 namespace motley {
 
@@ -38,7 +38,7 @@ struct JointStore {
     std::vector<std::uint8_t> colours;      ///< no_colour until the first step
     std::vector<std::uint32_t> slots;       ///< handle slot of each joint
 
-    static constexpr bool has_world_points = requires { &Type::world_points; };
+    static constexpr bool has_world_points = Type::has_world_points;
     static constexpr std::size_t wrench_floats = quad_floats<Wrench<float>>;
     [[nodiscard]] std::size_t size() const { return definitions.size(); }
 

@@ -52,19 +52,19 @@ SpringSoftness<Real> spring_softness(const StepConstants& step, const Real& hert
             select(is_stiffness, Real(1) / (h * safe), zero)};
 }
 
-/// delta lambda = -mass (J v + rate C) - kept lambda.
+/// delta lambda = -effective_mass (J v + rate C) - kept lambda.
 template <class Real>
 struct SoftRow {
-    Real rate, mass, kept;
+    Real rate, effective_mass, kept;
 };
 /// With K = J M^-1 J^T where the bodies are now, and its inverse, 0 where nothing can move.
 template <class Real>
-SoftRow<Real> soft_row(const SpringSoftness<Real>& spring, const Real& inverse_mass, const Real& mass)
+SoftRow<Real> soft_row(const SpringSoftness<Real>& spring, const Real& response, const Real& effective_mass)
 {
     const Real zero(0);
-    const auto is_stiffness = (spring.give > zero) & (mass > zero);
-    const Real inverse = Real(1) / select(is_stiffness, inverse_mass + spring.give, Real(1));
-    return {spring.rate, select(is_stiffness, inverse, spring.mass_scale * mass),
+    const auto is_stiffness = (spring.give > zero) & (effective_mass > zero);
+    const Real inverse = Real(1) / select(is_stiffness, response + spring.give, Real(1));
+    return {spring.rate, select(is_stiffness, inverse, spring.mass_scale * effective_mass),
             select(is_stiffness, spring.give * inverse, spring.impulse_scale)};
 }
 

@@ -175,6 +175,19 @@ Quat<Real> turn_of(const LaneBody<Real, BodyKind::planar>& body)
     return {Real(0), Real(0), half.sine, half.cosine};
 }
 
+/// How far a body has turned since the step began about an axis that it carries, in the world of that time; rad.
+template <class Real, BodyKind kind>
+Real turn_about(const LaneBody<Real, kind>& body, const Vec3<Real>& axis)
+{
+    const Quat<Real>& q = body.delta_rotation;
+    return Real(2) * arc_tangent2(dot(axis, Vec3<Real>{q.x, q.y, q.z}), q.w);
+}
+template <class Real>
+Real turn_about(const LaneBody<Real, BodyKind::planar>& body, const Vec3<Real>& axis)
+{
+    return axis.z * body.delta_yaw;
+}
+
 /// A rotation in the frame of a body, seen from the world.
 template <class Real, BodyKind kind>
 Quat<Real> to_world(const Orientation<Real, kind>& o, const Quat<Real>& local)

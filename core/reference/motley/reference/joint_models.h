@@ -1,15 +1,7 @@
 // The model of each joint that a host may define.
 #pragma once
 
-#include "motley/core/constraints/ball_socket_definition.h"
-#include "motley/core/constraints/distance_definition.h"
-#include "motley/core/constraints/drive_definition.h"
-#include "motley/core/constraints/frame_joint_definition.h"
-#include "motley/core/constraints/manifold_definition.h"
-#include "motley/core/constraints/pulley_definition.h"
-#include "motley/core/constraints/servo_definition.h"
-#include "motley/core/constraints/swing_limit_definition.h"
-#include "motley/core/constraints/transmission_definition.h"
+#include "motley/core/joint_definitions.h"
 #include "motley/reference/joint.h"
 
 namespace motley::reference {
@@ -23,6 +15,7 @@ Model model_of(const PointServoDefinition& servo);
 Model model_of(const AngularServoDefinition& servo);
 Model model_of(const GearDefinition& gear);
 Model model_of(const RackAndPinionDefinition& rack);
+Model model_of(const ScrewDefinition& screw);
 Model model_of(const PulleyDefinition& pulley);
 Model model_of(const ManifoldDefinition& contact);
 Model frame_model(const JointFrame& frame_a, const JointFrame& frame_b, const JointStiffness& stiffness,

@@ -7,23 +7,17 @@
 
 #include <cmath>
 
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/ball_socket_definition.h"
-#include "motley/core/equality_row.h"
 #include "motley/core/invalid_input.h"
-#include "motley/core/joint_checks.h"
-#include "motley/core/joint_pose.h"
-#include "motley/core/joint_report.h"
-#include "motley/core/step_constants.h"
-#include "motley/core/tension.h"
 #include "motley/core/type_list.h"
 
 namespace motley {
 
-struct BallSocket {
+struct BallSocket : ConstraintTraits {
     using Definition = BallSocketDefinition;
     static constexpr const char* name = "ball-socket";
-    static constexpr bool has_restitution = false;
-    static constexpr bool recomputes_each_substep = true;
+    static constexpr bool pulls_at_arms = true;
     static constexpr int equality_count = 3;
     static constexpr bool locks_point = true;
 
@@ -43,8 +37,8 @@ struct BallSocket {
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         PairVector<Real, a, b> arm_a, arm_b;
-        PairSymmetric<Real, a, b> mass;  ///< K^-1
-        PairVector<Real, a, b> error;    ///< C, m
+        PairSymmetric<Real, a, b> effective_mass;  ///< K^-1
+        PairVector<Real, a, b> error;              ///< C, m
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -63,11 +57,12 @@ struct BallSocket {
         return {joint.local_anchor_a, joint.local_anchor_b};
     }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& joint, const Memory<Real>& memory,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& joint, const Memory<Real>& memory,
+                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
         using Vector = PairVector<Real, A::kind, B::kind>;
         const Vec3<Real> arm_a = to_world(pose.orientation_a, joint.anchor_a);
         const Vec3<Real> arm_b = to_world(pose.orientation_b, joint.anchor_b);
@@ -84,16 +79,21 @@ struct BallSocket {
         return {to_three(arm_a), to_three(arm_b), to_three(-impulse.push), to_three(impulse.push)};
     }
 
-    template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
-                           A& a, B& b)
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse&, Substep& substep, const A& a, const B& b)
     {
         substep.arm_a = turned(a, row.start_arm_a);
         substep.arm_b = turned(b, row.start_arm_b);
         substep.error = anchor_error(row.start_error, row.start_arm_a, row.start_arm_b, substep.arm_a,
                                      substep.arm_b, a, b);
         meet_half_way(substep.arm_a, substep.arm_b, substep.error);
-        substep.mass = inverse(inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b));
+        substep.effective_mass =
+            inverse(inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b));
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
+    {
         apply_impulse(a, substep.arm_a, -impulse.push);
         apply_impulse(b, substep.arm_b, impulse.push);
     }
@@ -104,7 +104,7 @@ struct BallSocket {
     {
         const auto speed = velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a) +
                            Real(step.joint.rate) * substep.error;
-        const auto change = Real(step.joint.mass_scale) * -(substep.mass * speed) -
+        const auto change = Real(step.joint.mass_scale) * -(substep.effective_mass * speed) -
                             Real(step.joint.impulse_scale) * impulse.push;
         impulse.push = impulse.push + change;
         apply_impulse(a, substep.arm_a, -change);
@@ -127,22 +127,22 @@ struct BallSocket {
         rows[2] = {{zero, zero, one}, {arm_a.y, -arm_a.x, zero}, {arm_b.y, -arm_b.x, zero}, error.z};
     }
 
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants&, const Row& row, A& a, B& b)
     {
         auto arm_a = turned(a, row.start_arm_a);
         auto arm_b = turned(b, row.start_arm_b);
         const auto error =
             anchor_error(row.start_error, row.start_arm_a, row.start_arm_b, arm_a, arm_b, a, b);
         meet_half_way(arm_a, arm_b, error);
-        const auto mass = inverse(inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b));
-        const auto push = -(mass * error);
+        const auto effective_mass = inverse(inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b));
+        const auto push = -(effective_mass * error);
         apply_displacement(a, arm_a, -push);
         apply_displacement(b, arm_b, push);
     }
 
-    template <class Real, class Row, class Impulse>
-    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
     {
         return {to_three(impulse.push)};
     }

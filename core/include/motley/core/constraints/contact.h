@@ -10,11 +10,11 @@
 #include <type_traits>
 
 #include "motley/core/bounded_impulse.h"
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/contact_definition.h"
 #include "motley/core/lever.h"
 #include "motley/core/limit.h"
 #include "motley/core/restitution.h"
-#include "motley/core/step_constants.h"
 #include "motley/core/type_list.h"
 
 namespace motley {
@@ -41,13 +41,13 @@ struct ContactMemory {
 enum class Touch { smooth, rough, bouncing };
 
 template <Touch touch>
-struct ContactKind {
+struct ContactKind : ConstraintTraits {
+    static constexpr bool is_contact = true;
     static constexpr bool smooth = touch == Touch::smooth;
     static constexpr bool has_restitution = touch == Touch::bouncing;
     static constexpr const char* name = smooth            ? "smooth contact"
                                         : has_restitution ? "bouncing contact"
                                                           : "contact";
-    static constexpr bool recomputes_each_substep = false;
     template <class Real>
     using Parameters = ContactParameters<Real>;
     template <class Real>
@@ -60,11 +60,11 @@ struct ContactKind {
     struct SmoothRow {
         PairVector<Real, a, b> normal;
         Real separation;
-        Real normal_mass;
+        Real normal_effective_mass;
         [[no_unique_address]] Lever<Real, a, is_planar_pair(a, b)> lever_a;
         [[no_unique_address]] Lever<Real, b, is_planar_pair(a, b)> lever_b;
     };
-    /// The plane's two masses are made anew from what a sweep has at hand: from memory that is no dearer than to fetch them,
+    /// The plane's two effective masses are made anew from what a sweep has at hand: from memory that is no dearer than to fetch them,
     /// in cache it costs a sweep a tenth.
     template <class Real>
     struct PlanarSweep {
@@ -76,10 +76,11 @@ struct ContactKind {
     struct SpatialSweep {
         Vec3<Real> normal, arm_a, arm_b;
         Real separation;
-        Real normal_mass;
+        Real normal_effective_mass;
         Vec3<Real>
             tangent;  ///< where the point gives way most; the second is normal x tangent, where it does least
-        Vec2<Real> tangent_mass;  ///< along the two, which do not touch each other; the first is the smaller
+        Vec2<Real>
+            tangent_effective_mass;  ///< along the two, which do not touch each other; the first is the smaller
         Real friction;
     };
     template <class Real, BodyKind a, BodyKind b>
@@ -133,12 +134,12 @@ struct ContactKind {
         return {-n.y, n.x};
     }
 
-    /// `acceleration`: of b beside a, by forces alone.
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const ContactParameters<Real>& contact,
-                        const ContactMemory<Real>& memory, const Vec3<Real>& acceleration, const A& a,
-                        const B& b, Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const ContactParameters<Real>& contact,
+                        const ContactMemory<Real>& memory, const A& a, const B& b,
+                        Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
         using Vector = PairVector<Real, A::kind, B::kind>;
         Row<Real, A::kind, B::kind> whole;
         auto& row = in_sweep(whole);
@@ -146,7 +147,8 @@ struct ContactKind {
         row.separation = contact.separation;
         const Vector arm_a = to_space<Vector>(contact.arm_a), arm_b = to_space<Vector>(contact.arm_b);
         const auto k = point_response(a, arm_a, b, arm_b);
-        if constexpr (requires { row.normal_mass; }) row.normal_mass = mass_along(row.normal, k);
+        if constexpr (requires { row.normal_effective_mass; })
+            row.normal_effective_mass = effective_mass_along(row.normal, k);
         const Real warm(step.warm_start_scale);
         impulse.normal = warm * memory.normal;
         if constexpr (smooth) {
@@ -159,7 +161,7 @@ struct ContactKind {
             if constexpr (has_restitution) {
                 whole.restitution = contact.restitution;
                 whole.approach = speed<Real>(row, a, b);
-                whole.acceleration = dot(contact.normal, acceleration);
+                whole.acceleration = dot(contact.normal, start.acceleration(a, b));
                 impulse.peak = Real(0);
             }
             if constexpr (is_planar_pair(A::kind, B::kind)) {
@@ -168,7 +170,7 @@ struct ContactKind {
                 const Vector s1 = tangent_of(row.normal), s2 = cross(row.normal, s1), k1 = k * s1;
                 const Principal<Real> most = principal(Sym2<Real>{dot(s1, k1), dot(s2, k1), dot(s2, k * s2)});
                 row.tangent = most.direction.x * s1 + most.direction.y * s2;
-                row.tangent_mass = {inverse_or_zero(most.largest), inverse_or_zero(most.smallest)};
+                row.tangent_effective_mass = {inverse_or_zero(most.largest), inverse_or_zero(most.smallest)};
                 const Vector t2 = cross(row.normal, row.tangent);
                 impulse.tangent = {warm * dot(row.tangent, memory.friction), warm * dot(t2, memory.friction)};
             }
@@ -192,8 +194,7 @@ struct ContactKind {
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& whole, Substep&, const Impulse& impulse, A& a,
-                           B& b)
+    static void warm_start(const Row& whole, const Substep&, const Impulse& impulse, A& a, B& b)
     {
         const auto& row = in_sweep(whole);
         if constexpr (smooth) {
@@ -214,7 +215,7 @@ struct ContactKind {
         constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
         const Real wanted = contact_impulse(step, on_fixed ? step.static_contact : step.contact,
                                             row.separation + moved<Real>(row, a, b), speed<Real>(row, a, b),
-                                            normal_mass<Real>(row, a, b), impulse.normal);
+                                            normal_effective_mass<Real>(row, a, b), impulse.normal);
         push_normal<Real>(row, wanted, impulse, a, b);
     }
 
@@ -226,19 +227,19 @@ struct ContactKind {
         const Real opening = opening_speed(whole.restitution, whole.approach, whole.acceleration,
                                            row.separation, row.separation + moved<Real>(row, a, b));
         const Real wanted =
-            impulse.normal - normal_mass<Real>(row, a, b) * (speed<Real>(row, a, b) - opening);
+            impulse.normal - normal_effective_mass<Real>(row, a, b) * (speed<Real>(row, a, b) - opening);
         const auto bounces = (whole.approach < Real(-step.restitution_threshold)) & (impulse.peak > Real(0));
         push_normal<Real>(row, select(bounces, maximum(wanted, Real(0)), impulse.normal), impulse, a, b);
     }
 
     /// A position solve: moves the bodies along J^T until `projection_rate` of the penetration is gone.
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants& step, const Row& whole, const Substep&, A& a, B& b)
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants& step, const Row& whole, A& a, B& b)
     {
         const auto& row = in_sweep(whole);
         const Real deep = minimum(row.separation + moved<Real>(row, a, b) + Real(step.slop), Real(0));
         const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep start must not explode
-        const Real lambda = -(normal_mass<Real>(row, a, b) * Real(step.projection_rate) * error);
+        const Real lambda = -(normal_effective_mass<Real>(row, a, b) * Real(step.projection_rate) * error);
         if constexpr (smooth) {
             displace_along(a, row.normal, row.lever_a, -lambda);
             displace_along(b, row.normal, row.lever_b, lambda);
@@ -249,8 +250,8 @@ struct ContactKind {
         }
     }
 
-    template <class Real, class Row, class Impulse>
-    static ContactMemory<Real> remember(const Row& row, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static ContactMemory<Real> remember(const Row& row, const Impulse& impulse, const End&)
     {
         ContactMemory<Real> memory{impulse.normal, {Real(0), Real(0), Real(0)}};
         if constexpr (!smooth) {
@@ -278,17 +279,17 @@ struct ContactKind {
     }
     /// 1 / (J M^-1 J^T) along a direction, K being the inverse mass of the point.
     template <class Vector, class Symmetric>
-    static auto mass_along(const Vector& direction, const Symmetric& k)
+    static auto effective_mass_along(const Vector& direction, const Symmetric& k)
     {
         return inverse_or_zero(dot(direction, k * direction));
     }
     template <class Real, class Row, class A, class B>
-    static Real normal_mass(const Row& row, const A& a, const B& b)
+    static Real normal_effective_mass(const Row& row, const A& a, const B& b)
     {
-        if constexpr (requires { row.normal_mass; }) {
-            return row.normal_mass;
+        if constexpr (requires { row.normal_effective_mass; }) {
+            return row.normal_effective_mass;
         } else {
-            return mass_along(row.normal, point_response(a, row.arm_a, b, row.arm_b));
+            return effective_mass_along(row.normal, point_response(a, row.arm_a, b, row.arm_b));
         }
     }
     // The normal's row of J: times v, times the displacement of the step, and M^-1 J^T lambda.
@@ -341,18 +342,18 @@ struct ContactKind {
             const Vec3<Real> t2 = cross(row.normal, row.tangent);
             const Vec2<Real> old = impulse.tangent;
             const Real slip1 = dot(row.tangent, slip), slip2 = dot(t2, slip);
-            const Vec2<Real>& mass = row.tangent_mass;
-            const Real first = old.x - mass.x * slip1;
-            impulse.tangent = bounded_impulse(Vec2<Real>{first, old.y - mass.y * slip2},
-                                              Vec2<Real>{first, old.y - mass.x * slip2}, bound);
+            const Vec2<Real>& effective_mass = row.tangent_effective_mass;
+            const Real first = old.x - effective_mass.x * slip1;
+            impulse.tangent = bounded_impulse(Vec2<Real>{first, old.y - effective_mass.y * slip2},
+                                              Vec2<Real>{first, old.y - effective_mass.x * slip2}, bound);
             const Vec2<Real> change = impulse.tangent - old;
             const Vec3<Real> push = change.x * row.tangent + change.y * t2;
             apply_impulse(a, row.arm_a, -push);
             apply_impulse(b, row.arm_b, push);
         } else {
             const Vec2<Real> t = tangent_of(row.normal);
-            const Real mass = mass_along(t, point_response(a, row.arm_a, b, row.arm_b));
-            const Real free = impulse.tangent - mass * dot(t, slip);
+            const Real effective_mass = effective_mass_along(t, point_response(a, row.arm_a, b, row.arm_b));
+            const Real free = impulse.tangent - effective_mass * dot(t, slip);
             const Real held = maximum(minimum(free, bound), -bound);
             const Vec2<Real> push = (held - impulse.tangent) * t;
             impulse.tangent = held;

@@ -9,23 +9,19 @@
 
 #include <cmath>
 
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/distance_definition.h"
 #include "motley/core/invalid_input.h"
-#include "motley/core/joint_checks.h"
-#include "motley/core/joint_pose.h"
-#include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
 #include "motley/core/limit.h"
-#include "motley/core/tension.h"
 #include "motley/core/type_list.h"
 
 namespace motley {
 
-struct Distance {
+struct Distance : ConstraintTraits {
     using Definition = DistanceDefinition;
     static constexpr const char* name = "distance";
-    static constexpr bool has_restitution = false;
-    static constexpr bool recomputes_each_substep = true;
+    static constexpr bool pulls_at_arms = true;
 
     /// Stands for no limit: far enough to be slack for ever, small enough to stay finite.
     static constexpr float far_away = 1e12F;
@@ -57,7 +53,7 @@ struct Distance {
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         PairVector<Real, a, b> arm_a, arm_b, axis;
-        Real inverse_mass, mass;  ///< K and its inverse
+        Real response, effective_mass;  ///< K and its inverse
         Real length;
     };
     template <class Real, BodyKind a, BodyKind b>
@@ -88,11 +84,12 @@ struct Distance {
                 joint.rest_length,    std::fmin(joint.spring_max_force, largest_force)};
     }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& joint, const Memory<Real>& memory,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& joint, const Memory<Real>& memory,
+                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
         using Vector = PairVector<Real, A::kind, B::kind>;
         const Vec3<Real> arm_a = to_world(pose.orientation_a, joint.anchor_a);
         const Vec3<Real> arm_b = to_world(pose.orientation_b, joint.anchor_b);
@@ -119,11 +116,15 @@ struct Distance {
         return {to_three(row.start_arm_a), to_three(row.start_arm_b), to_three(-along), to_three(along)};
     }
 
-    template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
-                           A& a, B& b)
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse&, Substep& substep, const A& a, const B& b)
     {
         build<Real>(row, substep, a, b);
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
+    {
         push((impulse.spring + impulse.limit) * substep.axis, substep, a, b);
     }
 
@@ -133,31 +134,31 @@ struct Distance {
     {
         const Real before = impulse.spring + impulse.limit;
         Real speed = dot(substep.axis, velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a));
-        const SoftRow<Real> soft{in_sweep.spring.rate, in_sweep.spring.mass_scale * substep.mass,
+        const SoftRow<Real> soft{in_sweep.spring.rate, in_sweep.spring.mass_scale * substep.effective_mass,
                                  in_sweep.spring.impulse_scale};
         const Real spring = spring_impulse(soft, substep.length - in_sweep.rest_length, speed, impulse.spring,
                                            in_sweep.spring_max_impulse);
-        speed = speed + substep.inverse_mass * (spring - impulse.spring);
+        speed = speed + substep.response * (spring - impulse.spring);
         impulse.spring = spring;
         impulse.limit = range_impulse(step, substep.length, in_sweep.min_length, in_sweep.max_length, speed,
-                                      substep.mass, impulse.limit);
+                                      substep.effective_mass, impulse.limit);
         push((impulse.spring + impulse.limit - before) * substep.axis, substep, a, b);
     }
 
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants&, const Row& row, A& a, B& b)
     {
-        Substep now;
+        SubstepRow<Real, A::kind, B::kind> now;
         build<Real>(row, now, a, b);
-        const auto push =
-            -(now.mass * beyond_range(now.length, row.in_sweep.min_length, row.in_sweep.max_length)) *
-            now.axis;
+        const auto push = -(now.effective_mass *
+                            beyond_range(now.length, row.in_sweep.min_length, row.in_sweep.max_length)) *
+                          now.axis;
         apply_displacement(a, now.arm_a, -push);
         apply_displacement(b, now.arm_b, push);
     }
 
-    template <class Real, class Row, class Impulse>
-    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
     {
         return {impulse.spring, impulse.limit};
     }
@@ -195,10 +196,10 @@ struct Distance {
         substep.arm_a = turned(a, row.start_arm_a);
         substep.arm_b = turned(b, row.start_arm_b);
         substep.length = measure<Real>(row, substep.arm_a, substep.arm_b, a, b, substep.axis);
-        substep.inverse_mass =
+        substep.response =
             dot(substep.axis,
                 (inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b)) * substep.axis);
-        substep.mass = inverse_or_zero(substep.inverse_mass);
+        substep.effective_mass = inverse_or_zero(substep.response);
     }
     template <class Vector, class Substep, class A, class B>
     static void push(const Vector& impulse, const Substep& substep, A& a, B& b)

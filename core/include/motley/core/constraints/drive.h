@@ -18,27 +18,23 @@
 
 #include <cmath>
 
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/drive_definition.h"
 #include "motley/core/if_needed.h"
 #include "motley/core/invalid_input.h"
-#include "motley/core/joint_checks.h"
-#include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
 #include "motley/core/limit.h"
 #include "motley/core/type_list.h"
-#include "motley/core/wrench.h"
 
 namespace motley {
 
 template <DriveAxis drive_axis>
-struct Drive {
+struct Drive : ConstraintTraits {
     using Definition = DriveDefinition<drive_axis>;
-    static constexpr bool has_restitution = false;
-    static constexpr bool recomputes_each_substep = true;
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr bool slides = drive_axis == DriveAxis::slide;
     static constexpr bool is_euler = drive_axis == DriveAxis::euler;
-    /// Few joints count Euler angles: see joint_type.h.
+    /// Few joints count Euler angles: see constraint_type.h.
     static constexpr bool is_rare = is_euler;
     /// Stands for no limit: far enough to be slack for ever, small enough to stay finite.
     static constexpr float far_away = 1e12F;
@@ -101,11 +97,11 @@ struct Drive {
     struct SubstepRow {
         Vec3<Real> axis;  ///< x_a or t
         [[no_unique_address]] IfNeeded<slides, Levers<Real>> levers;
-        Real inverse_mass, mass;        ///< K s and its inverse
-        Real share;                     ///< s
-        Real value;                     ///< C
-        Real spring_mass, spring_kept;  ///< see SoftRow
-        Real start_speed;               ///< of the rotor, when the substep began
+        Real response, effective_mass;            ///< K s and its inverse
+        Real share;                               ///< s
+        Real value;                               ///< C
+        Real spring_effective_mass, spring_kept;  ///< see SoftRow
+        Real start_speed;                         ///< of the rotor, when the substep began
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -167,11 +163,12 @@ struct Drive {
         return parameters;
     }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& drive, const Memory<Real>& memory,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A& a, const B& b,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& drive, const Memory<Real>& memory,
+                        const A& a, const B& b, Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
         Row<Real, A::kind, B::kind> row;
         if constexpr (slides) {
             row.start_arms.a = to_world(pose.orientation_a, drive.anchors.position_a);
@@ -195,20 +192,24 @@ struct Drive {
         impulse.motor = warm * memory.motor;
         impulse.spring = warm * memory.spring;
         impulse.limit = warm * memory.limit;
-        SubstepRow<Real, A::kind, B::kind> start;
-        build<Real>(row, start, a, b);
-        impulse.rotor_speed = speed_of(start, a, b);
+        SubstepRow<Real, A::kind, B::kind> here;
+        build<Real>(row, here, a, b);
+        impulse.rotor_speed = speed_of(here, a, b);
         return row;
     }
 
-    template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
-                           A& a, B& b)
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse& impulse, Substep& substep, const A& a,
+                                const B& b)
     {
         build<Real>(row, substep, a, b);
         substep.start_speed = impulse.rotor_speed;
-        const Real lambda = impulse.motor + impulse.spring + impulse.limit;
-        push(substep, lambda, a, b);
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
+    {
+        push(substep, impulse.motor + impulse.spring + impulse.limit, a, b);
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
@@ -222,31 +223,32 @@ struct Drive {
         speed = select(in_sweep.armature > Real(0), impulse.rotor_speed + substep.share * excess, speed);
 
         const auto change_to = [&](Real& held, const Real& wanted) {
-            speed = speed + substep.inverse_mass * (wanted - held);
+            speed = speed + substep.response * (wanted - held);
             held = wanted;
         };
-        change_to(impulse.spring, spring_impulse(SoftRow<Real>{in_sweep.spring_rate, substep.spring_mass,
-                                                               substep.spring_kept},
-                                                 substep.value - in_sweep.spring_target, speed,
-                                                 impulse.spring, in_sweep.spring_max_impulse));
-        const Real motor = impulse.motor - substep.mass * (speed - in_sweep.motor_speed);
+        change_to(
+            impulse.spring,
+            spring_impulse(
+                SoftRow<Real>{in_sweep.spring_rate, substep.spring_effective_mass, substep.spring_kept},
+                substep.value - in_sweep.spring_target, speed, impulse.spring, in_sweep.spring_max_impulse));
+        const Real motor = impulse.motor - substep.effective_mass * (speed - in_sweep.motor_speed);
         change_to(impulse.motor,
                   maximum(minimum(motor, in_sweep.motor_max_impulse), -in_sweep.motor_max_impulse));
         change_to(impulse.limit, range_impulse(step, substep.value, in_sweep.lower, in_sweep.upper, speed,
-                                               substep.mass, impulse.limit));
+                                               substep.effective_mass, impulse.limit));
 
         impulse.rotor_speed = speed;
         push(substep, substep.share * (impulse.motor + impulse.spring + impulse.limit - before) - to_rotor, a,
              b);
     }
 
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants&, const Row& row, A& a, B& b)
     {
-        Substep now;
+        SubstepRow<Real, A::kind, B::kind> now;
         build<Real>(row, now, a, b);
-        const Real lambda =
-            -(now.share * now.mass * beyond_range(now.value, row.in_sweep.lower, row.in_sweep.upper));
+        const Real lambda = -(now.share * now.effective_mass *
+                              beyond_range(now.value, row.in_sweep.lower, row.in_sweep.upper));
         if constexpr (slides) {
             displace(a, -(lambda * now.axis), -(lambda * now.levers.a));
             displace(b, lambda * now.axis, lambda * now.levers.b);
@@ -257,8 +259,8 @@ struct Drive {
         }
     }
 
-    template <class Real, class Row, class Impulse>
-    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
     {
         return {impulse.motor, impulse.spring, impulse.limit};
     }
@@ -337,10 +339,9 @@ struct Drive {
             substep.levers.a = cross(arm_a + d, substep.axis);
             substep.levers.b = cross(arm_b, substep.axis);
             substep.value = dot(substep.axis, d);
-            substep.inverse_mass =
-                dot(substep.axis, over_mass(a, substep.axis) + over_mass(b, substep.axis)) +
-                dot(substep.levers.a, over_inertia(a, substep.levers.a)) +
-                dot(substep.levers.b, over_inertia(b, substep.levers.b));
+            substep.response = dot(substep.axis, over_mass(a, substep.axis) + over_mass(b, substep.axis)) +
+                               dot(substep.levers.a, over_inertia(a, substep.levers.a)) +
+                               dot(substep.levers.b, over_inertia(b, substep.levers.b));
         } else {
             const Quat<Real> frame_b = turn_of(b) * row.start_frame_b;
             if constexpr (is_euler) {
@@ -353,18 +354,18 @@ struct Drive {
                 substep.axis = scale * (x_a + x_b);
                 substep.value = Real(2) * arc_tangent2(q.x, q.w);
             }
-            substep.inverse_mass =
+            substep.response =
                 dot(substep.axis, over_inertia(a, substep.axis) + over_inertia(b, substep.axis));
         }
         const Real size = slides ? linear_size(a) + linear_size(b) : angular_size(a) + angular_size(b);
-        const auto usable = substep.inverse_mass > Real(rounding_share) * size;
-        const Real mass = select(usable, inverse_or_zero(substep.inverse_mass), Real(0));
+        const auto usable = substep.response > Real(rounding_share) * size;
+        const Real effective_mass = select(usable, inverse_or_zero(substep.response), Real(0));
         substep.share =
-            select(usable, Real(1) / (Real(1) + substep.inverse_mass * row.in_sweep.armature), Real(1));
-        substep.inverse_mass = substep.share * substep.inverse_mass;
-        substep.mass = select(usable, mass + row.in_sweep.armature, Real(0));
-        const SoftRow<Real> spring = soft_row(row.spring, substep.inverse_mass, substep.mass);
-        substep.spring_mass = spring.mass;
+            select(usable, Real(1) / (Real(1) + substep.response * row.in_sweep.armature), Real(1));
+        substep.response = substep.share * substep.response;
+        substep.effective_mass = select(usable, effective_mass + row.in_sweep.armature, Real(0));
+        const SoftRow<Real> spring = soft_row(row.spring, substep.response, substep.effective_mass);
+        substep.spring_effective_mass = spring.effective_mass;
         substep.spring_kept = spring.kept;
     }
 

@@ -12,17 +12,13 @@
 
 #include <cmath>
 
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/frame_joint_definition.h"
-#include "motley/core/equality_row.h"
 #include "motley/core/if_needed.h"
 #include "motley/core/invalid_input.h"
-#include "motley/core/joint_checks.h"
-#include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
 #include "motley/core/small_system.h"
-#include "motley/core/tension.h"
 #include "motley/core/type_list.h"
-#include "motley/core/wrench.h"
 
 namespace motley {
 
@@ -36,14 +32,13 @@ constexpr int rows_of(AngularLock lock)
 }
 
 template <LinearLock linear_lock, AngularLock angular_lock>
-struct FrameJoint {
+struct FrameJoint : ConstraintTraits {
     using Definition = FrameJointDefinition<linear_lock, angular_lock>;
-    static constexpr bool has_restitution = false;
-    static constexpr bool recomputes_each_substep = true;
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr int linear_rows = rows_of(linear_lock);
     static constexpr int angular_rows = rows_of(angular_lock);
     static constexpr int rows = linear_rows + angular_rows;
+    static constexpr bool pulls_at_arms = linear_rows > 0;
     static constexpr int equality_count = rows;
     static constexpr bool locks_point = linear_lock == LinearLock::point;
 
@@ -89,9 +84,9 @@ struct FrameJoint {
         [[no_unique_address]] IfNeeded<has_arms, Arms<Real>> arm;
         [[no_unique_address]] IfNeeded<has_axes, Axes<Real, has_axes ? linear_rows : 1>, 1> linear;  ///< e
         [[no_unique_address]] IfNeeded<has_turns, Axes<Real, has_turns ? angular_rows : 1>, 2>
-            angular;  ///< g
-        SmallFactor<Real, rows> mass;
-        Real error[rows];  ///< C
+            angular;                      ///< g
+        SmallFactor<Real, rows> factors;  ///< of K
+        Real error[rows];                 ///< C
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -111,11 +106,12 @@ struct FrameJoint {
                 joint.frame_b.position, joint.stiffness.damping_ratio, unit(joint.frame_b.rotation)};
     }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& joint, const Memory<Real>& memory,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& joint, const Memory<Real>& memory,
+                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
         Row<Real, A::kind, B::kind> row;
         if constexpr (has_arms) {
             row.start.arm_a = to_world(pose.orientation_a, joint.position_a);
@@ -131,7 +127,7 @@ struct FrameJoint {
     }
 
     template <class Real, class Row, class Impulse>
-    requires(has_arms) static Tension<Real> tension(const Row& row, const Impulse& impulse)
+    static Tension<Real> tension(const Row& row, const Impulse& impulse)
     {
         Vec3<Real> arm_a = row.start.arm_a, arm_b = row.start.arm_b, push{Real(0), Real(0), Real(0)};
         if constexpr (has_axes) {
@@ -147,11 +143,15 @@ struct FrameJoint {
         return {arm_a, arm_b, -push, push};
     }
 
-    template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
-                           A& a, B& b)
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse&, Substep& substep, const A& a, const B& b)
     {
         build(row, substep, a, b);
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
+    {
         push(substep, impulse.lambda, a, b, [](auto& body, const auto& linear, const auto& angular) {
             apply_wrench(body, linear, angular);
         });
@@ -165,7 +165,7 @@ struct FrameJoint {
         Real change[rows];
         speeds(substep, a, b, change);
         for (int i = 0; i < rows; ++i) change[i] = -(change[i] + soft.rate * substep.error[i]);
-        solve_in_place(substep.mass, change);
+        solve_in_place(substep.factors, change);
         for (int i = 0; i < rows; ++i) {
             const Real held = impulse.lambda[i];
             impulse.lambda[i] = held + (soft.mass_scale * change[i] - soft.impulse_scale * held);
@@ -190,22 +190,22 @@ struct FrameJoint {
             out[i] = {i < linear_rows ? e[i < 3 ? i : 0] : none, lever_a[i], lever_b[i], here.error[i]};
     }
 
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants&, const Row& row, A& a, B& b)
     {
-        Substep now;
+        SubstepRow<Real, A::kind, B::kind> now;
         build(row, now, a, b);
         // Springs are forces, not positions.
         const auto own = row.in_sweep.is_own > Real(0);
         Real change[rows];
         for (int i = 0; i < rows; ++i) change[i] = select(own, Real(0), -now.error[i]);
-        solve_in_place(now.mass, change);
+        solve_in_place(now.factors, change);
         push(now, change, a, b,
              [](auto& body, const auto& linear, const auto& angular) { displace(body, linear, angular); });
     }
 
-    template <class Real, class Row, class Impulse>
-    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
     {
         Memory<Real> memory;
         for (int i = 0; i < rows; ++i) memory.lambda[i] = impulse.lambda[i];
@@ -325,7 +325,7 @@ struct FrameJoint {
         const Real angular_floor = Real(rounding_share) * (angular_size(a) + angular_size(b));
         Real floor[rows];
         for (int i = 0; i < rows; ++i) floor[i] = i < linear_rows ? linear_floor : angular_floor;
-        substep.mass = factor(k, floor);
+        substep.factors = factor(k, floor);
     }
 
     /// J v.

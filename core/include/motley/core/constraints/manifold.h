@@ -6,7 +6,7 @@
 //   rolling   t . (w_b - w_a)                                [0, -t, 0, t], norm lambda <= r_r sum lambda_i
 //
 // A sweep takes friction, torsion and rolling within the bounds of the points so far, then the points one by one. Points
-// that are not there have no mass: masks, not branches. Normal and arms stay as they were when the step began, as a
+// that are not there have no effective mass: masks, not branches. Normal and arms stay as they were when the step began, as a
 // Contact's do: C = C_0 + J delta, exact for balls, second order in the turn for the rest. (Arms that turn with a ball would
 // lag behind it, and brake it.)
 #pragma once
@@ -15,21 +15,18 @@
 #include <string>
 
 #include "motley/core/bounded_impulse.h"
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/manifold_definition.h"
 #include "motley/core/invalid_input.h"
-#include "motley/core/joint_checks.h"
-#include "motley/core/joint_report.h"
 #include "motley/core/limit.h"
 #include "motley/core/restitution.h"
 #include "motley/core/type_list.h"
-#include "motley/core/wrench.h"
 
 namespace motley {
 
-struct Manifold {
+struct Manifold : ConstraintTraits {
     using Definition = ManifoldDefinition;
     static constexpr bool has_restitution = true;
-    static constexpr bool recomputes_each_substep = false;
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr int most_points = 4;
     static constexpr int restitution_rounds = 8;
@@ -57,11 +54,11 @@ struct Manifold {
     struct Sweep {
         Vec3<Real> normal, tangent;  ///< world; the second tangent is normal x tangent
         Vec3<Real> lever_a[most_points], lever_b[most_points];
-        Real mass[most_points], separation[most_points];
-        Vec3<Real> arm_a, arm_b;                     ///< to where the friction acts
-        Sym2<Real> friction_mass, rolling_mass;      ///< K^-1 along the tangents
+        Real effective_mass[most_points], separation[most_points];
+        Vec3<Real> arm_a, arm_b;                                     ///< to where the friction acts
+        Sym2<Real> friction_effective_mass, rolling_effective_mass;  ///< K^-1 along the tangents
         Vec2<Real> friction_stride, rolling_stride;  ///< 1 / k_max; 0 along a tangent where nothing moves
-        Real torsion_mass;
+        Real torsion_effective_mass;
         Real friction, torsional_bound, rolling_radius;  ///< torsional_bound: friction times radius
         Vec2<Real> surface_speed;                        ///< along the tangents
     };
@@ -119,12 +116,12 @@ struct Manifold {
         return p;
     }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& contact,
-                        const Memory<Real>& memory, const Vec3<Real>& acceleration,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A& a, const B& b,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& contact, const Memory<Real>& memory,
+                        const A& a, const B& b, Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
         Row<Real, A::kind, B::kind> whole;
         Sweep<Real>& row = whole.in_sweep;
         const Vec3<Real> tangent = across(contact.normal);
@@ -135,7 +132,7 @@ struct Manifold {
         row.torsional_bound = contact.friction * contact.torsional_radius;
         row.rolling_radius = contact.rolling_radius;
         whole.restitution = contact.restitution;
-        whole.acceleration = dot(n, acceleration);
+        whole.acceleration = dot(n, start.acceleration(a, b));
         row.surface_speed = {dot(tangent, u), dot(cross(contact.normal, tangent), u)};
 
         const Real warm(step.warm_start_scale);
@@ -153,7 +150,7 @@ struct Manifold {
             const Real k = along + dot(row.lever_a[i], over_inertia(a, row.lever_a[i])) +
                            dot(row.lever_b[i], over_inertia(b, row.lever_b[i]));
             const auto is_there = contact.point_count > Real(static_cast<float>(i) + 0.5F);
-            row.mass[i] = select(is_there & (k > linear_floor), inverse_or_zero(k), Real(0));
+            row.effective_mass[i] = select(is_there & (k > linear_floor), inverse_or_zero(k), Real(0));
             whole.approach[i] = speed_at<Real>(row, i, a, b);
             impulse.normal[i] = select(is_there, warm * memory.normal[i], Real(0));
             impulse.peak[i] = Real(0);
@@ -161,22 +158,22 @@ struct Manifold {
         }
         row.arm_b = Real(1) / contact.point_count * mean;
         row.arm_a = pose.between + row.arm_b;
-        const auto across_mass = [&](const Vec3<Real>& x, const Vec3<Real>& y) {
+        const auto across_response = [&](const Vec3<Real>& x, const Vec3<Real>& y) {
             return dot(x, over_mass(a, y) + over_mass(b, y)) +
                    dot(cross(row.arm_a, x), over_inertia(a, cross(row.arm_a, y))) +
                    dot(cross(row.arm_b, x), over_inertia(b, cross(row.arm_b, y)));
         };
-        const Sym2<Real> across_k{across_mass(t, t), across_mass(t, t2), across_mass(t2, t2)};
-        row.friction_mass = inverse_of_what_moves(across_k, linear_floor);
+        const Sym2<Real> across_k{across_response(t, t), across_response(t, t2), across_response(t2, t2)};
+        row.friction_effective_mass = inverse_of_what_moves(across_k, linear_floor);
         row.friction_stride = stride_of_what_moves(across_k, linear_floor);
         const auto turning = [&](const Vec3<Real>& x, const Vec3<Real>& y) {
             return dot(x, over_inertia(a, y) + over_inertia(b, y));
         };
         const Sym2<Real> turning_k{turning(t, t), turning(t, t2), turning(t2, t2)};
-        row.rolling_mass = inverse_of_what_moves(turning_k, angular_floor);
+        row.rolling_effective_mass = inverse_of_what_moves(turning_k, angular_floor);
         row.rolling_stride = stride_of_what_moves(turning_k, angular_floor);
         const Real k = turning(n, n);
-        row.torsion_mass = select(k > angular_floor, inverse_or_zero(k), Real(0));
+        row.torsion_effective_mass = select(k > angular_floor, inverse_or_zero(k), Real(0));
         impulse.friction = warm * memory.friction;
         impulse.torsion = warm * memory.torsion;
         impulse.rolling = warm * memory.rolling;
@@ -184,8 +181,7 @@ struct Manifold {
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& whole, Substep&, const Impulse& impulse, A& a,
-                           B& b)
+    static void warm_start(const Row& whole, const Substep&, const Impulse& impulse, A& a, B& b)
     {
         const auto& row = whole.in_sweep;
         push_friction(row, impulse.friction, a, b);
@@ -200,8 +196,9 @@ struct Manifold {
         constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
         const Softness& soft = on_fixed ? step.static_contact : step.contact;
         for (int i = 0; i < most_points; ++i) {
-            const Real wanted = contact_impulse(step, soft, separation_at<Real>(row, i, a, b),
-                                                speed_at<Real>(row, i, a, b), row.mass[i], impulse.normal[i]);
+            const Real wanted =
+                contact_impulse(step, soft, separation_at<Real>(row, i, a, b), speed_at<Real>(row, i, a, b),
+                                row.effective_mass[i], impulse.normal[i]);
             push_point(row, i, wanted - impulse.normal[i], a, b);
             impulse.normal[i] = wanted;
             impulse.peak[i] = maximum(impulse.peak[i], wanted);
@@ -226,7 +223,8 @@ struct Manifold {
                                  (whole.approach[point] < Real(-step.restitution_threshold)) &
                                  (impulse.peak[point] > Real(0));
             const Real& held = impulse.normal[point];
-            const Real wanted = select(bounces, maximum(held - row.mass[point] * leaving, Real(0)), held);
+            const Real wanted =
+                select(bounces, maximum(held - row.effective_mass[point] * leaving, Real(0)), held);
             push_point(row, point, wanted - held, a, b);
             impulse.normal[point] = wanted;
         }
@@ -234,8 +232,8 @@ struct Manifold {
 
     /// Moves the bodies until `projection_rate` of every point's penetration is gone: the points one by one, each knowing
     /// what those before it have moved.
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants& step, const Row& whole, const Substep&, A& a, B& b)
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants& step, const Row& whole, A& a, B& b)
     {
         const auto& row = whole.in_sweep;
         const Vec3<Real> none{Real(0), Real(0), Real(0)};
@@ -247,7 +245,7 @@ struct Manifold {
                                 dot(row.lever_a[i], over_inertia(a, angular_a)) +
                                 dot(row.lever_b[i], over_inertia(b, angular_b));
             const Real lambda =
-                maximum(-(row.mass[i] * (Real(step.projection_rate) * deep + so_far)), Real(0));
+                maximum(-(row.effective_mass[i] * (Real(step.projection_rate) * deep + so_far)), Real(0));
             linear = linear + lambda * row.normal;
             angular_a = angular_a + lambda * row.lever_a[i];
             angular_b = angular_b + lambda * row.lever_b[i];
@@ -256,8 +254,8 @@ struct Manifold {
         displace(b, linear, angular_b);
     }
 
-    template <class Real, class Row, class Impulse>
-    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
     {
         Memory<Real> memory;
         for (int i = 0; i < most_points; ++i) memory.normal[i] = impulse.normal[i];
@@ -372,11 +370,11 @@ struct Manifold {
         apply_turn(b, turn);
     }
     template <class Real>
-    static Vec2<Real> brake(const Vec2<Real>& held, const Vec2<Real>& speed, const Sym2<Real>& mass,
+    static Vec2<Real> brake(const Vec2<Real>& held, const Vec2<Real>& speed, const Sym2<Real>& effective_mass,
                             const Vec2<Real>& stride, const Real& bound)
     {
-        return bounded_impulse(held - mass * speed, held - Vec2<Real>{stride.x * speed.x, stride.y * speed.y},
-                               bound);
+        return bounded_impulse(held - effective_mass * speed,
+                               held - Vec2<Real>{stride.x * speed.x, stride.y * speed.y}, bound);
     }
 
     template <class Real, class Row, class Impulse, class A, class B>
@@ -389,20 +387,21 @@ struct Manifold {
         const Vec2<Real> friction =
             brake(impulse.friction,
                   Vec2<Real>{dot(t, slip) - row.surface_speed.x, dot(t2, slip) - row.surface_speed.y},
-                  row.friction_mass, row.friction_stride, row.friction * push);
+                  row.friction_effective_mass, row.friction_stride, row.friction * push);
         push_friction(row, friction - impulse.friction, a, b);
         impulse.friction = friction;
 
         const Vec3<Real> spin = angular_of(b) - angular_of(a);
         const Real torsional_bound = row.torsional_bound * push;
-        const Real free = impulse.torsion - row.torsion_mass * dot(n, spin);
+        const Real free = impulse.torsion - row.torsion_effective_mass * dot(n, spin);
         const Real torsion = maximum(minimum(free, torsional_bound), -torsional_bound);
         push_turn(row, torsion - impulse.torsion, Vec2<Real>{Real(0), Real(0)}, a, b);
         impulse.torsion = torsion;
 
         const Vec3<Real> roll = angular_of(b) - angular_of(a);
-        const Vec2<Real> rolling = brake(impulse.rolling, Vec2<Real>{dot(t, roll), dot(t2, roll)},
-                                         row.rolling_mass, row.rolling_stride, row.rolling_radius * push);
+        const Vec2<Real> rolling =
+            brake(impulse.rolling, Vec2<Real>{dot(t, roll), dot(t2, roll)}, row.rolling_effective_mass,
+                  row.rolling_stride, row.rolling_radius * push);
         push_turn(row, Real(0), rolling - impulse.rolling, a, b);
         impulse.rolling = rolling;
     }

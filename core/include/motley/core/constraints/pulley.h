@@ -8,20 +8,17 @@
 
 #include <cmath>
 
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/pulley_definition.h"
 #include "motley/core/invalid_input.h"
-#include "motley/core/joint_checks.h"
-#include "motley/core/joint_pose.h"
-#include "motley/core/joint_report.h"
 #include "motley/core/limit.h"
 #include "motley/core/type_list.h"
 
 namespace motley {
 
-struct Pulley {
+struct Pulley : ConstraintTraits {
     using Definition = PulleyDefinition;
-    static constexpr bool has_restitution = false;
-    static constexpr bool recomputes_each_substep = true;
+    static constexpr bool has_world_points = true;
     static constexpr float far_away = 1e12F;
 
     template <class Real>
@@ -58,7 +55,7 @@ struct Pulley {
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         EndNow<PairVector<Real, a, b>> a_end, b_end;
-        Real mass, length;
+        Real effective_mass, length;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -84,27 +81,32 @@ struct Pulley {
 
     static WorldPoints world_points(const Definition& pulley) { return {pulley.point_a, pulley.point_b}; }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& pulley, const Memory<Real>& memory,
-                        const WorldPose<Real, A::kind, B::kind>& pose, const A&, const B&,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& pulley, const Memory<Real>& memory,
+                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
+        const FromWorldPoints<Real> from = start.from_world_points();
         using Vector = PairVector<Real, A::kind, B::kind>;
         const Vec3<Real> arm_a = to_world(pose.orientation_a, pulley.anchor_a);
         const Vec3<Real> arm_b = to_world(pose.orientation_b, pulley.anchor_b);
         impulse.lambda = Real(step.warm_start_scale) * memory.lambda;
-        return Row<Real, A::kind, B::kind>{
-            {to_space<Vector>(arm_a), to_space<Vector>(pose.from_point_a + arm_a)},
-            {to_space<Vector>(arm_b), to_space<Vector>(pose.from_point_b + arm_b)},
-            pulley.ratio,
-            {pulley.min_length, pulley.max_length}};
+        return Row<Real, A::kind, B::kind>{{to_space<Vector>(arm_a), to_space<Vector>(from.a + arm_a)},
+                                           {to_space<Vector>(arm_b), to_space<Vector>(from.b + arm_b)},
+                                           pulley.ratio,
+                                           {pulley.min_length, pulley.max_length}};
+    }
+
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse&, Substep& substep, const A& a, const B& b)
+    {
+        build<Real>(row, substep, a, b);
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
-                           A& a, B& b)
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
     {
-        build<Real>(row, substep, a, b);
         apply_impulse(a, substep.a_end.arm, impulse.lambda * substep.a_end.axis);
         apply_impulse(b, substep.b_end.arm, impulse.lambda * substep.b_end.axis);
     }
@@ -116,26 +118,26 @@ struct Pulley {
         const Real speed = dot(substep.a_end.axis, velocity_at(a, substep.a_end.arm)) +
                            dot(substep.b_end.axis, velocity_at(b, substep.b_end.arm));
         const Real wanted = range_impulse(step, substep.length, in_sweep.min_length, in_sweep.max_length,
-                                          speed, substep.mass, impulse.lambda);
+                                          speed, substep.effective_mass, impulse.lambda);
         const Real change = wanted - impulse.lambda;
         impulse.lambda = wanted;
         apply_impulse(a, substep.a_end.arm, change * substep.a_end.axis);
         apply_impulse(b, substep.b_end.arm, change * substep.b_end.axis);
     }
 
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants&, const Row& row, A& a, B& b)
     {
-        Substep now;
+        SubstepRow<Real, A::kind, B::kind> now;
         build<Real>(row, now, a, b);
-        const Real push =
-            -(now.mass * beyond_range(now.length, row.in_sweep.min_length, row.in_sweep.max_length));
+        const Real push = -(now.effective_mass *
+                            beyond_range(now.length, row.in_sweep.min_length, row.in_sweep.max_length));
         apply_displacement(a, now.a_end.arm, push * now.a_end.axis);
         apply_displacement(b, now.b_end.arm, push * now.b_end.axis);
     }
 
-    template <class Real, class Row, class Impulse>
-    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
     {
         return {impulse.lambda};
     }
@@ -189,7 +191,7 @@ struct Pulley {
         Real k(0);
         const Real length_a = build_end(row.a_end, Real(1), a, substep.a_end, k);
         substep.length = length_a + build_end(row.b_end, row.ratio, b, substep.b_end, k);
-        substep.mass = inverse_or_zero(k);
+        substep.effective_mass = inverse_or_zero(k);
     }
 };
 

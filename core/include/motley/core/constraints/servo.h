@@ -13,14 +13,12 @@
 #include <cmath>
 
 #include "motley/core/bounded_impulse.h"
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/servo_definition.h"
 #include "motley/core/invalid_input.h"
-#include "motley/core/joint_checks.h"
-#include "motley/core/joint_report.h"
 #include "motley/core/lane_softness.h"
 #include "motley/core/small_system.h"
 #include "motley/core/type_list.h"
-#include "motley/core/wrench.h"
 
 namespace motley {
 
@@ -44,10 +42,9 @@ void validate_servo(const Definition& servo, float most, const char* bound)
     check_bound(bound, most);
 }
 
-struct PointServo {
+struct PointServo : ConstraintTraits {
     using Definition = PointServoDefinition;
-    static constexpr bool has_restitution = false, only_pulls = true;
-    static constexpr bool recomputes_each_substep = true;
+    static constexpr bool only_pulls = true;
 
     template <class Real>
     struct Parameters {
@@ -70,7 +67,7 @@ struct PointServo {
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         PairVector<Real, a, b> arm_a, arm_b;
-        PairSymmetric<Real, a, b> mass;    ///< K^-1
+        PairSymmetric<Real, a, b> effective_mass;  ///< K^-1
         PairSymmetric<Real, a, b> stride;  ///< K / k_max: turns a step of K^-1 w into one of w / k_max
         PairVector<Real, a, b> bias;       ///< rate C - speed, m/s
     };
@@ -93,11 +90,12 @@ struct PointServo {
                 servo.damping_ratio,  servo.target_velocity, std::fmin(servo.max_force, largest_force)};
     }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& servo, const Memory<Real>& memory,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& servo, const Memory<Real>& memory,
+                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
         using Vector = PairVector<Real, A::kind, B::kind>;
         const Vec3<Real> arm_a = to_world(pose.orientation_a, servo.anchor_a);
         const Vec3<Real> arm_b = to_world(pose.orientation_b, servo.anchor_b);
@@ -111,19 +109,23 @@ struct PointServo {
              softness_or(step, servo.hertz, servo.damping_ratio, Softness{0, 1, 0})}};
     }
 
-    template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
-                           A& a, B& b)
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse&, Substep& substep, const A& a, const B& b)
     {
         substep.arm_a = turned(a, row.start_arm_a);
         substep.arm_b = turned(b, row.start_arm_b);
         const auto k = inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b);
-        substep.mass = inverse(k);
+        substep.effective_mass = inverse(k);
         substep.stride = inverse_or_zero(largest_response(k)) * k;
         substep.bias =
             row.in_sweep.soft.rate * anchor_error(row.start_error, row.start_arm_a, row.start_arm_b,
                                                   substep.arm_a, substep.arm_b, a, b) -
             row.target_velocity;
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
+    {
         apply_impulse(a, substep.arm_a, -impulse.push);
         apply_impulse(b, substep.arm_b, impulse.push);
     }
@@ -133,7 +135,7 @@ struct PointServo {
                       A& a, B& b)
     {
         const auto speed = velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a) + substep.bias;
-        const auto free = impulse.push - in_sweep.soft.mass_scale * (substep.mass * speed) -
+        const auto free = impulse.push - in_sweep.soft.mass_scale * (substep.effective_mass * speed) -
                           in_sweep.soft.impulse_scale * impulse.push;
         const auto cautious = impulse.push + substep.stride * (free - impulse.push);
         const auto wanted = bounded_impulse(free, cautious, in_sweep.max_impulse);
@@ -143,13 +145,8 @@ struct PointServo {
         apply_impulse(b, substep.arm_b, change);
     }
 
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants&, const Row&, const Substep&, A&, B&)
-    {
-    }
-
-    template <class Real, class Row, class Impulse>
-    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
     {
         return {to_three(impulse.push)};
     }
@@ -169,10 +166,9 @@ struct PointServo {
     }
 };
 
-struct AngularServo {
+struct AngularServo : ConstraintTraits {
     using Definition = AngularServoDefinition;
-    static constexpr bool has_restitution = false, only_pulls = true;
-    static constexpr bool recomputes_each_substep = true;
+    static constexpr bool only_pulls = true;
     static constexpr bool needs_bodies_that_turn = true;
 
     template <class Real>
@@ -194,9 +190,9 @@ struct AngularServo {
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         RotationRows<Real> rows;
-        SmallFactor<Real, 3> mass;
-        Sym3<Real> stride;     ///< of the torque: K / k_max
-        Real cautious_mass;    ///< 1 / k_max
+        SmallFactor<Real, 3> factors;  ///< of K
+        Sym3<Real> stride;             ///< of the torque: K / k_max
+        Real least_effective_mass;     ///< 1 / k_max
         Vec3<Real> half_turn;  ///< tangent of half the angle between the frames, along its axis, in frame a
         Vec3<Real> spin_bias;  ///< G^-1 bias, rad/s, world
         Real bias[3];          ///< rate C - speed
@@ -222,11 +218,12 @@ struct AngularServo {
                 servo.damping_ratio};
     }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& servo, const Memory<Real>& memory,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& servo, const Memory<Real>& memory,
+                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
         impulse.turn = Real(step.warm_start_scale) * memory.turn;
         return Row<Real, A::kind, B::kind>{
             to_world(pose.orientation_a, servo.rotation_a),
@@ -236,9 +233,8 @@ struct AngularServo {
              softness_or(step, servo.hertz, servo.damping_ratio, Softness{0, 1, 0})}};
     }
 
-    template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
-                           A& a, B& b)
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse&, Substep& substep, const A& a, const B& b)
     {
         Real error[3], k[3][3];
         const Quat<Real> frame_a = turn_of(a) * row.start_frame_a, frame_b = turn_of(b) * row.start_frame_b;
@@ -251,16 +247,21 @@ struct AngularServo {
         }
         const Real least = Real(rounding_share) * (angular_size(a) + angular_size(b));
         const Real floor[3] = {least, least, least};
-        substep.mass = factor(k, floor);
+        substep.factors = factor(k, floor);
         const Sym3<Real> response = angular_response(a) + angular_response(b);
-        substep.cautious_mass = inverse_or_zero(largest_response(response));
-        substep.stride = substep.cautious_mass * response;
+        substep.least_effective_mass = inverse_or_zero(largest_response(response));
+        substep.stride = substep.least_effective_mass * response;
         const Quat<Real> q = relative_rotation(frame_a, frame_b);
         // Half a turn apart the rows are not independent, and no tangent is finite.
         substep.half_turn = Real(1) / maximum(q.w, Real(0.01F)) * Vec3<Real>{q.x, q.y, q.z};
         // G^-1 C is twice that tangent.
         substep.spin_bias =
             Real(2) * row.in_sweep.soft.rate * rotate(frame_a, substep.half_turn) - row.target_velocity;
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
+    {
         push(substep, impulse.turn, a, b);
     }
 
@@ -271,14 +272,15 @@ struct AngularServo {
         const Vec3<Real> speed = angular_of(b) - angular_of(a);
         Real change[3];
         for (int i = 0; i < 3; ++i) change[i] = dot(substep.rows.axis[i], speed) + substep.bias[i];
-        solve_in_place(substep.mass, change);
+        solve_in_place(substep.factors, change);
         const Vec3<Real> free = impulse.turn -
                                 in_sweep.soft.mass_scale * Vec3<Real>{change[0], change[1], change[2]} -
                                 in_sweep.soft.impulse_scale * impulse.turn;
         // The bound is on the torque, which is shorter than lambda where the frames are far apart.
         const Vec3<Real> torque = torque_of(substep, free);
         const auto held_back = dot(torque, torque) > in_sweep.max_impulse * in_sweep.max_impulse;
-        Vec3<Real> left = in_sweep.soft.mass_scale * substep.cautious_mass * (speed + substep.spin_bias);
+        Vec3<Real> left =
+            in_sweep.soft.mass_scale * substep.least_effective_mass * (speed + substep.spin_bias);
         if constexpr (A::kind != BodyKind::rigid && B::kind != BodyKind::rigid) left.x = left.y = Real(0);
         left = left + in_sweep.soft.impulse_scale * (substep.stride * torque_of(substep, impulse.turn));
         const Vec3<Real> next = select(held_back, impulse.turn - lambda_of(substep, left), free);
@@ -287,13 +289,8 @@ struct AngularServo {
         impulse.turn = wanted;
     }
 
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants&, const Row&, const Substep&, A&, B&)
-    {
-    }
-
-    template <class Real, class Row, class Impulse>
-    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
     {
         return {impulse.turn};
     }

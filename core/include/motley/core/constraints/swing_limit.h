@@ -7,20 +7,16 @@
 
 #include <cmath>
 
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/swing_limit_definition.h"
 #include "motley/core/invalid_input.h"
-#include "motley/core/joint_checks.h"
-#include "motley/core/joint_report.h"
 #include "motley/core/limit.h"
 #include "motley/core/type_list.h"
-#include "motley/core/wrench.h"
 
 namespace motley {
 
-struct SwingLimit {
+struct SwingLimit : ConstraintTraits {
     using Definition = SwingLimitDefinition;
-    static constexpr bool has_restitution = false;
-    static constexpr bool recomputes_each_substep = true;
     static constexpr bool needs_bodies_that_turn = true;
 
     template <class Real>
@@ -42,7 +38,7 @@ struct SwingLimit {
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         Vec3<Real> normal;
-        Real mass, room;
+        Real effective_mass, room;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -61,21 +57,26 @@ struct SwingLimit {
                 0};
     }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& limit, const Memory<Real>& memory,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& limit, const Memory<Real>& memory,
+                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
         impulse.limit = Real(step.warm_start_scale) * memory.limit;
         return Row<Real, A::kind, B::kind>{to_world(pose.orientation_a, limit.axis_a),
                                            to_world(pose.orientation_b, limit.axis_b), limit.max_angle};
     }
 
-    template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
-                           A& a, B& b)
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse&, Substep& substep, const A& a, const B& b)
     {
         build<Real>(row, substep, a, b);
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
+    {
         push(substep, impulse.limit, a, b);
     }
 
@@ -84,25 +85,25 @@ struct SwingLimit {
                       B& b)
     {
         const Real closing = dot(substep.normal, angular_of(a) - angular_of(b));  // dC/dt
-        const Real wanted =
-            maximum(limit_impulse(step, substep.room, closing, substep.mass, impulse.limit), Real(0));
+        const Real wanted = maximum(
+            limit_impulse(step, substep.room, closing, substep.effective_mass, impulse.limit), Real(0));
         push(substep, wanted - impulse.limit, a, b);
         impulse.limit = wanted;
     }
 
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants&, const Row& row, A& a, B& b)
     {
-        Substep now;
+        SubstepRow<Real, A::kind, B::kind> now;
         build<Real>(row, now, a, b);
         const Vec3<Real> none{Real(0), Real(0), Real(0)};
-        const Vec3<Real> turn = (now.mass * minimum(now.room, Real(0))) * now.normal;
+        const Vec3<Real> turn = (now.effective_mass * minimum(now.room, Real(0))) * now.normal;
         displace(a, none, -turn);
         displace(b, none, turn);
     }
 
-    template <class Real, class Row, class Impulse>
-    static Memory<Real> remember(const Row&, const Impulse& impulse)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
     {
         return {impulse.limit};
     }
@@ -145,7 +146,7 @@ struct SwingLimit {
                                                               square_root(dot(sum, sum)));
         const Real k = dot(substep.normal, over_inertia(a, substep.normal) + over_inertia(b, substep.normal));
         const auto usable = k > Real(rounding_share) * (angular_size(a) + angular_size(b));
-        substep.mass = select(usable, inverse_or_zero(k), Real(0));
+        substep.effective_mass = select(usable, inverse_or_zero(k), Real(0));
     }
 
     /// Against the swing.

@@ -10,29 +10,13 @@
 
 #include <cmath>
 
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraints/transmission_definition.h"
 #include "motley/core/invalid_input.h"
-#include "motley/core/joint_checks.h"
-#include "motley/core/joint_report.h"
 #include "motley/core/limit.h"
-#include "motley/core/step_constants.h"
 #include "motley/core/type_list.h"
-#include "motley/core/wrench.h"
 
 namespace motley {
-
-/// How far a body has turned since the step began about an axis that it carries, in the world of that time; rad.
-template <class Real, BodyKind kind>
-Real turn_about(const LaneBody<Real, kind>& body, const Vec3<Real>& axis)
-{
-    const Quat<Real>& q = body.delta_rotation;
-    return Real(2) * arc_tangent2(dot(axis, Vec3<Real>{q.x, q.y, q.z}), q.w);
-}
-template <class Real>
-Real turn_about(const LaneBody<Real, BodyKind::planar>& body, const Vec3<Real>& axis)
-{
-    return axis.z * body.delta_yaw;
-}
 
 /// Where a transmission's definition keeps its ratio.
 inline float ratio_of(const GearDefinition& gear)
@@ -45,10 +29,8 @@ inline float ratio_of(const RackAndPinionDefinition& rack)
 }
 
 template <class JointDefinition>
-struct Transmission {
+struct Transmission : ConstraintTraits {
     using Definition = JointDefinition;
-    static constexpr bool has_restitution = false;
-    static constexpr bool recomputes_each_substep = true;
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr bool slides = std::is_same_v<Definition, RackAndPinionDefinition>;
 
@@ -72,7 +54,7 @@ struct Transmission {
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         Vec3<Real> axis_a, axis_b;  ///< axis_a is ratio e_a
-        Real mass, error;
+        Real effective_mass, error;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -93,22 +75,27 @@ struct Transmission {
         return {unit(joint.axis_a), ratio_of(joint), unit(joint.axis_b), 0};
     }
 
-    template <class Real, class A, class B>
-    static auto prepare(const StepConstants& step, const Parameters<Real>& joint, const Memory<Real>& memory,
-                        const JointPose<Real, A::kind, B::kind>& pose, const A&, const B&,
-                        Impulse<Real, A::kind, B::kind>& impulse)
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& joint, const Memory<Real>& memory,
+                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
     {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
         impulse.lambda = Real(step.warm_start_scale) * memory.lambda;
         return Row<Real, A::kind, B::kind>{to_world(pose.orientation_a, joint.axis_a),
                                            to_world(pose.orientation_b, joint.axis_b), joint.ratio,
                                            memory.error};
     }
 
-    template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const StepConstants&, const Row& row, Substep& substep, const Impulse& impulse,
-                           A& a, B& b)
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse&, Substep& substep, const A& a, const B& b)
     {
         build<Real>(row, substep, a, b);
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
+    {
         apply_turn(a, -(impulse.lambda * substep.axis_a));
         push_b(impulse.lambda * substep.axis_b, b);
     }
@@ -119,19 +106,19 @@ struct Transmission {
     {
         const Real speed =
             dot(substep.axis_b, slides ? linear_of(b) : angular_of(b)) - dot(substep.axis_a, angular_of(a));
-        const Real wanted = lock_impulse(step, substep.error, speed, substep.mass, impulse.lambda);
+        const Real wanted = lock_impulse(step, substep.error, speed, substep.effective_mass, impulse.lambda);
         const Real change = wanted - impulse.lambda;
         impulse.lambda = wanted;
         apply_turn(a, -(change * substep.axis_a));
         push_b(change * substep.axis_b, b);
     }
 
-    template <class Real, class Row, class Substep, class A, class B>
-    static void project(const StepConstants&, const Row& row, const Substep&, A& a, B& b)
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants&, const Row& row, A& a, B& b)
     {
-        Substep now;
+        SubstepRow<Real, A::kind, B::kind> now;
         build<Real>(row, now, a, b);
-        const Real lambda = -(now.mass * now.error);
+        const Real lambda = -(now.effective_mass * now.error);
         const Vec3<Real> none{Real(0), Real(0), Real(0)};
         displace(a, none, -(lambda * now.axis_a));
         if constexpr (slides) {
@@ -141,10 +128,10 @@ struct Transmission {
         }
     }
 
-    template <class Real, class Row, class Impulse, class A, class B>
-    static Memory<Real> remember(const Row& row, const Impulse& impulse, const A& a, const B& b)
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row& row, const Impulse& impulse, const End& end)
     {
-        return {impulse.lambda, error_now<Real>(row, a, b)};
+        return {impulse.lambda, error_now<Real>(row, end.a(), end.b())};
     }
 
     template <class Real, class Row, class Substep, class Impulse>
@@ -190,7 +177,7 @@ struct Transmission {
         const Real size =
             row.ratio * row.ratio * angular_size(a) + (slides ? linear_size(b) : angular_size(b));
         const auto usable = k > Real(rounding_share) * size;
-        substep.mass = select(usable, inverse_or_zero(k), Real(0));
+        substep.effective_mass = select(usable, inverse_or_zero(k), Real(0));
     }
 
     template <class Real, class B>
