@@ -1,4 +1,5 @@
-// Which settings are exact enough is found first; then those, on one thread and on two, and Bullet, in turn.
+// A first sweep finds the fastest setting that is exact enough. A second one runs it on one thread and on two, and
+// Bullet, in turn.
 #include "anchors.h"
 
 #include <fmt/format.h>
@@ -9,8 +10,8 @@
 namespace motley::bench {
 namespace {
 
-/// A large scene, and how far its joints part with Box3D at 4 substeps: the error at which motley is timed. Times of other
-/// engines do not carry over from machine to machine.
+/// A large scene, and how far its joints part with Box3D at 4 substeps: the error at which motley is timed. Box3D's
+/// times are not used, because times do not carry over from machine to machine.
 struct Anchor {
     const char* scene;
     std::int64_t bodies;

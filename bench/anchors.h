@@ -1,4 +1,5 @@
-// The joint scenes that other engines have been measured on, with the same numbers: how many times faster, at no more error.
+// Joint scenes on which other engines have been measured, in the same sizes: how many times as fast motley is at no
+// larger error.
 #pragma once
 
 #include <string>
@@ -8,11 +9,11 @@ namespace motley::bench {
 
 struct AnchorOptions {
     int rounds = 3;
-    bool quick = false;  ///< a tenth of the bodies: shows that it runs, not how fast
+    bool quick = false;  ///< a tenth of the bodies: checks that it runs; its times mean nothing
     bool progress = true;
 };
 
-/// One scene: the fastest settings of motley that part no more than Box3D does, on one thread and on two.
+/// One scene: the fastest settings of motley whose joints part no more than Box3D's, on one thread and on two.
 struct AnchorResult {
     std::string scene;
     double most_error = 0;  ///< of Box3D, m rms

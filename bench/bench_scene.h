@@ -1,4 +1,4 @@
-// What a scene of the program is: a motley scene, the host's part around it, and the figures that judge it.
+// What a scene of the program is: a motley scene, the host's part around it, and the figures by which it is judged.
 #pragma once
 
 #include <functional>
@@ -28,13 +28,13 @@ struct RunOptions {
     std::string data;  ///< bottleneck: the trajectory file; empty: the project's copy
 };
 
-/// The one number that judges a scene, where overlap does not.
+/// The number by which a scene is judged when that is not overlap.
 struct SceneError {
     const char* name;  ///< with its unit
     double value;
 };
 
-/// A line of the table at the end: what, with its unit in brackets, and its value.
+/// A line of the table at the end of a run: a name, with its unit in brackets, and its value.
 using Figure = std::pair<std::string, double>;
 
 class BenchScene {
@@ -45,15 +45,15 @@ class BenchScene {
     virtual ~BenchScene() = default;
 
     Scene scene;
-    /// Gravity and the like that the scene itself decides.
+    /// Sets what the scene itself decides, such as gravity.
     virtual void adjust(SolverSettings&) const {}
     /// The host's work before a step at `time`: arrivals, departures, steering.
     virtual void steer(double time, Executor& executor) = 0;
     /// The host's neighbour search.
     virtual std::span<const Contact> find_contacts(Executor& executor) = 0;
-    /// After each step.
+    /// Called after each step.
     virtual void observe(double time, const Solver& solver) = 0;
-    /// What a sweep judges the scene by; none: how deep people overlap.
+    /// The error by which a sweep judges the scene; without one a sweep uses how deep people overlap.
     [[nodiscard]] virtual std::optional<SceneError> error() const { return {}; }
     /// The scene's own figures.
     [[nodiscard]] virtual std::vector<Figure> figures() const { return {}; }
@@ -63,7 +63,7 @@ class BenchScene {
     [[nodiscard]] virtual bool is_over(double) const { return false; }
 };
 
-/// A scene of people: steering and search are the crowd's.
+/// A scene of people: Crowd does the steering and the search.
 class CrowdScene : public BenchScene {
   public:
     void steer(double, Executor& executor) override
@@ -82,7 +82,7 @@ class CrowdScene : public BenchScene {
     Crowd people;
 };
 
-/// A scene that the program knows.
+/// A scene in the program's list.
 struct SceneEntry {
     const char* name;
     const char* description;
@@ -91,7 +91,7 @@ struct SceneEntry {
     std::function<std::unique_ptr<BenchScene>(const RunOptions& options)> make;
 };
 
-/// The visible list; scenes.cpp.
+/// All scenes; the list is in scenes.cpp.
 std::span<const SceneEntry> scene_list();
 /// Null when there is none of that name.
 const SceneEntry* find_scene(const std::string& name);

@@ -5,7 +5,7 @@
 namespace motley::bench {
 namespace {
 
-constexpr double margin = 0.02;  ///< m: gaps up to this are contacts to come
+constexpr double margin = 0.02;  ///< m: a pair with a gap up to this becomes a contact
 constexpr float friction = 0.6F;
 
 double part(const Vec3<double>& v, int axis)
@@ -45,7 +45,7 @@ void BoxContacts::add(BodyId a, BodyId b, Vec3<double> centre_a, Vec3<double> ce
     contacts_.push_back(contact);
 }
 
-/// Corners of `box` in the nearest face of `other`.
+/// Adds a contact for each corner of `box` that lies in the nearest face of `other`.
 void BoxContacts::corners_in_face(int box, int other, std::uint64_t key)
 {
     const auto i = static_cast<std::size_t>(box), j = static_cast<std::size_t>(other);
@@ -98,7 +98,7 @@ std::span<const Contact> BoxContacts::find(std::span<const RigPose> poses, BodyI
     }
     const std::uint64_t floor_keys = poses.size();
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
-        // A box whose four corners lie in the face needs none of the other's.
+        // Four corners of one box in a face of the other are enough; with fewer, the other box's corners are added.
         const std::size_t before = contacts_.size();
         corners_in_face(pairs_[p].second, pairs_[p].first, floor_keys + 2 * p);
         if (contacts_.size() - before < 4)

@@ -1,5 +1,5 @@
-// Contacts of boxes that stand on each other or on a floor: corners of one in a face of the other. Enough for stacks,
-// whose boxes turn little; not a general collision detection, which is the host's.
+// Contacts of boxes that stand on each other or on a floor: corners of one box in a face of the other. This is enough
+// for stacks, whose boxes turn little; general collision detection is the host's part.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ namespace motley::bench {
 
 class BoxContacts {
   public:
-    /// Boxes that lie near each other when the rig starts are looked at in every step.
+    /// Later steps test only pairs of boxes that are near each other when the rig starts.
     BoxContacts(const Rig& rig, std::vector<BodyId> bodies);
     /// The contacts of boxes in these poses. `ground` is the floor at y = 0.
     std::span<const Contact> find(std::span<const RigPose> poses, BodyId ground);

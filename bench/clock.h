@@ -1,4 +1,4 @@
-// The one clock of every measurement here: steady, whatever the machine's time of day does.
+// The clock of every measurement here. It is steady: changes of the time of day do not affect it.
 #pragma once
 
 #include <chrono>

@@ -10,7 +10,7 @@
 namespace motley::bench {
 namespace {
 
-/// Multiplies and adds for about half a millisecond, with chains enough to keep every port of a core busy.
+/// Multiplies and adds for about half a millisecond, in enough independent chains to keep every port of a core busy.
 void keep_busy()
 {
     using Four = float __attribute__((vector_size(16)));
@@ -25,11 +25,11 @@ void keep_busy()
     [[maybe_unused]] const volatile float kept = sum[0];
 }
 
-/// Where threads meet. An executor need not bring all of them.
+/// A barrier that gives up after a while, because an executor may run fewer threads than it was asked for.
 class Meeting {
   public:
     explicit Meeting(int threads) : threads_(threads) {}
-    /// Waits for the others, but not for long; whether all came.
+    /// Waits at most 2 ms for the other threads. Returns whether all of them arrived.
     bool come()
     {
         constexpr double longest_wait = 2e-3;  // s

@@ -1,5 +1,5 @@
-// What the machine gives to threads at the moment. Two threads of a virtual machine may be of one core for a while, or of cores
-// that share no cache; a clock wanders besides.
+// Measures what the machine gives to threads at the moment. Two threads of a virtual machine may for a while share
+// one core, or run on cores that share no cache; and clock rates vary.
 #pragma once
 
 #include "motley/motley.h"
@@ -12,7 +12,7 @@ struct CoresAtHand {
         0;  ///< from the first thread to the second through a cache line; infinite where no second came
 };
 
-/// Of the executor's threads, of which there are at least two. Takes about a millisecond.
+/// Measures the executor's threads, of which there must be at least two. Takes about a millisecond.
 CoresAtHand look_at_cores(Executor& executor);
 
 }  // namespace motley::bench

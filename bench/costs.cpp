@@ -20,7 +20,8 @@ struct Case {
     std::function<Sample()> run;
 };
 
-/// A step of a net of 10,000 bodies at the default settings; `moved_at` m/s, 1e-40 being denormal.
+/// Times a step of a net of 10,000 bodies at the default settings. Bodies move at `moved_at` m/s, of which 1e-40 is
+/// denormal.
 Sample run_net(const std::string& name, float moved_at)
 {
     constexpr int side = 100;

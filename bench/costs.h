@@ -1,4 +1,4 @@
-// What each generality costs: the same step with one thing more, or less.
+// What each feature costs: the same step with one feature more, or one less.
 #pragma once
 
 #include <string>

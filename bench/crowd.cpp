@@ -67,7 +67,8 @@ void Crowd::steer(Scene& scene, Executor& executor)
                 forces_[i] = {gain * (speed * dx - velocities[i].x), gain * (speed * dy - velocities[i].y),
                               0};
             }
-            // No two chunks name the same body, and nobody else calls: see Scene.
+            // The chunks have no body in common, and nobody else calls the scene meanwhile: see Scene for what may
+            // run at once.
             const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
             scene.set_forces(std::span<const BodyId>(bodies_).subspan(first, count),
                              std::span<const Vec3<float>>(forces_).subspan(first, count));
@@ -78,7 +79,8 @@ std::span<const Contact> Crowd::find_contacts(const Scene& scene, Executor& exec
 {
     grid_.sort(positions, radii_, contact_margin, executor);
 
-    // Pairs first, a list a chunk; then every chunk knows where its contacts go and writes them there.
+    // Every chunk first lists its pairs. Then the place of its contacts in the whole list is known, and it writes
+    // them there.
     const std::int64_t chunks = grid_.chunk_count();
     if (findings_.size() < static_cast<std::size_t>(chunks))
         findings_.resize(static_cast<std::size_t>(chunks));
@@ -145,7 +147,7 @@ void Crowd::add_pairs_across_the_seam()
     found.pair_count = found.pairs.size();
 }
 
-/// What write_contact() reads: people of a pair are near each other, but lie anywhere.
+/// Prefetches what write_contact() reads: people of a pair are near each other in space, but anywhere in memory.
 void Crowd::prefetch(Pair pair) const
 {
     for (const std::int32_t agent : {pair.a, pair.b}) {
@@ -157,10 +159,10 @@ void Crowd::prefetch(Pair pair) const
     }
 }
 
-/// Field by field, where it stays: a contact made first and copied would wait for its own stores.
+/// Writes each field in place: a contact that is built first and then copied would have to wait for its own stores.
 void Crowd::write_contact(Contact& contact, Pair& pair) const
 {
-    // The elder is `a`, so that a pair keeps its roles whoever is sorted first.
+    // The agent that arrived first is `a`, so that a pair keeps its roles in whatever order agents are sorted.
     if (serial_[static_cast<std::size_t>(pair.a)] > serial_[static_cast<std::size_t>(pair.b)])
         std::swap(pair.a, pair.b);
     const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
@@ -169,7 +171,7 @@ void Crowd::write_contact(Contact& contact, Pair& pair) const
     // Subtracted in double: people near each other may be far from the origin.
     const auto dx = static_cast<float>(positions[b].x - positions[a].x), dy = static_cast<float>(y);
     const float distance = std::sqrt(dx * dx + dy * dy);
-    // People in one point part along x.
+    // Two people at the same point are pushed apart along x.
     const bool apart = distance > 1e-9F;
     const float inverse = apart ? 1 / distance : 0;
     const float radius_a = radii_[a], radius_b = radii_[b];
@@ -199,7 +201,7 @@ bool Crowd::is_near(const Wall& wall, std::size_t agent) const
 {
     const double near = static_cast<double>(radii_[agent] + contact_margin);
     const Vec3<double>& p = positions[agent];
-    // Most people are far from most walls: four comparisons spare them the division.
+    // Most people are far from most walls, so four comparisons first avoid the division.
     if (p.x < std::min(wall.from.x, wall.to.x) - near || p.x > std::max(wall.from.x, wall.to.x) + near ||
         p.y < std::min(wall.from.y, wall.to.y) - near || p.y > std::max(wall.from.y, wall.to.y) + near) {
         return false;
@@ -223,7 +225,7 @@ void Crowd::write_wall_contact(Contact& contact, Pair touch, BodyId ground) cons
         std::uint64_t{1} << 63 | std::uint64_t{serial_[a]} << 16 | static_cast<std::uint64_t>(touch.b);
     contact.normal = distance > 1e-9F ? Vec3<float>{dx / distance, dy / distance, 0} : Vec3<float>{1, 0, 0};
     contact.separation = distance - radii_[a];
-    // The ground stands at the origin and never turns: its arm is the point.
+    // The ground is at the origin and never turns, so its lever arm is the contact point.
     contact.arm_a = {static_cast<float>(point.x), static_cast<float>(point.y), 0};
     contact.arm_b = -distance * contact.normal;
     contact.friction = friction;

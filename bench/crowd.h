@@ -1,5 +1,5 @@
-// A crowd of discs: who they are, where they want to go, and who touches whom. Steering and the neighbour search
-// are the host's part of a crowd simulation; this is just enough of a host to make real scenes.
+// A crowd of discs: people, their goals, and their contacts. Steering and the neighbour search are the host's part of
+// a crowd simulation; this is just enough of a host for real scenes.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace motley::bench {
 /// One person: a disc with a goal.
 struct Agent {
     BodyId body{};
-    float radius = 0.2F;          ///< m; as when added
+    float radius = 0.2F;          ///< m; contacts use its value at add()
     float mass = 80;              ///< kg
     float desired_speed = 1.34F;  ///< m/s
     Vec2<double> goal{};          ///< m
@@ -32,7 +32,7 @@ class Crowd {
     float contact_margin =
         0.03F;  ///< m: gaps up to this become contacts, so that nothing is missed within a step
 
-    double period_y = 0;  ///< m: above 0, people at y near 0 touch those near this: a strip without ends
+    double period_y = 0;  ///< m: above 0, y has this period: a strip without ends
 
     AlignedVector<Agent> agents;
     std::vector<Wall> walls;
@@ -64,13 +64,13 @@ class Crowd {
 
   private:
     AlignedVector<BodyId> bodies_;
-    AlignedVector<float> radii_;  ///< of the agents, in line
+    AlignedVector<float> radii_;  ///< of the agents, contiguous
     AlignedVector<Vec3<float>> forces_;
     NeighbourGrid grid_;
     AlignedVector<Contact> contacts_;  // the first contact_count_ of them
     AlignedVector<Pair> pairs_;
     std::size_t contact_count_ = 0;
-    AlignedVector<std::uint32_t> serial_;  ///< number of each agent's arrival: names it in contact keys
+    AlignedVector<std::uint32_t> serial_;  ///< each agent's order of arrival; part of contact keys
     std::uint32_t next_serial_ = 0;
 
     /// What a chunk of the grid found: people near each other, and people near walls (b is the wall).

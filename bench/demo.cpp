@@ -1,4 +1,4 @@
-// Ways side by side, interleaved so that a machine that slows down slows all of them.
+// Runs several ways side by side, interleaved so that a slowdown of the machine affects all of them.
 #include "demo.h"
 
 #include <fmt/format.h>

@@ -65,7 +65,7 @@ std::vector<Dials> expand(const DialGrid& grid)
         for (const int threads : grid.threads) {
             for (const Isa isa : isas) {
                 expand_method(grid, method, {.threads = threads, .isa = isa}, all);
-                // The simultaneous solution knows neither lanes nor threads.
+                // The direct method uses neither lanes nor threads, so one combination is enough.
                 if (method == Method::direct) break;
             }
             if (method == Method::direct) break;

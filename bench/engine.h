@@ -18,9 +18,9 @@ class Engine {
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
     virtual ~Engine() = default;
-    /// Moves on by `dt` seconds. What is timed. Throws std::runtime_error when the engine gives up.
+    /// Advances by `dt` seconds; this call is what is timed. Throws std::runtime_error when the engine gives up.
     virtual void step(float dt) = 0;
-    /// What the solver took of the last step; negative where an engine does not tell it from the rest.
+    /// Seconds that the solver took in the last step; negative for an engine that does not time it separately.
     [[nodiscard]] virtual double solver_seconds() const { return -1; }
     /// Where the bodies are, in the order of the rig.
     virtual void read(std::span<RigPose> poses) const = 0;
@@ -33,7 +33,7 @@ std::unique_ptr<Engine> make_motley_engine(const Rig& rig, SolverSettings settin
 /// Adds a rig to a scene: a body each, in order, and the joints. Returns the bodies.
 std::vector<BodyId> add_rig(Scene& scene, const Rig& rig);
 
-/// One way to set a peer.
+/// One setting of a peer.
 struct PeerSetting {
     std::string label;
     int iterations = 10;
@@ -49,9 +49,9 @@ struct Peer {
     std::unique_ptr<Engine> (*make)(const Rig& rig, const PeerSetting& setting);
 };
 
-/// Those that were found when the program was built.
+/// The peers that were found when the program was built.
 std::vector<Peer> peers();
-/// Those that were not, and the package that has them.
+/// The peers that were not found, each with the package that provides it.
 std::vector<std::string> missing_peers();
 
 }  // namespace motley::bench

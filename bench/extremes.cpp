@@ -18,7 +18,7 @@ constexpr std::array<double, extreme_way_count> all(double bound)
     return {bound, bound, bound, bound, bound};
 }
 
-// Bounds: soft_step, exact_joints, baumgarte, projection, direct.
+// The bounds are in this order: soft_step, exact_joints, baumgarte, projection, direct.
 constexpr ExtremeCase cases[] = {
     {"tip of 1e-6 kg",
      "hanging, pushed at 3 m/s: whips, and holds",

@@ -1,4 +1,4 @@
-// Scenes at the edge of what numbers can bear, each with a figure and a bound that follows from physics or rounding.
+// Scenes with extreme numbers, each with a figure and a bound that follows from physics or rounding.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ const char* name_of(ExtremeWay way);
 /// The default settings of a way, without gravity.
 SolverSettings settings_of(ExtremeWay way);
 
-/// Stands for a bound where no claim is made: the figure is shown all the same.
+/// Used in place of a bound where no claim is made. The figure is printed all the same.
 inline constexpr double no_claim = std::numeric_limits<double>::infinity();
 
 struct ExtremeRun {
@@ -30,9 +30,9 @@ struct ExtremeCase {
     const char* name;
     const char* must;  ///< what must happen, and why
     const char* unit;
-    /// Of each way, in the unit of the figure: at most.
+    /// The largest figure allowed for each way, in `unit`.
     std::array<double, extreme_way_count> bound;
-    /// Infinite when a state was not finite, a body was contained, or a step was refused.
+    /// Returns infinity when a state was not finite, a body was contained, or a step was refused.
     double (*figure)(const ExtremeRun& run);
 };
 

@@ -1,4 +1,4 @@
-// Discs and walls into pixels.
+// Draws discs and walls as pixels.
 #include "frames.h"
 
 #include <fmt/format.h>
@@ -78,7 +78,7 @@ class Picture {
             }
         }
     }
-    /// Two pixels a dot, from its upper left corner.
+    /// Writes text with two pixels a dot; (x, y) is its upper left corner.
     void text(int x, int y, std::string_view letters)
     {
         for (const char letter : letters) {

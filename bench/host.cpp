@@ -1,4 +1,4 @@
-// From /proc.
+// Reads /proc.
 #include "host.h"
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// What the machine says of itself while it is measured.
+// What the machine reports about itself while it is measured.
 #pragma once
 
 namespace motley::bench {

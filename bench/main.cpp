@@ -41,7 +41,7 @@ const std::map<std::string, DriftCorrection> drift_names{{"by_method", DriftCorr
                                                          {"baumgarte", DriftCorrection::baumgarte},
                                                          {"projection", DriftCorrection::projection}};
 
-/// The instruction set of that name; says so when there is none.
+/// The instruction set of that name. Prints an error when there is none.
 std::optional<Isa> isa_called(const std::string& name)
 {
     const std::optional<Isa> isa = isa_from_name(name);
@@ -182,7 +182,7 @@ struct ReplayCommand {
             ->capture_default_str();
         dials.declare(app);
     }
-    /// `parse_again` puts the dials of the command line over those of the file.
+    /// `parse_again` reads the command line again, so that its dials override those of the file.
     template <class Parse>
     int operator()(const Parse& parse_again)
     {

@@ -1,4 +1,4 @@
-// The middle of some measurements: what the noise of a machine moves least.
+// The median, the statistic of a series of measurements that noise of the machine changes least.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace motley::bench {
 
-/// The upper of the two middle ones where they are even in number; 0 where there are none.
+/// For an even number of values the upper of the two middle ones; 0 for no values.
 inline double median(std::vector<double> values)
 {
     if (values.empty()) return 0;

@@ -1,5 +1,5 @@
-// Kernels by themselves: every constraint, instruction set and size, colouring full and incremental, and the hand-over
-// between stages. Run it on a quiet machine: motley_benchmarks --benchmark_repetitions=5
+// Kernels by themselves: every constraint, instruction set and size; full and incremental colouring; and the
+// hand-over between stages. Run it on a quiet machine: motley_benchmarks --benchmark_repetitions=5
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -44,7 +44,7 @@ void sweep(benchmark::State& state, const NamedTie& kind, Isa isa, int threads, 
         Counter(constraints * sweeps * report.bytes_per_constraint, Counter::kIsRate);
 }
 
-/// Intake or colour: of a scene never seen, or of the same contacts again.
+/// Times intake or colouring, either of a scene that the solver has not seen or of the same contacts again.
 void lay_out(benchmark::State& state, Stage stage, bool again, int threads, int side)
 {
     auto net = make_net(contact_tie(0), BodyModel::planar, side);
@@ -65,7 +65,8 @@ void lay_out(benchmark::State& state, Stage stage, bool again, int threads, int 
         Counter(constraints * static_cast<double>(state.iterations()), Counter::kIsRate | Counter::kInvert);
 }
 
-/// A step of smooth contacts that streams, with the bodies in memory as they lie in the net, anyhow, and renumbered.
+/// A step of smooth contacts in a net too large for the caches. Bodies lie in memory in the order of the net or
+/// shuffled, and are renumbered or not.
 void memory_order(benchmark::State& state, BodyOrder order, bool renumbered)
 {
     const auto net = make_net(contact_tie(0), BodyModel::planar, side_streaming, order);
@@ -79,8 +80,8 @@ void memory_order(benchmark::State& state, BodyOrder order, bool renumbered)
                 Counter::kIsRate | Counter::kInvert);
 }
 
-/// What a crowd of a million planar people at 1.12 contacts each takes in memory: bodies, and what steps keep of contacts. By
-/// itself (--benchmark_filter=memory/), or it finds room that others left behind.
+/// Memory of a crowd of a million planar people at 1.12 contacts each: bodies, and what steps keep of contacts. Run
+/// it alone (--benchmark_filter=memory/): otherwise it reuses memory that other benchmarks have freed.
 void memory(benchmark::State& state)
 {
     constexpr int side = 1000;
@@ -103,8 +104,8 @@ void memory(benchmark::State& state)
     state.counters["contacts"] = static_cast<double>(net.contacts.size()) / people;
 }
 
-/// A step of 10,000 ball-sockets, in a net or in a thousand chains of eleven bodies, of which so many are taken away and put back
-/// before it.
+/// A step of 10,000 ball-sockets, in a net or in a thousand chains of eleven bodies, after `changed` of them were
+/// removed and added again.
 void changing_joints(benchmark::State& state, bool in_chains, int changed)
 {
     Scene scene;
@@ -135,8 +136,8 @@ void changing_joints(benchmark::State& state, bool in_chains, int changed)
     }
 }
 
-/// A step of Method::direct at its default substeps: a wall of cubes with friction that stands, each cube with two corners on
-/// either of the two below it or four on the floor, three rows a contact.
+/// A step of Method::direct at its default substeps: a standing wall of cubes with friction. Each cube has two
+/// corners on each of the two cubes below it, or four on the floor, and each contact has three rows.
 void direct(benchmark::State& state, int base)
 {
     Scene scene;
@@ -184,7 +185,7 @@ void direct(benchmark::State& state, int base)
     state.counters["unsolved"] = static_cast<double>(report.direct_unsolved);
 }
 
-/// A stage whose chunks do nothing: what a colour costs beyond its constraints.
+/// A stage whose chunks do nothing: the cost of a colour in addition to its constraints.
 void hand_over(benchmark::State& state)
 {
     struct Lender final : Executor {
@@ -202,7 +203,7 @@ void hand_over(benchmark::State& state)
 }
 
 #ifdef MOTLEY_HAS_TRANSFER
-/// Velocity rows of rigid bodies into lanes, in an order without pattern, of as many bodies as stay in a second level cache.
+/// Loads velocity rows of rigid bodies into lanes, in random order, of as many bodies as fit a second level cache.
 void transfer(benchmark::State& state, SumRows sum)
 {
     constexpr std::int64_t rows = 16384;
@@ -221,7 +222,7 @@ void enter_transfers()
     const auto enter = [](Isa isa, Transfers (*transfers)()) {
         const std::vector<Isa> here = available_isas();
         if (std::find(here.begin(), here.end(), isa) == here.end()) return;
-        // Code of that instruction set, called only where there is one.
+        // Code of that instruction set, so it is called only on machines that have it.
         const Transfers ways = transfers();
         for (const auto& [way, sum] :
              {std::pair{"transpose", ways.by_transpose}, std::pair{"gather", ways.by_gather}}) {
@@ -236,7 +237,7 @@ void enter_transfers()
 
 void enter_all()
 {
-    // 4,000 constraints stay in a second level cache, 320,000 do not.
+    // 4,000 constraints fit a second level cache, 320,000 do not.
     const std::pair<const char*, int> sizes[] = {{"in_cache", side_in_cache}, {"streaming", side_streaming}};
     for (const auto& [place, side] : sizes) {
         for (const NamedTie& kind : every_tie()) {
@@ -249,7 +250,7 @@ void enter_all()
             }
         }
     }
-    // And a million contacts.
+    // Intake and colouring are also run with a million contacts.
     const std::pair<const char*, int> colour_sizes[] = {sizes[0], sizes[1], {"million", 708}};
     for (const Stage stage : {Stage::intake, Stage::colour}) {
         for (const auto& [place, side] : colour_sizes) {

@@ -1,4 +1,4 @@
-// A rig in motley.
+// Simulates a rig with motley.
 #include <cmath>
 
 #include "box_contacts.h"
@@ -10,7 +10,7 @@ namespace {
 /// A rotation that takes x to this unit vector.
 Quat<float> turn_of_x_to(const Vec3<float>& axis)
 {
-    // Half way between x and the axis; opposite ways: half a turn about z.
+    // The quaternion half way between the two axes. For opposite axes it is half a turn about z.
     if (axis.x < -0.999999F) return {0, 0, 1, 0};
     const float w = std::sqrt(0.5F * (1 + axis.x));
     return {0, -axis.z / (2 * w), axis.y / (2 * w), w};

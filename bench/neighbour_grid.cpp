@@ -1,4 +1,4 @@
-// Discs counted into cells.
+// Sorts discs into cells by counting.
 #include "neighbour_grid.h"
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 namespace motley::bench {
 namespace {
 
-/// A grid never has more cells than this: a lone walker far away must not cost memory, only some tests.
+/// The most cells of a grid: with a limit, one person far away costs more distance tests, not memory.
 constexpr double most_cells = 1 << 24;
 constexpr std::int64_t discs_per_chunk = 1024;
-/// Bands of rows that discs are sorted into first: few enough to write to all at once.
+/// The most bands of rows that discs are sorted into first: few enough to write to all of them in turn.
 constexpr std::int32_t most_bands = 128;
 
 /// Calls work(begin, end) for chunks of so many discs.
@@ -66,7 +66,8 @@ void NeighbourGrid::sort(std::span<const Vec3<double>> positions, std::span<cons
     starts_.back() = static_cast<std::int32_t>(count);
 }
 
-/// Stable, so that the order does not depend on who does it: how many of each band a chunk has, then where its own begin.
+/// A stable counting sort, so that the order does not depend on the threads. It counts the discs of each chunk in
+/// each band, and computes from the counts where each chunk writes.
 void NeighbourGrid::sort_into_bands(std::span<const Vec3<double>> positions, std::span<const float> radii,
                                     float margin, Executor& executor)
 {
@@ -121,11 +122,11 @@ void NeighbourGrid::sort_band(std::int64_t band)
     for (const Placed& disc : discs) ++starts[static_cast<std::size_t>(disc.cell) - first_cell];
     auto next = static_cast<std::int32_t>(end);
     for (std::size_t c = starts.size(); c-- > 0;) starts[c] = next -= starts[c];
-    // Handing out places moves a cell's start on to its end...
+    // Placing the discs advances each cell's start to that cell's end,
     for (const Placed& disc : discs)
         sorted_[static_cast<std::size_t>(starts[static_cast<std::size_t>(disc.cell) - first_cell]++)] =
             disc.disc;
-    // ...which is where the next cell starts.
+    // which is where the next cell starts.
     for (std::size_t c = starts.size(); c-- > 1;) starts[c] = starts[c - 1];
     starts[0] = static_cast<std::int32_t>(begin);
 }
@@ -138,7 +139,8 @@ std::size_t NeighbourGrid::find_pairs(std::int64_t chunk, std::vector<Pair>& pai
         for (std::int32_t x = cells.first_column; x < cells.end_column; ++x) {
             const std::int32_t begin = starts_[index_of(x, y)], end = starts_[index_of(x, y) + 1];
             if (begin == end) continue;
-            // Cells in line are discs in line: the rest of this cell and the one to the right, then three above.
+            // Neighbouring cells of a row are contiguous in sorted_: first the rest of this cell and the cell to the
+            // right, then three cells above.
             const std::int32_t right_end = x + 1 < width_ ? starts_[index_of(x + 1, y) + 1] : end;
             std::int32_t above_begin = 0, above_end = 0;
             if (y + 1 < height_) {
@@ -156,7 +158,8 @@ std::size_t NeighbourGrid::find_pairs(std::int64_t chunk, std::vector<Pair>& pai
                     for (std::int32_t j = from; j < to; ++j) {
                         const Sorted& other = sorted_[static_cast<std::size_t>(j)];
                         const float dx = other.x - me.x, dy = other.y - me.y, near = other.reach + me.reach;
-                        // Written always and counted when near: one in three is, which no predictor guesses.
+                        // The pair is always written, and counted only when near. One in three is, which a branch
+                        // would often mispredict.
                         list[found].a = me.disc;
                         list[found].b = other.disc;
                         found += dx * dx + dy * dy < near * near ? 1 : 0;

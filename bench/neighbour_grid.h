@@ -1,5 +1,6 @@
-// A uniform grid: discs are sorted into bands of rows and then into cells every step, then each looks at the half of its
-// neighbourhood that lies after it. The order of pairs depends on positions alone, never on threads.
+// A uniform grid. In every step discs are sorted into bands of rows and then into cells; then each disc is tested
+// against the half of its neighbourhood that comes after it. The order of pairs depends on positions alone, never on
+// threads.
 #pragma once
 
 #include <algorithm>
@@ -40,10 +41,10 @@ class NeighbourGrid {
             for (std::int32_t i = begin; i < end; ++i) visit(sorted_[static_cast<std::size_t>(i)].disc);
         }
     }
-    /// How far from its centre a disc of the last sort can be near something, m.
+    /// The largest distance from its centre at which a disc of the last sort can be near something, m.
     [[nodiscard]] double longest_reach() const { return longest_reach_; }
-    /// Chunks go down one strip of columns after the other, so that pairs in line are among few discs; they depend on the
-    /// crowd only.
+    /// Chunks go down one strip of columns after the other, so that consecutive pairs involve few discs. They depend
+    /// on the crowd alone.
     [[nodiscard]] std::int64_t chunk_count() const
     {
         return std::int64_t{chunks_down()} * pieces(width_, columns_per_strip);
@@ -66,7 +67,7 @@ class NeighbourGrid {
     };
     AlignedVector<std::int32_t> cells_;   ///< of each disc
     AlignedVector<std::uint8_t> bands_;   ///< likewise
-    AlignedVector<Placed> placed_;        ///< by bands of rows, each band's discs as they came
+    AlignedVector<Placed> placed_;        ///< by band; within a band in the order of the input
     AlignedVector<std::int32_t> places_;  ///< of each chunk of discs in each band: the next place in placed_
     std::vector<std::int32_t> first_in_band_;
     std::int32_t band_count_ = 0;

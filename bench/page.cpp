@@ -58,12 +58,12 @@ std::vector<std::string> engines_of(const SweepResult& sweep)
     for (const SweepPoint& p : sweep.points) {
         if (std::find(engines.begin(), engines.end(), p.engine) == engines.end()) engines.push_back(p.engine);
     }
-    // motley first, whoever was fastest.
+    // motley comes first, whichever engine is fastest.
     std::stable_partition(engines.begin(), engines.end(), [](const std::string& e) { return e == "motley"; });
     return engines;
 }
 
-/// Dominated points grey, the front of each engine joined in its colour, motley's labelled.
+/// Points that are dominated are grey; each engine's front is a line in its colour; motley's front is labelled.
 std::string front_chart(const SweepResult& sweep)
 {
     Plot plot{"ms a step", sweep.error_name, true, true, {}};
@@ -88,7 +88,7 @@ std::string front_chart(const SweepResult& sweep)
     return svg_of(plot);
 }
 
-/// How fast each engine is when all are as exact.
+/// How fast each engine is at equal error.
 std::string equal_error_table(const SweepResult& sweep)
 {
     std::string head = "<table><tr><th>error at most</th>", rows;
@@ -221,7 +221,7 @@ std::string roofline_section(const Report& report)
         m.memory_bytes_per_second_two * 1e-9, m.cache_bytes_per_second * 1e-9, peak, svg_of(plot), rows);
 }
 
-/// Against known motions: the defaults at growing substeps.
+/// Errors against known motions: the default settings with more and more substeps.
 std::string accuracy_section(const std::vector<SweepResult>& sweeps)
 {
     std::string text;

@@ -1,4 +1,4 @@
-// `motley report`: everything that is measured, on one page that opens from disk.
+// `motley report`: all measurements on one page that opens from disk.
 #pragma once
 
 #include <string>
@@ -27,16 +27,17 @@ struct Report {
     std::vector<KernelFigure> kernels;
 };
 
-/// The page: HTML with its charts and nothing from elsewhere.
+/// The page: self-contained HTML with its charts.
 std::string page_of(const Report& report);
 
-/// Peers' points that motley has no answer to: no point of it is at least as fast and as exact.
+/// The peers' points for which motley has no point that is at least as fast and at least as exact.
 std::vector<const SweepPoint*> unanswered(const SweepResult& result);
 
-/// How many times the fastest point that is as exact the default settings take; 1 is the best, 0: not in the sweep.
+/// How many times as long the default settings take as the fastest point that is as exact; 1 is best, 0 means not in
+/// the sweep.
 struct DefaultPrice {
     double settings = 0;  ///< as they are
-    double front = 0;     ///< the worst point of the front that they form when `substeps` alone is turned
+    double front = 0;     ///< the worst such ratio on the front of the defaults with `substeps` varied
 };
 DefaultPrice price_of_default(const SweepResult& result);
 
@@ -44,10 +45,10 @@ struct ReportOptions {
     std::string output = "motley-report.html";
     std::vector<std::string> scenes;  ///< empty: all of the page's
     int rounds = 3;
-    bool quick = false;  ///< small scenes, run once and for a third as long: a page in minutes, for a look
+    bool quick = false;  ///< small scenes, run once for a third of the time: a page in minutes
     bool with_peers = true;
 };
-/// Measures everything and writes the page, and beside it the sweeps as JSON and CSV. Throws std::runtime_error.
+/// Measures everything and writes the page, and next to it the sweeps as JSON and CSV. Throws std::runtime_error.
 void write_report(const ReportOptions& options);
 
 }  // namespace motley::bench

@@ -1,5 +1,5 @@
-// Bullet, as its manual has a hinge, a point-to-point and a cone-twist set up. One thread: Debian's build has no task
-// scheduler. Islands are not split: its code for that is quadratic in their number.
+// Bullet, with a hinge, a point-to-point and a cone-twist set up as in its manual. It runs on one thread, because
+// Debian's build has no task scheduler. Islands are not split: its code for that is quadratic in their number.
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <btBulletDynamicsCommon.h>
 
@@ -23,7 +23,7 @@ btVector3 vector(const Vec3<float>& v)
     return vector(convert<double>(v));
 }
 
-/// Knows what its solver takes: the rest of a step is collision and islands.
+/// Times the solver alone; the rest of a step is collision detection and islands.
 class TimedWorld final : public btDiscreteDynamicsWorld {
   public:
     using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
@@ -61,7 +61,7 @@ class BulletEngine final : public Engine {
             at.setOrigin(vector(from.position));
             btRigidBody* body =
                 add_body(from.moves ? from.mass : 0, &inertia, *shapes_.back(), at, rig.collides);
-            // Friction of a pair is the product.
+            // Bullet multiplies the friction of the two bodies.
             body->setFriction(rig.collides ? std::sqrt(0.6F) : 0);
             body->setLinearVelocity(vector(from.velocity));
             body->setAngularVelocity(vector(from.spin));

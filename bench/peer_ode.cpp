@@ -1,5 +1,5 @@
-// The Open Dynamics Engine. One thread: its thread pool makes it slower. Cone and twist limits are an angular motor in
-// Euler mode with stops beside a ball joint, as its manual has ragdolls.
+// The Open Dynamics Engine, on one thread: its thread pool makes it slower. A cone and twist limit is a ball joint
+// and an angular motor in Euler mode with stops, as in its manual's ragdolls.
 #include <fmt/format.h>
 #include <ode/ode.h>
 
@@ -84,7 +84,7 @@ class OdeEngine final : public Engine {
     }
     void add_joint(const RigJoint& joint)
     {
-        // ODE wants a body first: what hangs on the world has it second.
+        // ODE wants a body as the first argument, so a joint to the world passes the world as the second.
         dBodyID a = joint.a == rig_world ? nullptr : bodies_[static_cast<std::size_t>(joint.a)];
         dBodyID b = bodies_[static_cast<std::size_t>(joint.b)];
         const auto x = static_cast<dReal>(joint.anchor.x), y = static_cast<dReal>(joint.anchor.y),
@@ -105,7 +105,8 @@ class OdeEngine final : public Engine {
         dJointAttach(ball, b, a);
         dJointSetBallAnchor(ball, x, y, z);
         if (joint.tie != RigTie::swing_twist) return;
-        // Euler angles: twist about the axis on b, then two swings; an axis across for the third.
+        // Euler angles: the twist about the joint's axis, which is fixed to b, then two swings. The third axis is
+        // perpendicular to it.
         dJointID motor = dJointCreateAMotor(world_, nullptr);
         dJointAttach(motor, b, a);
         dJointSetAMotorMode(motor, dAMotorEuler);

@@ -1,4 +1,4 @@
-// The peers that may be built in; peers.cpp asks which are.
+// The peers that may be built in; peers.cpp asks which ones were.
 #pragma once
 
 #include "engine.h"

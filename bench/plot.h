@@ -9,7 +9,7 @@ namespace motley::bench {
 
 struct PlotPoint {
     double x = 0, y = 0;
-    std::string label;  ///< shown beside the point; empty: none
+    std::string label;  ///< shown next to the point; empty: none
 };
 
 struct PlotSeries {

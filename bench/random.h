@@ -25,7 +25,7 @@ class Random {
     std::uint64_t state_;
 };
 
-/// Puts values into an order of no meaning, always the same.
+/// Shuffles values, always into the same order.
 template <class T>
 void shuffle(std::vector<T>& values)
 {

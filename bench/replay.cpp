@@ -1,4 +1,4 @@
-// A step's problem under any settings, in lines that can be laid beside those of another machine.
+// Solves a step's problem under any settings and prints lines that can be compared with those of another machine.
 #include "replay.h"
 
 #include <fmt/format.h>

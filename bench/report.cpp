@@ -19,7 +19,7 @@ double per(double amount, double seconds)
     return seconds > 0 ? amount / seconds : 0;
 }
 
-/// Sweeping time only: what one visit of one constraint costs.
+/// From the sweeping time only: what one visit of one constraint costs.
 double nanoseconds_per_visit(const RunResult& r)
 {
     double sweeps = 0;

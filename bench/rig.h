@@ -28,7 +28,7 @@ enum class RigTie {
     swing_twist  ///< a point on a point; the axis stays in a cone, the turn about it from lower to upper
 };
 
-constexpr int rig_world = -1;  ///< RigJoint::a of what hangs on the world
+constexpr int rig_world = -1;  ///< RigJoint::a of a joint to the world
 
 struct RigJoint {
     int a = rig_world;  ///< index of a body, or rig_world
@@ -74,7 +74,7 @@ struct RigEntry {
 /// `copies` of a rig side by side along z, with nothing between them; its truth is then the rms over the copies.
 Rig repeat(const Rig& rig, std::int64_t copies, double spacing = 4);
 
-/// The visible list; rigs.cpp.
+/// All rigs; the list is in rigs.cpp.
 std::span<const RigEntry> rig_list();
 /// Null when there is none of that name.
 const RigEntry* find_rig(const std::string& name);

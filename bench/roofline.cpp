@@ -20,7 +20,7 @@ namespace {
 // ---- operations of a kernel, counted by running its maths on a number that counts -------------------------------
 
 struct Counted;
-/// A comparison's answer: the maths never branches on it, it selects.
+/// The result of a comparison. The maths never branches on it; it selects.
 struct CountedMask {
     bool bits;
     [[maybe_unused]] friend CountedMask operator&(CountedMask x, CountedMask y) { return {x.bits && y.bits}; }
@@ -106,7 +106,7 @@ double triad(std::size_t floats, int threads)
     return best;
 }
 
-/// Eight independent chains of multiply and add: as fast as the ports go without fusing. Inlined into a function of each
+/// Eight independent chains of multiply and add: the peak rate without fusing. Inlined into a function of each
 /// instruction set.
 template <class Vector>
 [[gnu::always_inline]] inline double multiply_and_add()

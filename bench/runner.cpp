@@ -49,7 +49,7 @@ class Progress {
     int percent_ = -1, quarter_ = 0;
 };
 
-/// Overlaps and what is left of approach speeds, from the positions and velocities after the last step.
+/// Judges overlaps and remaining approach speeds, from the positions and velocities after the last step.
 void judge_contacts(RunResult& result, BenchScene& scene, Executor& executor)
 {
     Crowd* crowd = scene.crowd();

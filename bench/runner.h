@@ -26,7 +26,7 @@ struct RunResult {
     int threads = 1;
     std::int64_t steps = 0;
     double bodies = 0;                 ///< mean over the steps
-    RunTimes times;                    ///< of all steps but the first, which makes room for the others
+    RunTimes times;                    ///< of all steps but the first, which allocates for the others
     double median_step_seconds = 0;    ///< of a whole step: solver, steering and search
     double median_solver_seconds = 0;  ///< of the solver's part
     double constraints = 0;            ///< mean
@@ -46,7 +46,7 @@ struct RunResult {
     std::vector<Figure> figures;
 };
 
-/// What to write besides the table.
+/// What to write in addition to the table.
 struct RunOutputs {
     std::string trajectories, frames;  ///< empty: none
     int frame_every = 30;              ///< steps

@@ -1,4 +1,5 @@
-// Sizes in turn, and a triad beside each run: the host's memory has good and bad minutes.
+// Runs the sizes in turn, and a triad with each run, because the host's memory bandwidth varies from minute to
+// minute.
 #include "scale.h"
 
 #include <fmt/format.h>
@@ -11,11 +12,11 @@
 namespace motley::bench {
 namespace {
 
-/// Of every size: they start apart, and have found their neighbours halfway.
+/// s, for every size. People start apart and have come into contact after about half of it.
 constexpr double simulated_seconds = 1;
 
-/// B that a contact between planar bodies asks for besides its row: of each body a velocity read and written, and a
-/// displacement read; and its impulse written back.
+/// Bytes that a contact between planar bodies moves in addition to its row: for each body a velocity that is read and
+/// written and a displacement that is read; and the impulse that is written back.
 constexpr double body_bytes = 2 * 3 * 16 + 4;
 
 ScaleResult::Size measure_once(std::int64_t people, const ScaleOptions& options)

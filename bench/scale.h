@@ -1,4 +1,5 @@
-// The same crowd in a thousand and in a million: what a contact costs, and how much of the memory's bandwidth is used.
+// The same crowd with a thousand to a million people: what a contact costs, and how much of the memory's bandwidth is
+// used.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,8 @@ struct ScaleResult {
         double solver_seconds = 0;
         double sweep_seconds = 0;           ///< of solve and relax, a contact and sweep
         double sweep_share = 0;             ///< of the solver's time that solve and relax take
-        double sweep_bytes_per_second = 0;  ///< rows, impulses and bodies, as often as a sweep asks for them
-        double triad_bytes_per_second = 0;  ///< measured beside each run, on as many threads
+        double sweep_bytes_per_second = 0;  ///< rows, impulses and bodies, each time they are accessed
+        double triad_bytes_per_second = 0;  ///< measured with each run, on as many threads
     };
     std::vector<Size> sizes;
     std::string isa;

@@ -1,4 +1,4 @@
-// The town of the soak, and what is asked of it after every step.
+// The town of the soak, and the checks after every step.
 #include "soak.h"
 
 #include <fmt/format.h>
@@ -24,8 +24,8 @@ namespace {
 constexpr float frame = 1.0F / 60;
 constexpr double people_a_square_metre = 2;
 constexpr std::size_t most_figures = 24;
-constexpr int days_down = 300;   ///< steps that somebody lies before rising
-constexpr float bears = 4000;    ///< N, of a joint
+constexpr int days_down = 300;   ///< steps that a figure lies before it rises
+constexpr float bears = 4000;    ///< N: the break limit of a joint
 constexpr double fastest = 100;  ///< m/s: five times a blow
 constexpr std::int64_t save_every = 1000;
 
@@ -42,7 +42,7 @@ float radius_of(std::size_t part)
     return part == 0 ? torso_radius : limb_radius;
 }
 
-/// One of the twins: a host and its scene. What it does follows from the seed alone.
+/// One of the two copies: a host and its scene. What it does follows from the seed alone.
 class Town {
   public:
     Town(const SoakOptions& options, int threads)
@@ -62,10 +62,10 @@ class Town {
     Solver solver;
     SoakResult counted;
 
-    /// The host's part of a step, then the solver's. Returns what is wrong, or nothing.
+    /// The host's part of a step, then the solver's. Returns what is wrong, or an empty string.
     std::string step()
     {
-        // The town fills and empties by a fifth, so that what holds memory does so as well.
+        // The number of people falls and rises by a fifth, so that memory is freed and needed again as well.
         const double tide = 0.9 + 0.1 * std::sin(static_cast<double>(counted.steps) / 2000);
         const auto wanted = static_cast<std::size_t>(tide * static_cast<double>(wanted_));
         for (int i = 0; i < 8 && people_.agents.size() < wanted; ++i) {
@@ -109,7 +109,7 @@ class Town {
     std::deque<Figure> figures_;
     std::vector<Contact> contacts_;
     std::uint64_t next_part_ = 0;
-    std::deque<BodyId> dead_;  ///< the last who were removed
+    std::deque<BodyId> dead_;  ///< the bodies removed last
 
     Vec2<double> somewhere()
     {
@@ -183,7 +183,7 @@ class Town {
         scene.set_break_limit(joint, {.force = bears});
         figure.joints.push_back(joint);
     }
-    /// The figure that has lain longest is a planar person again.
+    /// Turns the figure that has lain longest back into a planar person.
     void rise()
     {
         const Figure figure = std::move(figures_.front());
@@ -216,7 +216,8 @@ class Town {
         }
     }
 
-    /// Parts as balls: on the floor, against the walls, and against people, who are as tall as they need to be.
+    /// Contacts of the figure's parts, which are balls, with the floor, the walls and people, who are taken as
+    /// cylinders up to z = 1.9 m.
     void add_contacts(const Figure& figure)
     {
         constexpr std::uint64_t of_parts = std::uint64_t{3} << 62, no_person = 0xffffffff;
@@ -231,7 +232,7 @@ class Town {
                                                              {{0, -1, 0}, side_ - at.y}};
             for (std::uint64_t plane = 0; plane < std::size(planes); ++plane) {
                 const auto& [normal, distance] = planes[plane];
-                // As far as the fastest get in a step.
+                // Farther away than the fastest body moves in a step.
                 if (distance - static_cast<double>(radius) > fastest * static_cast<double>(frame)) continue;
                 Contact contact;
                 contact.body_a = scene.ground();
@@ -273,7 +274,7 @@ class Town {
             if (!scene.is_alive(body)) return "a body is lost";
             const BodyState state = scene.state(body);
             const Vec3<double> v = convert<double>(state.linear_velocity);
-            // What is not a number fails these too.
+            // A not-a-number fails these comparisons too.
             if (!(dot(v, v) < fastest * fastest)) return "a body is too fast";
             const Vec3<double>& p = state.position;
             const bool inside = p.x > -room && p.x < side_ + room && p.y > -room && p.y < side_ + room &&
@@ -304,7 +305,7 @@ class Town {
     }
 };
 
-/// What of the soak is over: by steps if they are given, else by the clock.
+/// How much of the soak is done: by steps if their number is given, else by the clock.
 class Progress {
   public:
     explicit Progress(const SoakOptions& options) : options_(options) {}

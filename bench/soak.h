@@ -1,4 +1,4 @@
-// Soak: a small town that is never at rest, stepped for as long as asked, by two solvers that have to agree.
+// Soak: a small town that is never at rest, stepped for as long as asked by two solvers that must agree.
 #pragma once
 
 #include <cstdint>
@@ -25,10 +25,11 @@ struct SoakResult {
     std::string failure;                         ///< what was wrong, in which step; empty: nothing
 };
 
-/// Runs it: people walk, join and leave; some fall, as figures with joints and limits that blows break, and rise again.
-/// After every step of one thread the same step of two threads must have the same hash, every handle must be alive or dead
-/// as the host knows it, and everybody finite, in place and slow enough. Ends at the first failure; memory that grows from
-/// the second to the last quarter by more than 1 % and 2 MB is one.
+/// Runs the soak: people walk, join and leave; some fall and become figures with joints and limits, whose joints
+/// blows may break, and rise again. After every step the scenes on one thread and on two must have the same hash,
+/// every handle must be alive or dead as the host knows it, and every body must be finite, in place and slow enough.
+/// Ends at the first failure. Memory that grows from the second to the last quarter by more than 1 % and 2 MB is a
+/// failure.
 SoakResult soak(const SoakOptions& options);
 
 /// As a table.

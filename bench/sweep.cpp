@@ -1,4 +1,4 @@
-// Runs every point of a sweep in turn, round after round, so that a machine that slows down slows all of them.
+// Runs every point of a sweep in turn, round after round, so that a slowdown of the machine affects all of them.
 #include "sweep.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace motley::bench {
 namespace {
 
 constexpr double came_apart = std::numeric_limits<double>::infinity();
-/// Steps between two looks at the joints of a rig.
+/// Steps between two measurements of the joints of a rig.
 constexpr int steps_a_look = 10;
 
 /// What one run of one point gave.
@@ -99,11 +99,11 @@ class RigSubject {
         result.bodies = static_cast<std::int64_t>(rig_.bodies.size());
         result.joints = static_cast<std::int64_t>(rig_.joints.size());
     }
-    /// Empty where the point makes no sense.
+    /// Empty where the combination makes no sense.
     [[nodiscard]] std::function<Run()> candidate(const Dials& dials) const
     {
         if (dials.settings.method == Method::direct && !suits_direct_) return {};
-        // Nets have more loops than are closed exactly; four-bars, with four joints for three bodies, have not.
+        // Nets have more loops than exact_joints can close; four-bars, with four joints for three bodies, do not.
         const bool has_trees = !rig_.joints.empty() && 2 * rig_.joints.size() <= 3 * rig_.bodies.size();
         if (dials.settings.exact_joints && !has_trees) return {};
         return [this, dials] {

@@ -17,7 +17,7 @@ struct DialGrid {
     std::vector<int> substeps{};    ///< empty: 1 to 16; of direct 1 and 4
     std::vector<int> iterations{};  ///< empty: 1 and 2 of soft_step, 4 to 32 of sequential_impulse
     std::vector<int> relaxations{0, 1};
-    /// Of joints, and half of it of contacts; capped at 0.25 / substep. 0: as by default.
+    /// Hz of joints, and half as many of contacts; capped at 0.25 / substep. 0: the default.
     std::vector<float> hertz{0, 1e6F};
     std::vector<DriftCorrection> drift_corrections{DriftCorrection::baumgarte, DriftCorrection::projection};
     std::vector<int> warm_starts{1};  ///< 0 or 1
@@ -43,7 +43,7 @@ struct SweepOptions {
     int rounds = 3;           ///< each point is run so often, in turn with the others
     std::uint64_t seed = 12345;
     bool with_peers = false;
-    std::string only_peer{};  ///< of peers only what has this in its name and setting; empty: all
+    std::string only_peer{};  ///< only peers' points with this in name and setting; empty: all
     bool progress = true;
 };
 
@@ -54,10 +54,10 @@ struct SweepPoint {
     std::optional<Dials> dials;        ///< of motley
     std::vector<double> step_seconds;  ///< median step of each round
     double seconds = 0;                ///< median of those
-    double solver_seconds = -1;        ///< of these the solver's, where a peer tells
+    double solver_seconds = -1;        ///< the solver's part of these; below 0 where a peer does not tell
     double error = 0;                  ///< in the scene's unit; infinite when it came apart
     double worst = 0;                  ///< the largest of what `error` is the mean of
-    bool on_front = false;             ///< nobody is both faster and more exact
+    bool on_front = false;             ///< no point is both faster and more exact
     std::string note;                  ///< why there is no error
 };
 
@@ -67,13 +67,13 @@ struct SweepResult {
     double host_load = 0;
     int rounds = 0;
     std::vector<SweepPoint> points;  ///< by time
-    std::vector<std::string> notes;  ///< peers that are missing or could not
+    std::vector<std::string> notes;  ///< peers that are missing or could not run
 };
 
 /// Runs the sweep. Throws std::runtime_error for a scene that is not there, InvalidInput for dials out of range.
 SweepResult sweep(const std::string& scene, const DialGrid& grid, const SweepOptions& options);
 
-/// Marks the points that no other beats in both.
+/// Marks the points that no other point beats in both time and error.
 void mark_front(std::vector<SweepPoint>& points);
 
 /// The fastest point of each engine whose error is at most `error`; of motley first, null where there is none.
@@ -82,7 +82,7 @@ std::vector<std::pair<std::string, const SweepPoint*>> fastest_within(const Swee
 
 std::string csv_of(const SweepResult& result);
 std::string json_of(const SweepResult& result);
-/// For people: the front, and how many points lie behind it.
+/// A table to read: the front, and how many points lie behind it.
 std::string table_of(const SweepResult& result);
 
 }  // namespace motley::bench

@@ -82,7 +82,7 @@ std::string json_of(const SweepResult& result)
         point["ms_per_step"] = p.seconds * 1e3;
         point["ms_of_each_round"] = nlohmann::ordered_json::array();
         for (const double seconds : p.step_seconds) point["ms_of_each_round"].push_back(seconds * 1e3);
-        // JSON has no infinity: what came apart has no error, and a note.
+        // JSON has no infinity: a point that came apart has a note instead of an error.
         if (std::isfinite(p.error)) {
             point["error"] = p.error;
             point["worst"] = p.worst;

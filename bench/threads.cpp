@@ -1,4 +1,5 @@
-// A core's clock wanders within seconds, by more than what is asked; so turns are short, and each is compared with its neighbour.
+// A core's clock varies within seconds by more than the effect measured here, so turns are short and each is compared
+// with the next.
 #include "threads.h"
 
 #include <fmt/format.h>
@@ -18,9 +19,9 @@ namespace motley::bench {
 namespace {
 
 constexpr int steps_a_turn = 8;
-/// Of the arithmetic of as many cores: less is shared with somebody.
+/// The share of the ideal arithmetic rate above which every thread is taken to have a core of its own.
 constexpr double whole_cores = 0.8;
-/// s: a line takes 30 to 60 ns within a cache that cores share, and 150 and more between two.
+/// s: a line takes 30 to 60 ns between cores that share a cache, and 150 ns or more between cores that do not.
 constexpr double near_hand_over = 100e-9;
 
 /// A scene with a solver of its own.
@@ -30,7 +31,8 @@ class Copy {
         : dt_(options.dt), scene_(entry.make(options)), solver_(adjusted(options), options.solver)
     {
     }
-    /// Mean s a step. The first brings the scene back into the caches from the other's turn, and does not count.
+    /// Mean seconds a step. The first step is not counted: it brings the scene back into the caches after the other
+    /// copy's turn.
     double turn()
     {
         step();
@@ -84,7 +86,7 @@ ThreadsResult measure(const SceneEntry& entry, const ThreadsOptions& asked)
     Copy several(entry, options);
     options.solver.threads = 1;
     Copy one(entry, options);
-    // The first turns make room, and find out how fast each core is.
+    // The first turns are not counted: they allocate memory and find out how fast each core is.
     several.turn();
     one.turn();
     std::vector<double> of_one, of_several, all, near, far;

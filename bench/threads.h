@@ -24,7 +24,7 @@ struct SpeedUp {
     double lower_quartile = 0, median = 0, upper_quartile = 0;  ///< 0 without turns
 };
 
-/// Of one scene.
+/// The result for one scene.
 struct ThreadsResult {
     std::string scene;
     double one_thread_seconds = 0, seconds = 0;  ///< a whole step, search and steering included; medians

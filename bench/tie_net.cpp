@@ -56,7 +56,7 @@ Tie contact_tie(float friction, float restitution)
 
 namespace {
 
-/// A joint between frames where the bodies meet; `fill` sets what is its own.
+/// A joint between frames at the point where the bodies meet; `fill` sets the fields that only this type has.
 template <class Definition>
 Tie frames(void (*fill)(Definition&) = [](Definition&) {})
 {
@@ -71,7 +71,7 @@ Tie frames(void (*fill)(Definition&) = [](Definition&) {})
     };
 }
 
-/// A joint between two bodies; `fill` sets what is its own.
+/// A joint between two bodies; `fill` sets the fields that only this type has.
 template <class Definition>
 Tie joint(void (*fill)(Definition&, Vec3<float> arm) = [](Definition&, Vec3<float>) {})
 {

@@ -11,7 +11,7 @@
 
 namespace motley::bench {
 
-/// Where the bodies of a net are in memory.
+/// The order of the bodies of a net in memory.
 enum class BodyOrder { in_line, shuffled };
 
 /// A square net of bodies, each tied to the one on its right and the one above.
@@ -24,7 +24,7 @@ struct TieNet {
     void add_bodies(int side, BodyModel model, BodyOrder order = BodyOrder::in_line);
 };
 
-/// What ties two bodies; the arm leads from the centre of a to the point between them.
+/// Ties two bodies; the arm leads from the centre of a to the point between them.
 using Tie = std::function<void(TieNet&, BodyId a, BodyId b, Vec3<float> arm)>;
 
 std::unique_ptr<TieNet> make_net(const Tie& tie, BodyModel model, int side,

@@ -11,7 +11,7 @@ using Arch = xsimd::avx2;
 #include "lanes.h"
 #include "quads_avx.h"
 
-/// A field of eight rows of eight floats.
+/// Gathers one field of eight rows, each of eight floats.
 Lanes gather_field(const float* field, const std::int32_t* index)
 {
     const __m256i rows = _mm256_slli_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(index)), 3);

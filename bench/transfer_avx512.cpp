@@ -11,7 +11,7 @@ using Arch = xsimd::avx512f;
 #include "lanes.h"
 #include "quads_avx512.h"
 
-/// A field of sixteen rows of eight floats.
+/// Gathers one field of sixteen rows, each of eight floats.
 Lanes gather_field(const float* field, const std::int32_t* index)
 {
     const __m512i rows = _mm512_slli_epi32(_mm512_loadu_si512(index), 3);

@@ -1,4 +1,4 @@
-// The loop of both ways. Included inside an anonymous namespace, after Lanes, quads and gather_field.
+// The loop that both ways share. Included inside an anonymous namespace, after Lanes, quads and gather_field.
 
 template <class LoadQuad>
 float sum_rows(const std::int32_t* index, std::int64_t count, const LoadQuad& load_quad)

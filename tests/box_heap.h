@@ -1,5 +1,5 @@
-// A heap of boxes in which some contacts stick, most slide and some part, and what tests of Coulomb's and Newton's laws ask of
-// it, in double from the velocities and impulses that a step reports.
+// A heap of boxes in which some contacts stick, most slide and some separate, and measures of it that tests of
+// Coulomb's and Newton's laws use. They are computed in double from the velocities and impulses that a step reports.
 #pragma once
 
 #include "mixed_scene.h"
@@ -9,7 +9,7 @@ namespace motley::testing {
 
 using Vector = Vec3<double>;
 
-/// What of v is across a unit vector.
+/// The part of v that is perpendicular to the unit vector n.
 inline Vector across(const Vector& v, const Vector& n)
 {
     return v - dot(n, v) * n;
@@ -20,13 +20,13 @@ inline Vector velocity_at(const BodyState& state, const Vec3<float>& arm)
     return convert<double>(state.linear_velocity) +
            cross(convert<double>(state.angular_velocity), convert<double>(arm));
 }
-/// Degrees between two vectors, by the sine where it is small.
+/// The angle between two vectors in degrees, accurate where it is small.
 inline double degrees_between(const Vector& u, const Vector& v)
 {
     return std::atan2(length(cross(u, v)), dot(u, v)) * 180 / 3.14159265358979;
 }
 
-/// Rigid constraints alone, in one step without correction of positions.
+/// Settings with rigid constraints, in one substep without correction of positions.
 inline SolverSettings plain_sweeps(int iterations)
 {
     SolverSettings settings = with_gravity({0, -9.81F, 0});
@@ -37,8 +37,8 @@ inline SolverSettings plain_sweeps(int iterations)
     return settings;
 }
 
-/// Nine columns of three slabs, each on four corners of the one below, leaning on their neighbours, everything moving: some
-/// contacts stick, most slide, some part. Masses grow `ratio` times from slab to slab.
+/// Nine columns of three slabs. Each slab stands on four corners on the one below and leans on its neighbours, and
+/// everything moves: some contacts stick, most slide, some separate. Every other box is `ratio` times as heavy.
 struct HeapOfBoxes {
     static constexpr Vec3<float> half{0.5F, 0.15F, 0.3F};  ///< of every box
     Scene scene;
@@ -71,14 +71,14 @@ struct HeapOfBoxes {
                     touch(i < 9 ? -1 : i - 9, i, up, {x * half.x, -half.y, z * half.z});
                 }
             }
-            // One after another: arguments of a call are evaluated in an order that compilers choose.
+            // Each in a statement of its own: compilers choose the order in which arguments of a call are evaluated.
             const Vec3<float> along_x{1, 0.1F * r(), 0.1F * r()}, left{-half.x, 0.1F * r(), 0.2F * r()};
             const Vec3<float> along_z{0.1F * r(), 0.1F * r(), 1}, back{0.4F * r(), 0.1F * r(), -half.z};
             if (i % 3 > 0) touch(i - 1, i, along_x, left);
             if (i / 3 % 3 > 0) touch(i - 3, i, along_z, back);
         }
     }
-    /// Below 0 is the ground.
+    /// `a` or `b` below 0 is the ground.
     void touch(int a, int b, const Vec3<float>& normal, const Vec3<float>& arm_b)
     {
         Contact contact;
@@ -103,15 +103,16 @@ struct HeapOfBoxes {
         const Vector a = c.body_a == scene.ground() ? Vector{} : velocity_at(scene.state(c.body_a), c.arm_a);
         return velocity_at(scene.state(c.body_b), c.arm_b) - a;
     }
-    /// The fastest that points move against each other.
+    /// The largest relative speed of the points of a contact.
     [[nodiscard]] double fastest() const
     {
         double most = 0;
         for (const Contact& c : contacts) most = std::max(most, length(speed(c)));
         return most;
     }
-    /// How far the last step is from Coulomb's law, m/s: the largest part of the natural map lambda - P(lambda - m w) over m,
-    /// P the nearest point of the cone's section and of the half line, m of a pair of points of these masses.
+    /// How far the last step is from Coulomb's law, m/s: the largest part of the natural map lambda - P(lambda - m
+    /// w), divided by m. P projects onto the half line of normal impulses and onto the disc of friction impulses; m
+    /// is the effective mass of two points with these bodies' masses.
     [[nodiscard]] double residual() const
     {
         double most = 0;

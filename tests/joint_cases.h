@@ -1,5 +1,5 @@
-// For each type of joint, definitions between two given bodies that bring out what it can do: wherever a claim must
-// hold for every joint, it is made over the type list with these. A type without cases does not compile.
+// For each type of joint, definitions between two given bodies that exercise what it can do. Tests of claims about
+// every joint run over the type list with these. A type without cases does not compile.
 #pragma once
 
 #include <limits>
@@ -31,10 +31,11 @@ class JointPlace {
           random_(&random)
     {
     }
-    /// With a planar body axes lie in or across the plane, as a host's would: between others rows depend on each other.
+    /// With a planar body the axes lie in the plane or are perpendicular to it, as in a host's scene: other axes
+    /// would make rows dependent.
     [[nodiscard]] bool has_planar() const { return kind_a == 1 || kind_b == 1; }
     [[nodiscard]] double symmetric() const { return random_->symmetric(); }
-    /// Three of them, drawn in order: between the arguments of a call compilers choose their own.
+    /// Three random numbers, drawn in order: as arguments of one call, compilers would choose the order.
     [[nodiscard]] Eigen::Vector3d vector() const
     {
         Eigen::Vector3d v;
@@ -45,7 +46,7 @@ class JointPlace {
     /// A random place on a body; the centre of a particle.
     [[nodiscard]] Vec3<float> anchor_on_a() const { return anchor(kind_a, kind_b); }
     [[nodiscard]] Vec3<float> anchor_on_b() const { return anchor(kind_b, kind_a); }
-    /// How far two anchors are apart, as the pair sees it.
+    /// The distance of two anchors; for a planar pair, in the plane.
     [[nodiscard]] float distance(const Vec3<float>& on_a, const Vec3<float>& on_b) const
     {
         Eigen::Vector3d d = at(state_b_, on_b) - at(state_a_, on_a);
@@ -56,23 +57,23 @@ class JointPlace {
     {
         return has_planar() && kind_a != 0 && kind_b != 0 && kind_a != 2 && kind_b != 2;
     }
-    /// A direction on a body, across the plane of a planar pair or in it.
+    /// A direction on a body; for a planar pair in its plane, or perpendicular to it if `across`.
     [[nodiscard]] Vec3<float> axis(bool across) const
     {
         if (has_planar()) return across ? Vec3<float>{0, 0, 1} : Vec3<float>{0.6F, -0.8F, 0};
         return narrow(vector() + Eigen::Vector3d(0, 0, 1.5));
     }
-    /// Where a place on a body is in the world.
+    /// The world position of a point on a body.
     [[nodiscard]] Vec3<double> where_a(const Vec3<float>& on_a) const { return in_world(state_a_, on_a); }
     [[nodiscard]] Vec3<double> where_b(const Vec3<float>& on_b) const { return in_world(state_b_, on_b); }
-    /// A place in the world, and a direction, seen from a body.
+    /// A world position, or direction, in the frame of a body.
     [[nodiscard]] Vec3<float> on_a(const Vec3<double>& p) const { return from_world(state_a_, p); }
     [[nodiscard]] Vec3<float> on_b(const Vec3<double>& p) const { return from_world(state_b_, p); }
     [[nodiscard]] Vec3<float> along_a(const Vec3<double>& v) const
     {
         return narrow(turn(state_a_).conjugate() * Eigen::Vector3d(v.x, v.y, v.z));
     }
-    /// Places on the two bodies that meet, to 2 cm; of a particle the centre, wherever it is.
+    /// Points on the two bodies that coincide to 2 cm; for a particle its centre, wherever that is.
     [[nodiscard]] std::pair<Vec3<float>, Vec3<float>> meeting_anchors() const
     {
         if (kind_a == 0 || kind_b == 0) return {anchor_on_a(), anchor_on_b()};
@@ -80,7 +81,7 @@ class JointPlace {
         return {frame_a.position, frame_b.position};
     }
 
-    /// Random frames nearly where a joint wants them, 2 cm and 0.02 rad off.
+    /// Random frames that satisfy a joint to 2 cm and 0.02 rad.
     [[nodiscard]] std::pair<JointFrame, JointFrame> frames(bool x_across) const
     {
         const bool planar = has_planar();
@@ -150,10 +151,10 @@ class JointPlace {
     }
 };
 
-/// What a joint keeps of the sum over its two bodies.
+/// Which sums over its two bodies a joint conserves.
 enum class Keeps { nothing, linear_momentum, both_momenta };
 
-/// What a type's cases are: `of` gives them; `is_passive` of one tells that it neither stores energy nor brings any in.
+/// The cases of a type: `of` returns them; `is_passive` tells of one whether it neither stores nor adds energy.
 template <class Definition>
 struct JointCases;
 
@@ -212,8 +213,8 @@ struct JointCases<DriveDefinition<axis>> {
     {
         return !drive.has_spring() && drive.motor_speed == 0 && drive.armature == 0;
     }
-    /// A twist is none where the axes point opposite ways: the drive is meant beside a joint that keeps them together, and
-    /// near there it throws free bodies about.
+    /// A twist is undefined where the axes are opposite. The drive is meant to be used with a joint that keeps the
+    /// axes together; near that pose it accelerates free bodies violently.
     static bool is_regular(const Definition& drive, const BodyState& a, const BodyState& b)
     {
         if (axis == DriveAxis::slide) return true;
@@ -277,7 +278,7 @@ struct JointCases<SwingLimitDefinition> {
 template <>
 struct JointCases<PointServoDefinition> {
     static constexpr Keeps keeps =
-        Keeps::linear_momentum;  // a band that is not where it wants to be pulls askew
+        Keeps::linear_momentum;  // where d is not 0 the force need not act along it
     static bool is_passive(const PointServoDefinition&) { return false; }
     static std::vector<PointServoDefinition> of(const JointPlace& at)
     {
@@ -312,7 +313,7 @@ struct JointCases<AngularServoDefinition> {
 
 template <>
 struct JointCases<GearDefinition> {
-    static constexpr Keeps keeps = Keeps::nothing;  // what carries the gears takes the rest
+    static constexpr Keeps keeps = Keeps::nothing;  // the rest goes to what carries the gears
     static bool is_passive(const GearDefinition&) { return true; }
     static std::vector<GearDefinition> of(const JointPlace& at)
     {
@@ -343,18 +344,19 @@ struct JointCases<ScrewDefinition> {
 
 template <>
 struct JointCases<PulleyDefinition> {
-    static constexpr Keeps keeps = Keeps::nothing;  // the wheels are the world's
+    static constexpr Keeps keeps = Keeps::nothing;  // the wheels are fixed to the world
     static bool is_passive(const PulleyDefinition&) { return true; }
     static std::vector<PulleyDefinition> of(const JointPlace& at)
     {
         PulleyDefinition rope{at.a, at.b, at.anchor_on_a(), at.anchor_on_b()};
-        // Wheels beyond the anchors, so that the ropes stay well away from their ends.
+        // The wheels are above the anchors, so that the lengths stay well above 0.
         const Vec3<double> up{0.3, 2, at.is_in_plane() ? 0 : 0.4};
         const Vec3<double> end_a = at.where_a(rope.local_anchor_a), end_b = at.where_b(rope.local_anchor_b);
         rope.point_a = end_a + up;
         rope.point_b = end_b + up;
         rope.ratio = 1.5F;
-        // Taut by a hair from the start: one that is just as long as it may be is told from a slack one by rounding.
+        // Taut by 1 mm from the start: for a rope of exactly the largest length, rounding decides whether it is
+        // slack.
         const double length = std::sqrt(dot(up, up)) * 2.5;
         rope.max_length = static_cast<float>(length - 1e-3);
         PulleyDefinition rod = rope;
@@ -366,14 +368,15 @@ struct JointCases<PulleyDefinition> {
 template <>
 struct JointCases<ManifoldDefinition> {
     static constexpr Keeps keeps = Keeps::both_momenta;
-    /// A contact at rest sits at C = 0, where rounding decides whether soft_step takes it for one with room (rigid) or for
-    /// one without (soft: it gives up a share of its impulse). From then on float and double part by that share.
+    /// A resting contact is at C = 0, where rounding decides whether soft_step treats it as a contact with a gap
+    /// (rigid) or without one (soft, which gives up a share of its impulse). From then on float and double differ by
+    /// that share.
     static constexpr int soft_steps_until_rest = 6;
     static bool is_passive(const ManifoldDefinition& contact)
     {
         return contact.restitution == 0 && contact.surface_velocity.x == 0;
     }
-    /// Half way between the bodies, some points apart and some not.
+    /// A manifold half way between the bodies, with some points separated and some not.
     static std::vector<ManifoldDefinition> of(const JointPlace& at)
     {
         const Vec3<double> from = at.where_a({}), to = at.where_b({});
@@ -406,7 +409,7 @@ void for_each_joint_type(TypeList<Types...>, const Visit& visit)
 {
     (visit.template operator()<typename Types::Definition>(), ...);
 }
-/// Whether a joint of this definition may stand between these kinds of bodies.
+/// Whether a joint of this definition is allowed between these kinds of bodies.
 template <class Definition>
 constexpr bool fits(int kind_a, int kind_b)
 {

@@ -1,4 +1,4 @@
-// Every type of joint in every case between every pair of kinds of bodies, pair by pair in a row, tumbling under
+// Every type of joint in every case between every pair of kinds of bodies. The pairs are in a row and tumble under
 // gravity.
 #pragma once
 
@@ -20,7 +20,7 @@ class JointScene {
                     if (!fits<Definition>(kind_a, kind_b)) continue;
                     const std::size_t count = add_case<Definition>(kind_a, kind_b, random, 0);
                     for (std::size_t i = 1; i < count; ++i) add_case<Definition>(kind_a, kind_b, random, i);
-                    // Of rigid pairs a full block and a padded one.
+                    // Rigid pairs also fill one whole block and one padded block.
                     if (kind_a != 2 || kind_b != 2) continue;
                     for (std::size_t i = 0; i < 19; ++i)
                         add_case<Definition>(kind_a, kind_b, random, i % count);
@@ -32,11 +32,11 @@ class JointScene {
   private:
     double place_ = 0;
 
-    /// Two bodies with case `which` between them. Returns how many cases there are.
+    /// Adds two bodies with case `which` between them. Returns how many cases there are.
     template <class Definition>
     std::size_t add_case(int kind_a, int kind_b, Random& random, std::size_t which)
     {
-        // A planar body cannot follow a partner that tumbles: with one, all turn about z.
+        // A planar body cannot follow a partner that tumbles: in a pair with one, both turn about z only.
         const bool flat = kind_a == 1 || kind_b == 1;
         place_ += 3;
         const BodyId a = add(kind_a, {place_, 0, 0}, flat, random);

@@ -1,5 +1,5 @@
-// A crowd that is large enough for patches: discs and balls in a lattice, in contact with their neighbours whether or not they
-// touch, listed square by square as a neighbour search would, or in no order at all.
+// A crowd that is large enough for patches: discs and balls in a lattice. Neighbours always have a contact, touching
+// or not. Contacts are listed square by square, as a neighbour search would list them, or shuffled.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ class LatticeCrowd {
     std::vector<BodyId> bodies;
     std::vector<std::pair<int, int>> pairs;  ///< indices of bodies, in the order of the list
 
-    /// Every fifth body is rigid, and every `still`-th cannot move; none for 0.
+    /// Every fifth body is rigid. Every `still`-th body is static; with 0 none is.
     explicit LatticeCrowd(int still = 97)
     {
         Random random;
@@ -48,7 +48,7 @@ class LatticeCrowd {
         }
     }
 
-    /// The list in no order.
+    /// Shuffles the list.
     void shuffle()
     {
         Random random;

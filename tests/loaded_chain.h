@@ -50,7 +50,8 @@ class LoadedChain {
         bodies.push_back(scene_.add_body(link));
         return bodies.back();
     }
-    /// End to end; to the ground at z, where a joint of frames holds the angle that b has now.
+    /// Joins two links end to end, or a link to the ground at z. `angle` is b's angle at the ground, so that a joint
+    /// between frames starts without an error.
     template <class Definition = BallSocketDefinition>
     void tie(BodyId a, BodyId b, double z = 0, double angle = 0)
     {
@@ -72,7 +73,8 @@ class LoadedChain {
         }
         joints.push_back(scene_.add_joint(joint));
     }
-    /// From a point of the ground. Hanging, it is pushed aside by 1 mm/s.
+    /// Hangs ten links and a load from a point of the ground. When hanging straight down, it is pushed aside at 1
+    /// mm/s.
     template <class Definition = BallSocketDefinition>
     void hang(ChainStart start, double load, double z = 0)
     {
@@ -87,7 +89,7 @@ class LoadedChain {
             before = body;
         }
     }
-    /// Afloat, ten links between two loads, spinning end over end and not quite as one.
+    /// Ten links between two loads, floating freely and spinning end over end, with slightly different velocities.
     void set_afloat(double load)
     {
         for (int i = 0; i < 12; ++i) {
@@ -97,7 +99,7 @@ class LoadedChain {
             if (i > 0) tie(bodies[static_cast<std::size_t>(i - 1)], bodies.back());
         }
     }
-    /// kg m/s along x and y, and kg m2/s about z through the origin.
+    /// Linear momentum along x and y, kg m/s, and angular momentum about z through the origin, kg m2/s.
     [[nodiscard]] Vec3<double> momenta() const
     {
         Vec3<double> sums{};
@@ -129,7 +131,7 @@ class LoadedChain {
             sum += masses[i] * g * scene_.state(bodies[i]).position.y;
         return sum;
     }
-    /// What its fall from level can give, J.
+    /// An upper bound of the energy that its fall from level can release, J.
     [[nodiscard]] double height() const
     {
         double sum = 0;

@@ -1,6 +1,6 @@
 // A small scene in which every pair of body kinds meets in every constraint: balls of all models that fall on a
-// static floor, past a kinematic paddle, tied by ball-sockets, rods, ropes and springs. Used wherever a claim
-// must hold for all of them at once.
+// static floor, past a kinematic paddle, joined by ball-sockets, rods, ropes and springs. Used wherever a claim must
+// hold for all of them at once.
 #pragma once
 
 #include <cmath>
@@ -37,7 +37,7 @@ class MixedScene {
     BodyId paddle;
     float friction = 0.3F, restitution = 0.4F;
 
-    /// `count` balls of each model, in the plane z = 0 where planar ones live.
+    /// `count` balls of each model, in the plane z = 0, in which planar bodies live.
     explicit MixedScene(int count = 20, std::uint64_t seed = 12345)
     {
         Random random(seed);
@@ -68,7 +68,7 @@ class MixedScene {
             DistanceDefinition distance;
             distance.body_a = a;
             distance.body_b = b;
-            // Rods, ropes, and springs with stops.
+            // Rods, ropes, and springs with limits.
             const int mode = (i / 4) % 3;
             distance.min_length = mode == 0 ? 0.6F : mode == 1 ? 0 : 0.3F;
             distance.max_length = mode == 2 ? 0.9F : 0.6F;
@@ -85,7 +85,7 @@ class MixedScene {
             joints.push_back(
                 scene.add_joint(BallSocketDefinition{a, b, anchor(a, 0.27F), anchor(b, -0.27F)}));
         }
-        // One of each model hangs on the world, from either side of the definition.
+        // One body of each model hangs on the world, which is body a or body b of the definition.
         for (int i = 0; i < 3; ++i) {
             const BodyState s = scene.state(balls[static_cast<std::size_t>(i)]);
             const Vec3<float> hook = convert<float>(s.position);
@@ -96,7 +96,7 @@ class MixedScene {
         }
     }
 
-    /// The contacts of the present positions, every pair tried.
+    /// The contacts of the present positions; tests every pair.
     const std::vector<Contact>& contacts()
     {
         contacts_.clear();
@@ -114,12 +114,12 @@ class MixedScene {
             }
             const double above = at[i].y - floor_height;
             if (above < 1.2 * radius) {
-                // The ground stands at the origin: its arm is the point itself.
+                // The ground is at the origin, so its lever arm is the contact point.
                 Contact floor =
                     make(scene.ground(), balls[i], i << 32 | 0xFFFFFFFF, {0, 1, 0}, above - radius);
                 floor.arm_a = {static_cast<float>(at[i].x), 0, static_cast<float>(at[i].z)};
                 floor.arm_b = {0, static_cast<float>(-above), 0};
-                if (i % 2 == 0) {  // the same contact said the other way round
+                if (i % 2 == 0) {  // the same contact with the bodies exchanged
                     std::swap(floor.body_a, floor.body_b);
                     std::swap(floor.arm_a, floor.arm_b);
                     floor.normal = -floor.normal;
@@ -142,7 +142,7 @@ class MixedScene {
         contact.key = key;
         contact.normal = convert<float>(normal);
         contact.separation = static_cast<float>(separation);
-        // A third of the contacts each are smooth, have friction, and bounce: all kinds share colours.
+        // A third of the contacts each are smooth, have friction, or bounce, so that all kinds share colours.
         contact.friction = key % 3 == 0 ? 0 : friction;
         contact.restitution = key % 3 == 2 ? restitution : 0;
         return contact;
@@ -150,7 +150,7 @@ class MixedScene {
     void add(BodyId a, BodyId b, std::uint64_t key, Vec3<double> normal, double separation, double ra,
              double rb)
     {
-        // Two planar bodies may not have a normal that leaves the plane by rounding.
+        // For two planar bodies rounding must not turn the normal out of the plane.
         if (scene.model(a) == BodyModel::planar && scene.model(b) == BodyModel::planar) normal.z = 0;
         Contact contact = make(a, b, key, normal, separation);
         contact.arm_a = static_cast<float>(ra + separation / 2) * contact.normal;

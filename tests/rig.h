@@ -1,4 +1,4 @@
-// What tests against closed forms build their scenes from.
+// Building blocks of scenes for tests against closed forms.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@ namespace motley::testing {
 
 inline constexpr float frame_time = 1.0F / 60;
 
-/// Steps of a long run. Under sanitizers a tenth of them: each takes many times as long there, and touches the same memory as the
-/// one before.
+/// The number of steps of a long run. Sanitizers get a tenth of it: they make a step many times slower, and later
+/// steps access the same memory as earlier ones.
 constexpr int long_run(int steps)
 {
 #ifdef MOTLEY_SANITIZED
@@ -29,7 +29,7 @@ inline SolverSettings with_gravity(Vec3<float> gravity)
     return settings;
 }
 
-/// Inertia 0.1, 0.2, 0.25 m2 of its mass about x, y, z.
+/// A body with inertia 0.1, 0.2 and 0.25 m2 times its mass about x, y and z.
 inline BodyDefinition box(Vec3<double> position, float mass = 2)
 {
     BodyDefinition body;
@@ -54,7 +54,7 @@ inline Vec3<double> angular_momentum(const BodyState& state, double mass, const 
            rotate(q, Vec3<double>{moments.x * w.x, moments.y * w.y, moments.z * w.z});
 }
 
-/// A frame's rotation with its x along `axis`: 0 x, 1 y, 2 z.
+/// The rotation of a frame whose x lies along `axis`: 0 x, 1 y, 2 z.
 inline Quat<float> axis_along(int axis)
 {
     const Quat<float> turns[3] = {

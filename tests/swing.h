@@ -1,11 +1,11 @@
-// How long something takes to swing once about z.
+// The period of something that swings about z.
 #pragma once
 
 #include "rig.h"
 
 namespace motley::testing {
 
-/// s: the mean time from one far end to the next of a body that swings for `seconds`, at least four times.
+/// s: the mean time between successive ends of the swing on one side, over `seconds`, which must have more than four.
 inline double swing_period(Scene& scene, Solver& solver, BodyId body, int seconds)
 {
     double last_rate = 0, first = 0, last = 0;

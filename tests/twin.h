@@ -1,4 +1,4 @@
-// One scene twice: in lanes, and in the reference's double.
+// One scene twice: in lanes, and in the reference in double.
 #pragma once
 
 #include <algorithm>

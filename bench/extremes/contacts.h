@@ -1,4 +1,4 @@
-// Extremes: contacts under loads, with friction of any size, and twice over.
+// Extremes: contacts under loads, with friction of any size, and in duplicate.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,8 @@ double heavy_on_light(const ExtremeRun& run)
     return trial.figure((1.5 - lowest) / 0.5);
 }
 
-/// A cube of 1 m on the floor y = 0, touching with its four lower corners, or twice with each, `twins` m apart.
+/// A cube of 1 m on the floor y = 0 that touches it with its four lower corners, or twice with each corner, `twins` m
+/// apart.
 class Cube {
   public:
     Cube(const ExtremeRun& run, Vec3<float> pull, float friction, double twins = 0)
@@ -70,14 +71,14 @@ class Cube {
     double twins_;
 };
 
-/// Friction 1e6 under a pull sideways: m a second crept in 10 s.
+/// Friction 1e6 under a sideways pull: the mean speed of creep over 10 s, m/s.
 inline double huge_friction(const ExtremeRun& run)
 {
     Cube cube(run, {3, -9.81F, 0}, 1e6F);
     for (int step = 0; step < 600; ++step) cube.step();
     return cube.trial.figure(std::abs(cube.trial.scene.state(cube.body).position.x) / 10);
 }
-/// No friction at all: off the speed of a free fall sideways after 2 s, %.
+/// No friction at all: the error of the speed under a sideways pull after 2 s against that of free fall, %.
 inline double no_friction(const ExtremeRun& run)
 {
     Cube cube(run, {3, -9.81F, 0}, 0);
@@ -85,7 +86,7 @@ inline double no_friction(const ExtremeRun& run)
     const auto speed = static_cast<double>(cube.trial.scene.state(cube.body).linear_velocity.x);
     return cube.trial.figure(100 * std::abs(speed / 6 - 1));
 }
-/// A cube that touches twice at each corner, a micrometre apart: rad/s after 10 s.
+/// A cube that touches twice at each corner, a micrometre apart: its spin after 10 s, rad/s.
 inline double twin_points(const ExtremeRun& run)
 {
     Cube cube(run, gravity, 0.5F, 1e-6);

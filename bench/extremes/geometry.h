@@ -98,7 +98,7 @@ double loop_of_four(const ExtremeRun& run)
     trial.scene.set_velocity(rod, {2, 0, 0}, {});
     return trial.worst_separation(run.way == ExtremeWay::direct ? 300 : 3600);
 }
-/// A door on two hinges of one axis, five rows too many: how far it hangs open.
+/// A door on two hinges of one axis, which have five redundant rows: the separation of its joints.
 inline double door(const ExtremeRun& run)
 {
     Trial trial(run);
@@ -112,7 +112,7 @@ inline double door(const ExtremeRun& run)
     trial.scene.set_velocity(leaf, {}, {0, 5, 0});
     return trial.worst_separation(600);
 }
-/// The same pose written as q and as -q while a chain of hinges swings: how far the two end apart.
+/// The same pose written as q and as -q while a chain of hinges swings: the distance between the two ends.
 inline double other_hemisphere(const ExtremeRun& run)
 {
     const auto end = [&](double sign) {
@@ -133,7 +133,7 @@ inline double other_hemisphere(const ExtremeRun& run)
     };
     return length(end(-1) - end(1));
 }
-/// Axes to be kept square that start parallel, where no turn brings C nearer to first order: the fastest spin, rad/s.
+/// Perpendicular axes that start parallel, where no rotation reduces C to first order: the fastest spin, rad/s.
 inline double parallel_axes(const ExtremeRun& run)
 {
     Trial trial(run, {});

@@ -43,10 +43,11 @@ inline double deep_overlap(const ExtremeRun& run)
         fastest = std::max(
             fastest, trial.figure(length(convert<double>(trial.scene.state(balls[2]).linear_velocity))));
     }
-    // Each of the two contacts parts at the push-out speed, so the outer balls leave the middle one with it.
+    // The two balls of each contact part at the push-out speed, so the outer balls leave the middle one at that
+    // speed.
     return fastest / static_cast<double>(trial.settings.push_out_speed);
 }
-/// 1e-12 N on 1 kg for 10 s: off v = F t / m, of itself.
+/// 1e-12 N on 1 kg for 10 s: the relative error of the speed against v = F t / m.
 inline double whisper(const ExtremeRun& run)
 {
     Trial trial(run, {});
@@ -83,7 +84,7 @@ double spring_of(const ExtremeRun& run)
     }
     return trial.figure(farthest);
 }
-/// Scenes with nothing in them, with static bodies alone, with one body: how many of them could not be stepped.
+/// Scenes without bodies, with static bodies only, and with one body: how many of them could not be stepped.
 inline double next_to_nothing(const ExtremeRun& run)
 {
     int stuck = 0;

@@ -1,4 +1,4 @@
-// Extremes: inertia, spin, the length of a step, and far from the origin.
+// Extremes: inertia, spin, the length of a step, and distance from the origin.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ inline double plate_on_a_lever(const ExtremeRun& run)
 {
     return on_a_lever(run, {2e-4F, 1e-4F, 1e-4F});
 }
-/// What a free box that spins at so many rad/s gains of energy at most, in per cent.
+/// The largest gain of energy of a free box with this spin in rad/s, in per cent.
 inline double gain_of_spin(const ExtremeRun& run, const Vec3<float>& spin, int steps)
 {
     Trial trial(run, {});
@@ -85,7 +85,7 @@ inline double fast_travel(const ExtremeRun& run)
 {
     Trial trial(run);
     trial.chain(10, {1, 0, 0}, 1);
-    // The whole chain and its post at 10 km/s.
+    // The whole chain and the post that it hangs on move at 10 km/s.
     Scene& scene = trial.scene;
     BodyDefinition post;
     post.motion = BodyMotion::kinematic_body;

@@ -8,7 +8,7 @@
 
 namespace motley::bench {
 
-/// A floor under `body`, a ball of radius 0.5.
+/// The contact of `body`, a ball of radius 0.5 m, with the floor.
 inline Contact floor_contact(const Trial& trial, BodyId body, std::uint64_t key)
 {
     const Vec3<double> at = trial.scene.state(body).position;
@@ -23,7 +23,7 @@ inline Contact floor_contact(const Trial& trial, BodyId body, std::uint64_t key)
     return contact;
 }
 
-/// Two hundred balls of 1 kg on top of each other, 2 kN on the lowest: how far the top sinks in 5 s, in radii.
+/// Two hundred balls of 1 kg on top of each other, 2 kN on the lowest: how far the top one sinks in 5 s, in radii.
 inline double tower(const ExtremeRun& run)
 {
     constexpr int stories = 200;
@@ -51,14 +51,14 @@ inline double tower(const ExtremeRun& run)
     return trial.figure((stories - 0.5 - trial.scene.state(trial.bodies().back()).position.y) / 0.5);
 }
 
-/// A ball that bounces with restitution 1 from 0.1 m, ten thousand times: how far its energy at the top of a bounce has come
-/// off what it began with, %.
+/// A ball that bounces with restitution 1 from 0.1 m, ten thousand times: the largest deviation of its energy at the
+/// top of a bounce from the energy that it began with, %.
 inline double bounces(const ExtremeRun& run)
 {
     const int last = run.way == ExtremeWay::direct ? 1000 : 10000;
     Trial trial(run);
     const BodyId ball = trial.box({0, 0.6, 0});
-    // The floor is where height is none.
+    // Energy above that of a ball that rests on the floor, whose centre is 0.5 m high.
     const auto height = [&] { return trial.energy() - 0.5 * 9.81; };
     const double start = height();
     double most = 0;
@@ -78,7 +78,7 @@ inline double bounces(const ExtremeRun& run)
     return 100 * most;
 }
 
-/// One body with a hundred thousand joints to free bodies, pushed: momentum lost, of what was given.
+/// One body with a hundred thousand joints to free bodies, pushed: the share of its momentum that is lost.
 inline double hub(const ExtremeRun& run)
 {
     const int spokes = run.way == ExtremeWay::direct ? 200 : 100000;
@@ -95,7 +95,7 @@ inline double hub(const ExtremeRun& run)
     return trial.figure(std::abs(trial.scene.errors().momentum[0] / 1000 - 1));
 }
 
-/// Denormals in velocities, forces, gravity and impulses: the energy that comes of them, J.
+/// Denormals in velocities, forces, gravity and impulses: the energy that results, J.
 inline double denormals(const ExtremeRun& run)
 {
     Trial trial(run, {1e-40F, -1e-40F, 1e-42F});
@@ -108,7 +108,8 @@ inline double denormals(const ExtremeRun& run)
     return trial.figure(trial.scene.errors().kinetic_energy);
 }
 
-/// Ten thousand ropes and bodies taken away and put back each step: joints that were lost, and how far the rest parts.
+/// Ten thousand joints and bodies removed and added again in each step: joints that were lost, and how far the other
+/// joints part.
 inline double churn(const ExtremeRun& run)
 {
     const int changing = run.way == ExtremeWay::direct ? 20 : 10000;
@@ -133,8 +134,9 @@ inline double churn(const ExtremeRun& run)
     return trial.figure(worst);
 }
 
-/// A ball pressed to the floor with 1 kN is teleported to the ceiling with its key: the push that it remembers now points
-/// at it. Speed of its rebound beside one that remembers nothing, m/s.
+/// A ball pressed to the floor with 1 kN is teleported to the ceiling, and its contact keeps the key: the impulse of
+/// the warm start now pushes along the opposite normal. The difference of its speed from that of a ball without a
+/// warm start, m/s.
 inline double reversed_cache(const ExtremeRun& run)
 {
     double speed[2] = {};

@@ -90,7 +90,7 @@ class Trial {
         }
         return sum;
     }
-    /// The largest energy after any of so many steps, or now; `dt(i)` is the length of step i.
+    /// The largest energy now or after any of so many steps; `dt(i)` is the length of step i.
     template <class Length>
     double peak_energy(int steps, const Length& dt)
     {

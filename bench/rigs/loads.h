@@ -1,4 +1,4 @@
-// Light links that bear a heavy ball: what makes iterations crawl.
+// Light links that bear a heavy ball: iterations converge slowly here.
 #pragma once
 
 #include "nets.h"

@@ -74,7 +74,7 @@ inline Vec3<double> down_turned(double angle)
 }
 
 inline constexpr double rig_g = 9.81;
-inline constexpr double mechanism_seconds = 11;  ///< as long as the truths reach
+inline constexpr double mechanism_seconds = 11;  ///< s: how long the reference motions last
 
 /// A body of 1 kg, its centre 1 m from a ball-socket, starting level.
 inline Rig make_pendulum(std::int64_t bodies, std::uint64_t)
@@ -106,7 +106,8 @@ inline std::array<double, 2> double_pendulum_acceleration(const Motion<2>::State
     return {(m22 * f1 - c * f2) / d, (m11 * f2 - c * f1) / d};
 }
 
-/// Two rods of 1 kg and 1 m, hinged, starting level. Chaotic: only its first two seconds are anybody's to predict.
+/// Two rods of 1 kg and 1 m, hinged, starting level. The motion is chaotic: only its first two seconds can be
+/// predicted.
 inline Rig make_double_pendulum(std::int64_t bodies, std::uint64_t)
 {
     static constexpr double l = 0.5, length = 1, inertia = 1.0 / 12;
@@ -131,7 +132,8 @@ inline Rig make_double_pendulum(std::int64_t bodies, std::uint64_t)
     return repeat(rig, bodies / 2);
 }
 
-/// A parallelogram on four hinges, the classical redundant loop: two cranks of 1 m and 1 kg carry a bar of 2 m and 3 kg.
+/// A parallelogram on four hinges, the classical redundant loop: two cranks of 1 m and 1 kg carry a bar of 2 m and 3
+/// kg.
 inline Rig make_four_bar(std::int64_t bodies, std::uint64_t)
 {
     static constexpr double crank = 1, bar = 2, start = 1, inertia = 1.0 / 12;

@@ -1,4 +1,4 @@
-// Nets, chains and ragdolls: the joint scenes that other engines have been measured on, with the same numbers.
+// Nets, chains and ragdolls: joint scenes on which other engines have been measured, with the same numbers.
 #pragma once
 
 #include <algorithm>
@@ -60,7 +60,8 @@ inline Rig make_chains(std::int64_t bodies, std::uint64_t)
     return rig;
 }
 
-/// Figures of eleven boxes, hung by the pelvis, each in its own spin: hinges and swing-twists, all with limits.
+/// Figures of eleven boxes that hang by the pelvis, each with its own spin; their hinges and swing-twists all have
+/// limits.
 inline Rig make_ragdolls(std::int64_t bodies, std::uint64_t seed)
 {
     struct Part {

@@ -5,7 +5,8 @@
 
 namespace motley::bench {
 
-/// A pyramid of N boxes of 1 m and 1 kg a layer less than below. The error is how far they have moved.
+/// A pyramid of boxes of 1 m and 1 kg; each layer has one box less than the layer below. The error is how far boxes
+/// have moved.
 inline Rig make_pyramid(std::int64_t bodies, std::uint64_t)
 {
     int layers = 1;

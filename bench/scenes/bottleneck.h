@@ -1,6 +1,6 @@
-// A real experiment: 75 people through a 0.5 m door (bench/data/README.md). The same walls; everyone enters where
-// and when the recording first has them, and walks to the door. Flow tests steering, not the solver: it is
-// printed beside the measured one and passes no judgement.
+// A real experiment: 75 people pass a 0.5 m door (bench/data/README.md). The walls are the same; everyone enters
+// where and when the recording first has them, and walks to the door. The flow tests the steering, not the solver: it
+// is printed with the measured flow, and nothing is judged by it.
 #pragma once
 
 #include <fmt/format.h>
@@ -55,13 +55,14 @@ class Bottleneck final : public CrowdScene {
         people.observe(scene, executor);
         for (std::size_t i = 0; i < people.agents.size(); ++i) {
             const Vec3<double>& p = people.positions[i];
-            // To the nearest point of the opening a body can pass, then straight through.
+            // People walk to the nearest point of the opening that their disc fits through, then straight on.
             const double half = 0.25 - static_cast<double>(people.agents[i].radius);
             people.agents[i].goal =
                 p.y > 0.2 ? Vec2<double>{std::clamp(p.x, -half, half), 0.0} : Vec2<double>{0, -3};
             people.agents[i].desired_speed = free_speed;
         }
-        // Whoever touches somebody nearer to the door yields; else smooth discs arch in the door and stand for ever.
+        // People who touch somebody nearer to the door slow down. Otherwise frictionless discs form an arch in the
+        // door and stay there.
         const auto contacts = people.contacts();
         const auto pairs = people.pairs();
         for (std::size_t k = 0; k < contacts.size() && !left_; ++k) {
@@ -109,7 +110,7 @@ class Bottleneck final : public CrowdScene {
     {
         for (; next_ < arrivals_.size() && arrivals_[next_].time <= time; ++next_) {
             Agent agent;
-            agent.radius = 0.18F;  // of equal area with the mean man, ANSUR II
+            agent.radius = 0.18F;  // same area as the mean man of ANSUR II
             people.add(scene, agent, arrivals_[next_].at);
             height_before_.push_back(arrivals_[next_].at.y);
         }
@@ -124,7 +125,7 @@ class Bottleneck final : public CrowdScene {
                 if (passed_++ == 0) first_ = time;
                 last_ = time;
             }
-            height_before_[i] = std::min(height_before_[i], y);  // whoever is pushed back passes once
+            height_before_[i] = std::min(height_before_[i], y);  // somebody pushed back is not counted twice
             if (y > -2) continue;
             people.remove(scene, i);
             left_ = true;

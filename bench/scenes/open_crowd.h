@@ -1,4 +1,4 @@
-// N people at 5 per m2 in a walled square, each with a goal some way off and a new one when it is reached.
+// N people at 5 per m2 in a walled square, each with a goal some metres away, and a new goal when it is reached.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ class OpenCrowd final : public CrowdScene {
         const double pitch = side_ / static_cast<double>(columns);
         for (std::size_t i = 0; i < count; ++i) {
             Agent agent;
-            // Radius 0.20 m +- 8 %, as of a crowd of men and women.
+            // Radius 0.20 m +- 8 %, as in a crowd of men and women.
             agent.radius = static_cast<float>(0.20 * (1 + 0.08 * random_.symmetric()));
             const Vec2<double> at{
                 pitch * (0.5 + static_cast<double>(i % columns)) + 0.01 * random_.symmetric(),
@@ -39,7 +39,7 @@ class OpenCrowd final : public CrowdScene {
     void steer(double time, Executor& executor) override
     {
         CrowdScene::steer(time, executor);
-        // One in sixty is asked each step whether it has arrived: often enough for a walk of seconds.
+        // Each step checks one person in sixty for arrival: often enough for walks that take seconds.
         for (std::size_t i = turn_; i < people.agents.size(); i += 60) {
             const double dx = people.agents[i].goal.x - people.positions[i].x,
                          dy = people.agents[i].goal.y - people.positions[i].y;

@@ -1,5 +1,6 @@
-// A packed slab of people, each leaning on the one in front with 50 N: exactly density x length x force on the
-// wall, 4.5 kN/m with 90 people behind every metre of it. Frictionless, so that no side wall carries a share.
+// A packed slab of people, each leaning on the one in front with 50 N: the stress on the wall is exactly density x
+// length x force, 4.5 kN/m with 90 people behind every metre of it. Without friction, so that no side wall carries a
+// share.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,9 +21,9 @@ class Push final : public CrowdScene {
     explicit Push(const RunOptions& options)
     {
         people.friction = options.friction < 0 ? 0.0F : options.friction;
-        // Hexagonal packing, touching: disorder would give force chains, whose bands differ for real. The ends of the
-        // strip touch each other, as on an infinite wall: a side wall would take half of what the last in line hands
-        // on, and the law of the slab would not hold beside it.
+        // Touching discs in hexagonal packing: in a disordered packing force chains would make the true stress differ
+        // between bands. The ends of the strip touch each other, as on an infinite wall: a side wall would take half
+        // of what the disc at the end of a row passes on, and the law of the slab would not hold near it.
         const double row_pitch = std::sqrt(3.0) * radius;
         const auto rows = static_cast<int>(options.agents / people_a_row);
         for (int row = 0; row < rows; ++row) {
@@ -51,7 +52,7 @@ class Push final : public CrowdScene {
         std::vector<double> bands(static_cast<std::size_t>(width), 0.0);
         double total = 0;  // N
         for (std::size_t i = 0; i < contacts.size(); ++i) {
-            if (pairs[i].b >= 0 || contacts[i].normal.x < 0.9F) continue;  // the front wall's alone
+            if (pairs[i].b >= 0 || contacts[i].normal.x < 0.9F) continue;  // only the front wall
             const double push = static_cast<double>(impulses[i].normal) * per_second;
             total += push;
             spread(people.positions[static_cast<std::size_t>(pairs[i].a)].y, push, bands);
@@ -74,7 +75,7 @@ class Push final : public CrowdScene {
     }
     [[nodiscard]] std::vector<Figure> figures() const override
     {
-        if (samples_ == 0) return {};  // shorter than it takes to settle
+        if (samples_ == 0) return {};  // the run was shorter than the settling time
         std::vector<Figure> figures{{"wall stress, expected (N/m)", expected_}};
         double worst = 0;
         for (std::size_t band = 0; band < sums_.size(); ++band) {
@@ -95,7 +96,8 @@ class Push final : public CrowdScene {
     double squares_ = 0, wall_squares_ = 0;
     int samples_ = 0;
 
-    /// A person leans on the wall with a shoulder's breadth, not in a point: the force is spread over the diameter.
+    /// A person leans on the wall over the width of the shoulders, not at a point: the force is spread over the
+    /// diameter.
     static void spread(double y, double push, std::vector<double>& bands)
     {
         // The last band ends where the first begins.

@@ -1,4 +1,4 @@
-// Rows of discs, each a world of its own along x: the laws of crowds that are known exactly.
+// Rows of discs along x that do not affect each other: crowds whose laws are known exactly.
 #pragma once
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ class MeanSquare {
     std::int64_t count_ = 0;
 };
 
-/// Rows of planar discs that touch only their neighbours in line; the host knows who they are.
+/// Rows of planar discs that touch only their neighbours in the row, so that no search is needed.
 class Rows : public BenchScene {
   public:
     void steer(double, Executor&) override {}
@@ -36,7 +36,7 @@ class Rows : public BenchScene {
   protected:
     static constexpr double radius = 0.2;
     static constexpr float mass = 80;
-    static constexpr double margin = 0.05;  ///< m: gaps up to this are contacts to come
+    static constexpr double margin = 0.05;  ///< m: a pair with a gap up to this becomes a contact
     std::vector<BodyId> bodies_;
     std::vector<Vec3<double>> positions_;
     std::vector<Contact> contacts_;
@@ -57,7 +57,7 @@ class Rows : public BenchScene {
         }
         positions_.resize(bodies_.size());
     }
-    /// A contact with the next in line of each disc whose neighbour is near.
+    /// Adds a contact of each disc with the next in its row if that is near.
     void touch_neighbours()
     {
         scene.read_positions(bodies_, positions_);
@@ -135,7 +135,7 @@ class Lean final : public Rows {
     MeanSquare off_;
 };
 
-/// Rows of discs a gap apart, the first of which comes with some speed.
+/// Rows of discs with gaps between them, the first of which starts with some speed.
 class Pulse : public Rows {
   public:
     struct Shape {
@@ -160,19 +160,19 @@ class Pulse : public Rows {
     Shape shape_;
     double dt_;
     MeanSquare off_;  ///< share of the gap
-    /// How far disc `i` of the first row is from where it began.
+    /// How far disc `i` of the first row has moved.
     [[nodiscard]] double moved(int i) const
     {
         return scene.state(bodies_[static_cast<std::size_t>(i)]).position.x - (2 * radius + shape_.gap) * i;
     }
 };
 
-/// Restitution 0: the first takes all with it. n + 1 of them move at v/(n + 1) once the n-th is hit, at
-/// t = g n (n + 1)/(2 v).
+/// Restitution 0: the first disc pushes all discs that it meets along. n + 1 of them move at v/(n + 1) once the n-th
+/// is hit, at t = g n (n + 1)/(2 v).
 class InelasticPulse final : public Pulse {
   public:
     static constexpr Shape row{20, 0.1, 1.5, 0};
-    /// What a push of 150 N s makes of a crowd 2 cm apart, were it one row wide.
+    /// A push of 150 N s into a crowd with gaps of 2 cm, taken as a single row.
     static constexpr Shape strip{100, 0.02, 150 / static_cast<double>(mass), 0};
     InelasticPulse(const RunOptions& options, const Shape& shape) : Pulse(options, shape) {}
 
@@ -186,7 +186,7 @@ class InelasticPulse final : public Pulse {
     }
 
   private:
-    /// Where the first body is: each gap takes n times as long as the first one did.
+    /// Where the first disc is: it crosses the n-th gap in n times the time of the first.
     [[nodiscard]] double exact(double time) const
     {
         double left = time, x = 0;
@@ -200,7 +200,8 @@ class InelasticPulse final : public Pulse {
     }
 };
 
-/// Restitution 1: each hands its speed to the next and stands, so that the front runs at v (1 + d/g).
+/// Restitution 1: each disc passes its speed to the next and stops, so that the front runs at v (1 + d/g), d the
+/// diameter, g the gap.
 class ElasticPulse final : public Pulse {
   public:
     explicit ElasticPulse(const RunOptions& options) : Pulse(options, {20, 0.1, 1.5, 1}) {}
@@ -209,7 +210,7 @@ class ElasticPulse final : public Pulse {
     {
         for (int i = 0; i < length_; ++i) {
             const double since = (time + dt_) * shape_.speed - shape_.gap * i;
-            // The last has nobody to stop it.
+            // Nothing stops the last disc.
             const double exact = i + 1 < length_ ? std::clamp(since, 0.0, shape_.gap) : std::max(since, 0.0);
             off_.add((moved(i) - exact) / shape_.gap);
         }

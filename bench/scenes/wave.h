@@ -20,7 +20,7 @@ class Wave final : public CrowdScene {
     {
         people.friction = options.friction < 0 ? 0.0F : options.friction;
         people.contact_margin = static_cast<float>(2 * gap);
-        // Triangular packing, a square of it.
+        // Triangular packing in a square.
         const double pitch = 2 * radius + gap, rank = std::sqrt(0.75) * pitch;
         const auto ranks = static_cast<int>(
             std::max(1.0, std::round(std::sqrt(static_cast<double>(options.agents) * pitch / rank))));

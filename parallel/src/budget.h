@@ -1,12 +1,13 @@
-// How much work fits into a time: learned from the steps before.
+// How much work fits into a given time, learned from the steps before.
 #pragma once
 
 #include <algorithm>
 
 namespace motley {
 
-/// A step's time is a part that it takes anyway and a part for each unit of work, substeps or iterations. Both are
-/// followed quickly upwards and slowly downwards: a step that comes late is worse than one that is less exact.
+/// The time of a step is a fixed part and a part for each unit of work, which is a substep or an iteration. The
+/// estimates of both follow measurements quickly upwards and slowly downwards: a step that is late is worse than one
+/// that is less exact.
 class Budget {
   public:
     /// How many units fit into `seconds`, at least 1 and at most `most`; 1 before anything has been learned.
@@ -15,7 +16,7 @@ class Budget {
         if (unit_ <= 0) return 1;
         return static_cast<int>(std::clamp((seconds - fixed_) / unit_, 1.0, static_cast<double>(most)));
     }
-    /// What a step with so many units took.
+    /// Takes in how long a step with `units` units took.
     void learn(double fixed_seconds, double work_seconds, int units)
     {
         follow(fixed_, fixed_seconds);

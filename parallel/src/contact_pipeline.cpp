@@ -22,7 +22,7 @@ std::string ContactPipeline::lay_out(Scene& scene, std::span<const Contact> cont
     return {};
 }
 
-/// Checks each contact, and finds it again where it lay in the last list.
+/// Checks each contact, and matches it with the contact at about the same place of the last list.
 void ContactPipeline::check_and_match(Scene& scene, std::span<const Contact> contacts)
 {
     layout_.intake.begin(scene, contacts.size());
@@ -30,7 +30,7 @@ void ContactPipeline::check_and_match(Scene& scene, std::span<const Contact> con
                 [&](std::int64_t part) { layout_.intake.check_and_match(scene, contacts, part); });
 }
 
-/// Finds by key what lies elsewhere than in the last list.
+/// Matches by key the contacts that are at another place than in the last list.
 void ContactPipeline::look_up_unmatched(ContactCache& cache)
 {
     const std::int64_t parts = cache.part_count();
@@ -40,7 +40,7 @@ void ContactPipeline::look_up_unmatched(ContactCache& cache)
     runner_.run(parts, [&](std::int64_t part) { layout_.intake.look_up(cache, part); });
 }
 
-/// Colouring is for one thread; whoever else is there meanwhile looks for keys that come twice.
+/// One thread colours the contacts; the others meanwhile look for repeated keys.
 void ContactPipeline::colour_and_verify_keys(Scene& scene)
 {
     ContactCache& cache = scene.contact_cache();

@@ -1,5 +1,5 @@
-// The way of the contacts of a step: from the host's list to chunks of blocks that a sweep runs over. Each phase is one
-// function here, in the order in which they run.
+// The path of the contacts of a step, from the host's list to chunks of blocks that a sweep runs over. Each phase is
+// one function here, in the order in which they run.
 #pragma once
 
 #include <span>
@@ -15,16 +15,17 @@ class ContactPipeline {
   public:
     ContactPipeline(StageRunner& runner, Layout& layout) : runner_(runner), layout_(layout) {}
 
-    /// From the list to placements with last step's colours and impulses. Empty when all contacts are good, but for keys
-    /// that come twice; else what is wrong with the first bad one. Unless bad ones are skipped, none is then taken in.
+    /// Makes placements from the list, with the colours and impulses of the last step. Returns what is wrong with the
+    /// first bad contact, or empty; repeated keys are found only by lay_out(). Unless bad contacts are skipped, none
+    /// is taken in if one is bad.
     std::string take_in(Scene& scene, std::span<const Contact> contacts, BadContacts bad_contacts);
     /// How the step wants its constraints laid out.
     struct Wanted {
         FigureUse figures;
-        bool tells_apart = false;  ///< blocks have room for residuals and for how many sweeps they want
-        bool adds_up = false;      ///< contacts have room for the sums of several substeps
+        bool tells_apart = false;  ///< blocks have space for residuals and wanted numbers of sweeps
+        bool adds_up = false;      ///< contacts have space for sums over several substeps
     };
-    /// From placements to chunks, joints included. What is wrong when a key came twice, or empty.
+    /// Makes chunks from the placements, joints included. Returns what is wrong when a key is repeated, or empty.
     std::string lay_out(Scene& scene, std::span<const Contact> contacts, const Wanted& wanted);
 
   private:

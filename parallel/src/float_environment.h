@@ -1,14 +1,14 @@
-// The floating-point environment of a step: it rounds to nearest and takes denormals for nothing, whatever the host has
-// set. So bits do not depend on the host's rounding, and what comes to rest by ever smaller speeds does not pay the
-// hundred cycles or so that a processor asks for every denormal it meets.
+// The floating-point environment of a step: it rounds to nearest and takes denormals for zero, whatever the host has
+// set. So the bits do not depend on the host's rounding, and bodies that slow down towards rest do not cost the
+// hundred cycles or so that a processor takes for every denormal.
 #pragma once
 
 #include <cstdint>
 
 namespace motley {
 
-/// Sets the environment of a step on this thread and puts the host's back when it goes. Exceptions stay masked or
-/// unmasked as the host has them, and what was raised meanwhile stays raised.
+/// Sets the environment of a step on this thread, and restores the host's when it is destroyed. Exceptions stay
+/// masked or unmasked as the host has them, and flags that were raised in between stay raised.
 class StepFloats {
   public:
     StepFloats() : host_(control()) { set_control((host_ & ~rounding) | flushes_denormals); }
@@ -32,7 +32,7 @@ class StepFloats {
         __builtin_ia32_ldmxcsr(word);
     }
 #elif defined(__aarch64__)
-    // FPCR, Arm Architecture Reference Manual for A-profile: what was raised is in another register.
+    // FPCR, Arm Architecture Reference Manual for A-profile: the flags of raised exceptions are in another register.
     using Word = std::uint64_t;
     static constexpr Word raised = 0, rounding = 3U << 22, flushes_denormals = 1U << 24;
     static Word control()

@@ -20,7 +20,7 @@ void PlanRunner::run(const Plan& plan, const Plan& figure_plan, const Step& step
         clock.enter(stage_of(stage.operation));
         run_stage(stage, substep, plan, figure_plan, step);
     });
-    // A warm start in each, replayed or swept.
+    // Each substep has a warm start, replayed or swept.
     step.report.sweeps += plan.substeps;
 }
 
@@ -116,7 +116,7 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
     }
 }
 
-/// Sweeps as often as a stage says, and counts.
+/// Sweeps as often as a stage says, and counts the sweeps.
 void PlanRunner::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, const PlanStage& stage,
                        const Step& step)
 {
@@ -133,7 +133,8 @@ void PlanRunner::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, cons
     step.report.iterations = std::max(step.report.iterations, solves_in_substep_);
 }
 
-/// Impulses of trees are not among those that a warm start applies.
+/// Whether velocities are computed anew between sweeps. Not with trees of touched figures, because a warm start does
+/// not apply their impulses.
 bool PlanRunner::renews(const SolverSettings& settings) const
 {
     return sweeps_long(settings) && layout_.figures.touched_trees().empty();
@@ -156,8 +157,8 @@ int PlanRunner::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int
     return times;
 }
 
-/// Sweeps until every island is within the tolerance, `times` times at most; more often where the host asked for more. Returns
-/// how often.
+/// Sweeps until every island is within the tolerance, at most `times` times, or more often where the host asked for
+/// it. Returns how often.
 int PlanRunner::iterate_by_island(ConstraintKernels::Sweep ConstraintKernels::*kernel, int times,
                                   const Step& step)
 {
@@ -165,13 +166,13 @@ int PlanRunner::iterate_by_island(ConstraintKernels::Sweep ConstraintKernels::*k
     const bool renewing = renews(step.settings);
     if (renewing) renewal_.begin();
     convergence_.start_over(layout_.sweeps());
-    // Wishes are for what solves, not for what relaxes.
+    // The host asks for sweeps of `solve`, not of `relax`.
     const int most =
         kernel == &ConstraintKernels::solve ? std::max(times, convergence_.most_wanted()) : times;
     int done = 0;
     while (done < most && convergence_.unfinished() > 0) {
         ++done;
-        // Measuring costs about a sweep: early for what is nearly solved, then only now and then.
+        // Measuring costs about a sweep. It is done early, for islands that are nearly solved, then every fourth sweep.
         const bool measured = tolerance > 0 && (done == 2 || done % 4 == 0 || done == most);
         layout_.context.measure = measured ? Measure::while_solving : Measure::nothing;
         sweeper_.sweep(kernel, done <= times ? 0 : done);
@@ -189,7 +190,7 @@ float PlanRunner::exact_rate(ConstraintKernels::Sweep ConstraintKernels::*kernel
     return kernel == &ConstraintKernels::solve ? layout_.context.step.exact_rate : 0;
 }
 
-/// What is left of the constraints as the bodies are now.
+/// Measures the residuals of the constraints for the present state of the bodies.
 void PlanRunner::measure_residual(const Step& step)
 {
     StepReport& report = step.report;
@@ -218,7 +219,7 @@ void PlanRunner::move_bodies(const Step& step)
     if (step.report.bodies_contained == 0) return;
     step.report.first_contained = scene.bodies().id_of_slot(first_slot);
     scene.bodies().contained_count += static_cast<std::size_t>(step.report.bodies_contained);
-    scene.joints().version.reset();  // theirs are left out from now on
+    scene.joints().version.reset();  // joints of contained bodies are left out from now on
 }
 
 bool PlanRunner::sweeps_long(const SolverSettings& settings)

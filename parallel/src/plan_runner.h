@@ -20,7 +20,7 @@ class PlanRunner {
     {
     }
 
-    /// What decides how a step is run beside its plan.
+    /// What a step needs in addition to its plan.
     struct Step {
         Scene& scene;
         std::span<const Contact> contacts;
@@ -29,10 +29,10 @@ class PlanRunner {
         bool picks_islands;  ///< some islands want more sweeps than others: see Convergence
         StepReport& report;
     };
-    /// Runs the stages of `plan`; figures that nothing else touches are run by `figure_plan`, which has no stages fused.
+    /// Runs the stages of `plan`. Figures that nothing else touches run `figure_plan`, in which no stages are fused.
     void run(const Plan& plan, const Plan& figure_plan, const Step& step, StepClock& clock);
 
-    /// With more sweeps than this, velocities are made anew from impulses between them; see Renewal.
+    /// Whether there are so many sweeps that velocities are computed anew from impulses between them; see Renewal.
     static bool sweeps_long(const SolverSettings& settings);
 
   private:

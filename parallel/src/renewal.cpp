@@ -17,7 +17,7 @@ std::span<float> velocities_of(const BodyArrays& arrays, int kind)
 
 void Renewal::begin()
 {
-    // What a warm start with the opposite impulses leaves.
+    // A warm start with the opposite impulses takes the impulses out of the velocities.
     change_signs();
     sweeper_.sweep(&ConstraintKernels::warm_start);
     change_signs();

@@ -1,8 +1,9 @@
-// Velocities made anew from impulses where there are many sweeps.
+// Computes velocities anew from impulses where there are many sweeps.
 //
-// A sweep adds each change of an impulse to the velocities of two bodies, which round it. Thousands of sweeps leave velocities
-// and impulses apart by what was lost, and a host that reads forces is told others than acted. So from time to time the
-// velocities are what they would be without the impulses, and those are applied once more, all at once: v = v_0 + M^-1 J^T lambda.
+// A sweep adds each change of an impulse to the velocities of two bodies, which round it. After thousands of sweeps
+// velocities and impulses differ by what was lost, and a host that reads forces gets others than those that acted. So
+// from time to time the velocities are computed as v = v_0 + M^-1 J^T lambda, where v_0 are the velocities without
+// the impulses lambda, M is the mass matrix and J the Jacobian.
 #pragma once
 
 #include <array>
@@ -14,14 +15,14 @@ namespace motley {
 
 class Renewal {
   public:
-    /// So many sweeps leave velocities and impulses 1e-6 apart; with fewer nothing is made anew.
+    /// After this many sweeps velocities and impulses differ by 1e-6; with fewer nothing is computed anew.
     static constexpr int sweeps = 32;
 
     Renewal(Sweeper& sweeper, Layout& layout) : sweeper_(sweeper), layout_(layout) {}
-    /// Notes what velocities would be without the impulses that the blocks hold. Allocates only when there are more bodies than
-    /// ever before.
+    /// Stores what velocities would be without the impulses that the blocks hold. Allocates only when there are more
+    /// bodies than ever before.
     void begin();
-    /// Makes velocities of that and of the impulses that the blocks hold now.
+    /// Computes velocities from those and from the impulses that the blocks hold now.
     void renew();
 
   private:

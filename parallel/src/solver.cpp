@@ -1,4 +1,4 @@
-// One step, on one screen: Solver::Impl::step names the stages in their order, and does nothing else.
+// Solver::Impl::step shows one step on one screen: it names the stages in their order, and does nothing else.
 #include "motley/parallel/solver.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@
 namespace motley {
 namespace {
 
-/// What there is to do, in contacts: see SolverOptions::alone_below.
+/// The size of a step, counted in contacts: see SolverOptions::alone_below.
 std::size_t size_of(const Scene& scene, std::span<const Contact> contacts)
 {
     return contacts.size() + 4 * scene.joint_count() + scene.body_count() / 2;
@@ -39,13 +39,13 @@ Isa checked_isa(const std::optional<Isa>& wanted)
     refuse("SolverOptions.isa", isa_name(*wanted), "an instruction set of available_isas()");
 }
 
-/// What is being caught, in words; in few of them where there is no memory for more.
+/// The text of the exception that is being handled; a short one where there is no memory for more.
 std::string text_of_exception() noexcept
 {
     try {
         throw;
     } catch (const std::bad_alloc&) {
-        return "out of memory";  // short enough to need none
+        return "out of memory";  // short enough to need no allocation
     } catch (const std::exception& error) {
         try {
             return error.what();
@@ -99,7 +99,7 @@ struct Solver::Impl {
     Sweeper sweeper;
     PlanRunner plan_runner;
     Plan plan;         ///< of this step
-    Plan figure_plan;  ///< the same without what is fused over the whole scene
+    Plan figure_plan;  ///< the same without the rewrites, which are for the whole scene
     BusyFlag busy;
 
     Impl(const SolverSettings& s, Isa i, const SolverOptions& options)
@@ -222,13 +222,14 @@ void Solver::Impl::step(Scene& scene, float dt, std::span<const Contact> contact
     report.over_budget = asked.budget_ms > 0 && took.count() > static_cast<double>(asked.budget_ms);
 }
 
-/// Who solves directly does it on one thread, for far longer than others should wait for him awake.
+/// Whether the caller runs the step alone: a small step, or the direct method, which runs on one thread for far
+/// longer than other threads should spin.
 bool Solver::Impl::runs_alone(const Scene& scene, std::span<const Contact> contacts) const
 {
     return settings.method == Method::direct || size_of(scene, contacts) < alone_below;
 }
 
-/// The host's settings, with as much work as its budget has room for.
+/// The host's settings, with as much work as fits its time budget.
 void Solver::Impl::pick_settings()
 {
     settings = asked.resolved();
@@ -241,7 +242,7 @@ void Solver::Impl::learn_times(const StepReport& report)
 {
     if (asked.budget_ms == 0 || asked.method == Method::direct) return;
     double work = 0;
-    // What is done once a step whatever the settings is not work to be picked.
+    // What is done once a step, whatever the settings, does not count as work.
     for (const Stage stage : {Stage::integrate_velocities, Stage::warm_start, Stage::solve,
                               Stage::integrate_positions, Stage::relax})
         work += report.seconds[static_cast<std::size_t>(stage)];
@@ -270,7 +271,7 @@ void Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contacts, Step
     if (report.error.empty()) sweeper.make_room();
 }
 
-/// What this step does, in which order, and what of it can be fused.
+/// Plans what this step does, in which order, and what of it is fused.
 void Solver::Impl::plan_step(const Scene& scene)
 {
     const StepNeeds needs{.solves_trees = use_of_figures(scene).exactly,
@@ -285,7 +286,7 @@ void Solver::Impl::plan_step(const Scene& scene)
     if (can_visit_patches_once(scene)) visit_patches_once(plan);
 }
 
-/// When bodies have moved.
+/// After the bodies have moved: updates the scene and fills in the report.
 void Solver::Impl::finish(Scene& scene, float dt, StepReport& report)
 {
     scene.contact_cache().accept_staged();
@@ -311,25 +312,27 @@ bool Solver::Impl::picks_islands(const Scene& scene) const
     return settings.tolerance > 0 || scene.asks_for_iterations();
 }
 
-/// Blocks then have room for residuals, and for how many sweeps their islands want.
+/// Whether blocks have space for residuals and for the number of sweeps that their islands asked for.
 bool Solver::Impl::tells_blocks_apart(const Scene& scene) const
 {
     return picks_islands(scene) || settings.measures || settings.budget_ms > 0;
 }
 
-/// Figures take part alone or not at all where blocks are told apart, and where positions are projected.
+/// How this step may use figures: not at all with the direct method or where positions are projected, and not in
+/// lockstep where blocks are told apart.
 FigureUse Solver::Impl::use_of_figures(const Scene& scene) const
 {
     const bool projects = settings.method == Method::sequential_impulse &&
                           settings.drift_correction == DriftCorrection::projection;
     const bool possible = settings.method != Method::direct && !projects;
-    // Nor do copies have their velocities made anew.
+    // Nor in lockstep with many sweeps: velocities of copies are not computed anew (Renewal).
     const bool in_lockstep =
         !tells_blocks_apart(scene) && (settings.exact_joints || !PlanRunner::sweeps_long(settings));
     return {possible && in_lockstep, possible && settings.exact_joints};
 }
 
-/// Measures, island by island or of all, want bodies as they are between solving and relaxing; so do trees.
+/// Whether visit_patches_once() may rewrite the plan. Not where residuals are measured, by island or of the whole
+/// scene, nor with trees: both need all bodies solved before the first one is relaxed.
 bool Solver::Impl::can_visit_patches_once(const Scene& scene) const
 {
     return layout.intake.patches.are_wanted() && settings.method == Method::soft_step &&

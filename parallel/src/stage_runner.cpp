@@ -17,16 +17,16 @@ inline void pause()
 #endif
 }
 
-/// Spins before a thread offers its core to others: longer than any serial stretch inside a sweep, shorter
-/// than a scheduler's slice, so that a loaded machine is not held up by a worker without work.
+/// Spins before a thread yields its core to others: longer than any serial stretch inside a sweep, shorter than a
+/// scheduler's slice, so that a loaded machine is not held up by a worker without work.
 constexpr int spins_before_yield = 4000;
 /// Spins before a thread takes the last chunk of another's share: longer than a chunk takes.
 constexpr int spins_before_last_chunk = 400;
-/// How much of what a stage tells of the workers' speeds is believed.
+/// Weight of one stage's measurement of the workers' speeds in their learned shares.
 constexpr double learning_rate = 1.0 / 32;
 
-/// The stage that a share is of, whether its worker has come to it, its chunks (one past the last) and the next of them to
-/// claim, in one word.
+/// A share in one word: its stage, whether its worker has begun it, its last chunk plus one, and the next chunk to
+/// claim.
 struct ShareWord {
     static constexpr int bits = 24;
     static constexpr std::uint64_t most = (std::uint64_t{1} << bits) - 1;
@@ -39,7 +39,7 @@ struct ShareWord {
     [[nodiscard]] std::uint64_t stage() const { return word >> (2 * bits + 1); }
     [[nodiscard]] std::uint64_t last() const { return word >> bits & most; }
     [[nodiscard]] std::uint64_t next() const { return word & most; }
-    /// What others may not take yet.
+    /// The number of chunks that other workers may not claim yet.
     [[nodiscard]] std::uint64_t reserved() const { return (word & owner_came) != 0 ? 1 : 0; }
 };
 
@@ -68,7 +68,7 @@ void StageRunner::open()
     open_ = true;
 }
 
-/// What the executor throws, or null.
+/// Returns what the executor throws, or null.
 std::exception_ptr StageRunner::run_on_executor(const std::function<void(int)>& job)
 {
     try {
@@ -93,10 +93,10 @@ void StageRunner::publish(Job job, std::int64_t count)
         std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-/// The caller's own share last, so that nobody waits for it to be done with the others.
+/// Publishes the caller's own share last: the other workers begin while it is still publishing.
 void StageRunner::hand_out(Job job, std::int64_t count)
 {
-    double before = 1;  // the share of all workers before this one
+    double before = 1;  // the part of all workers before this one
     auto last = static_cast<std::uint64_t>(count);
     for (int worker = workers_; worker-- > 0;) {
         Share& share = shares_[static_cast<std::size_t>(worker)];
@@ -111,7 +111,7 @@ void StageRunner::hand_out(Job job, std::int64_t count)
     }
 }
 
-/// Whoever ran more than his share has a larger one next time.
+/// A worker that ran more than its share gets a larger one next time.
 void StageRunner::learn_sizes(std::int64_t count)
 {
     const bool tells = count >= 4 * workers_;
@@ -122,7 +122,7 @@ void StageRunner::learn_sizes(std::int64_t count)
     }
 }
 
-/// A chunk that throws is done all the same, for the caller waits for it.
+/// A chunk that throws counts as done, because the caller waits for it.
 void StageRunner::run_chunk(const Job& job, std::int64_t index, int worker)
 {
     if (failed_.load(std::memory_order_relaxed)) return;
@@ -133,7 +133,8 @@ void StageRunner::run_chunk(const Job& job, std::int64_t index, int worker)
     }
 }
 
-/// Claims a chunk of a share of this stage and runs it. Whoever is no owner and still `patient` leaves him the last.
+/// Claims a chunk of the share of worker `whose` and runs it, if the share is of this stage. With `patient`, the last
+/// chunk of another worker that has begun the stage is left to that worker.
 bool StageRunner::claim_and_run(int whose, int worker, std::uint64_t stage, bool patient)
 {
     Share& share = shares_[static_cast<std::size_t>(whose)];
@@ -160,7 +161,8 @@ bool StageRunner::help_others(int worker, std::uint64_t stage, bool patient)
     return false;
 }
 
-/// What is left of the own share, or else a chunk of another's of the same stage; waits a moment when there is none.
+/// Runs what is left of the worker's own share, or else a chunk of another's of the same stage. Waits a moment when
+/// there is none.
 bool StageRunner::come_to_work(int worker, int spins)
 {
     Share& own = shares_[static_cast<std::size_t>(worker)];

@@ -1,13 +1,14 @@
 // Runs the stages of a step on an executor's threads without giving them back between stages. Each worker has a share
-// of a stage's chunks, about the same share every time, so that what a sweep leaves in a core's cache the next one finds
-// there; whoever is done helps the others, and has a slightly larger share next time, for cores are seldom equally fast. A
-// share is one word that says which stage it is of, how many chunks it has and how many are claimed; workers spin on it, and
-// a claim is one compare and swap, so a hand-over costs a few hundred nanoseconds instead of a task launch. The caller claims
-// from every share and waits only for chunks that a worker has begun: a step finishes with whichever threads come, even none.
+// of a stage's chunks, about the same share every time, so that a sweep finds in a core's cache what the last one
+// left there. A worker that is done helps the others, and gets a slightly larger share next time, because cores are
+// seldom equally fast. A share is one word that says which stage it is of, how many chunks it has and how many are
+// claimed. Workers spin on it, and a claim is one compare and swap, so a hand-over costs a few hundred nanoseconds
+// instead of a task launch. The caller claims from every share and waits only for chunks that a worker has begun: a
+// step finishes with any number of other threads, even none.
 //
-// A chunk that changes cores takes its bodies along, and costs the next stage the way back: several times what the chunk
-// takes. So nobody helps before his own share of the stage is there, and the last chunk of a worker who has come is left to
-// him for a while.
+// A chunk that runs on another core moves its bodies to that core's cache, and the next stage has to move them back,
+// which takes several times as long as the chunk. So no worker helps others before its own share of the stage is
+// published, and the last chunk of a worker that has begun the stage is reserved for it for a while.
 #pragma once
 
 #include <atomic>
@@ -26,13 +27,14 @@ namespace motley {
 class StageRunner {
   public:
     static constexpr int most_workers = 1024;
-    /// Refuses an executor of another concurrency than 1 to 1024.
+    /// Refuses an executor whose concurrency is not 1 to 1024.
     explicit StageRunner(Executor* executor);
     [[nodiscard]] int workers() const { return workers_; }
 
-    /// Calls `body()` on this thread with the executor's other threads standing by for run() unless `alone`, all of them in
-    /// the floating-point environment of a step. Throws what `body` or a chunk threw, and what the executor threw before it
-    /// called anything. What it threw when `body` was done is returned: it takes nothing back.
+    /// Calls `body()` on this thread with the executor's other threads standing by for run() unless `alone`, all of
+    /// them in the floating-point environment of a step. Throws what `body` or a chunk threw, and what the executor
+    /// threw before it called anything. What the executor threw after `body` was done is returned, because the work
+    /// of `body` stands.
     template <class Body>
     std::exception_ptr with_workers(bool alone, const Body& body)
     {
@@ -47,8 +49,8 @@ class StageRunner {
             std::exception_ptr failure{};
         } own{body};
         open();
-        // Two words captured: small enough that std::function does not allocate. Nothing leaves a call: threads that wait for
-        // the caller would wait for ever, and the host's own need not know what to do with it.
+        // The lambda captures two words, few enough that std::function does not allocate. No exception leaves a call:
+        // threads that wait for the caller would wait forever, and the host's threads need not be able to handle it.
         std::exception_ptr executors = run_on_executor([this, &own](int worker) noexcept {
             if (worker < 0 || worker >= workers_) return;
             const StepFloats floats;
@@ -71,9 +73,9 @@ class StageRunner {
         throw std::runtime_error("Executor.run returned without calling job(0)");
     }
 
-    /// Calls chunk(i), or chunk(i, worker), for each i in [0, count), on whichever thread; returns when all are done. A
-    /// single chunk, or no other thread, runs in line. When one throws, those that have not begun are left out, and it is
-    /// thrown here.
+    /// Calls chunk(i), or chunk(i, worker), for each i in [0, count), on any of the threads; returns when all are
+    /// done. A single chunk runs on the calling thread, and so do all chunks when no other thread stands by. When a
+    /// chunk throws, those that have not begun are left out, and the exception is thrown here.
     template <class Chunk>
     void run(std::int64_t count, const Chunk& chunk)
     {
@@ -102,13 +104,13 @@ class StageRunner {
             chunk(index);
         }
     }
-    /// All that a worker wants to know of a stage comes in one cache line. A claim that succeeds is always one of the present
-    /// stage: the caller does not move on before every claimed chunk is done.
+    /// All that a worker needs to know of a stage is in one cache line. A claim that succeeds is always one of the
+    /// present stage: the caller does not move on before every claimed chunk is done.
     struct alignas(64) Share {
         std::atomic<std::uint64_t> word{0};  ///< a ShareWord
         Job job;                             ///< of the stage that the word is of
-        std::int64_t ran = 0;                ///< chunks of this stage, of any share, by its worker
-        double size = 0;                     ///< of all chunks; the caller's
+        std::int64_t ran = 0;                ///< chunks of this stage, of any share, that its worker ran
+        double size = 0;                     ///< fraction of all chunks; only the caller uses it
     };
     void open();
     std::exception_ptr run_on_executor(const std::function<void(int worker)>& job);
@@ -129,7 +131,7 @@ class StageRunner {
     alignas(64) std::atomic<std::int64_t> done_{0};
     alignas(64) std::atomic<bool> closed_{false};
     std::atomic<bool> failed_{false};  ///< a chunk of this stage threw
-    std::exception_ptr failure_;       ///< what; written by whoever set failed_
+    std::exception_ptr failure_;       ///< what it threw; written by the thread that set failed_
 };
 
 }  // namespace motley

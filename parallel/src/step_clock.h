@@ -1,4 +1,4 @@
-// Where the time of a step goes.
+// Measures where the time of a step goes.
 #pragma once
 
 #include <chrono>
@@ -9,8 +9,8 @@
 
 namespace motley {
 
-/// Adds the time from one enter() to the next, or to leave(), to the stage that was entered. Reads the clock only when the stage
-/// changes.
+/// Adds the time from one enter() to the next, or to leave(), to the stage that was entered. Reads the clock only
+/// when the stage changes.
 class StepClock {
   public:
     explicit StepClock(StepReport& report) : report_(report) {}
@@ -20,7 +20,7 @@ class StepClock {
         charge();
         stage_ = stage;
     }
-    /// What follows is of no stage.
+    /// The time from here on is counted for no stage.
     void leave()
     {
         charge();

@@ -1,4 +1,4 @@
-// Chunks handed to whoever comes.
+// Runs the parts of a substep in chunks on the worker threads.
 #include "sweeper.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace motley {
 namespace {
 
-/// Bodies a chunk: a few microseconds of streaming.
+/// Bodies per chunk: a few microseconds of streaming.
 constexpr std::int64_t rows_per_chunk = 1024;
 
 }  // namespace
@@ -85,7 +85,7 @@ void run_chunks(const KernelContext& context, const KernelTable& kernels, std::s
 
 void Sweeper::sweep_beside_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
-    // The overflow first and in order, so that the colours have the last word.
+    // The overflow runs first and in order, so that the constraints of the colours are solved last.
     const SweepLists& sweeps = layout_.sweeps();
     run_chunks(layout_.context, layout_.kernels(), sweeps.of_colour(overflow_colour), kernel, at_least);
     for (int colour = 0; colour < parallel_colours; ++colour) {
@@ -107,7 +107,8 @@ void Sweeper::sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel,
 
 void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
-    // Relaxation goes the other way round, so that a patch that was solved last may be moved and relaxed while it is in cache.
+    // Relaxation runs in the opposite order, so that a patch, solved last, can be moved and relaxed while it is in
+    // cache.
     const bool patches_first = kernel == &ConstraintKernels::relax;
     if (patches_first) sweep_patches(kernel, at_least);
     sweep_beside_patches(kernel, at_least);
@@ -126,7 +127,7 @@ void Sweeper::add_up()
 
 namespace {
 
-/// What sweeps of a patch stream, asked for block by block, in their order.
+/// Prefetches the streams that sweeps of a patch read, block by block, in their order.
 class StreamsAhead {
   public:
     explicit StreamsAhead(std::span<const SweepChunk> chunks) : chunks_(chunks) {}
@@ -148,8 +149,8 @@ class StreamsAhead {
     }
 
   private:
-    std::span<const SweepChunk> chunks_;  ///< that are not asked for yet
-    std::int32_t asked_ = 0;              ///< blocks of the first of them that are
+    std::span<const SweepChunk> chunks_;  ///< those not prefetched yet
+    std::int32_t asked_ = 0;              ///< blocks of the first of them that are prefetched
 
     template <class T>
     static void ask(const T* stream, std::int64_t block, std::int64_t a_block)
@@ -174,7 +175,7 @@ void Sweeper::move_patch(const KernelContext& context, std::int64_t patch)
     }
 }
 
-/// Relaxing leaves the memory idle: time to ask for what whoever does this patch will most likely do next.
+/// Relaxing leaves the memory idle, so it prefetches the next patch, which this worker will most likely visit next.
 void Sweeper::relax_patch(const KernelContext& context, std::int64_t patch)
 {
     constexpr std::int32_t blocks_at_a_time = 8;
@@ -192,7 +193,7 @@ void Sweeper::relax_patch(const KernelContext& context, std::int64_t patch)
 void Sweeper::visit_patches(std::span<const PlanStage> stages)
 {
     const SweepLists& sweeps = layout_.sweeps();
-    // What was solved a moment ago is at hand.
+    // The bodies were solved a moment ago and are in cache.
     KernelContext at_hand = layout_.context;
     at_hand.bodies_are_far = false;
     runner_.run(static_cast<std::int64_t>(sweeps.patches.size()), [&](std::int64_t patch) {
@@ -319,7 +320,8 @@ std::int64_t Sweeper::commit(BodyStore& bodies, std::uint32_t& first_slot)
             const auto begin = static_cast<std::int32_t>(chunk * rows_per_chunk);
             const auto end = static_cast<std::int32_t>(std::min((chunk + 1) * rows_per_chunk, rows));
             for_each_piece(begin, end, block_lanes, [&](std::int32_t first, std::int32_t last) {
-                // In lanes, or one by one where a row is free, the last, or has come to grief.
+                // In lanes, or one at a time where the group has an unused row, is the last one, or has a body whose
+                // state is not finite.
                 if (in_lanes != nullptr && last - first == block_lanes && in_lanes(layout_.context, first))
                     return;
                 count += bodies.commit(static_cast<BodyKind>(kind), static_cast<std::uint32_t>(first),

@@ -21,7 +21,7 @@ class TbbExecutor final : public Executor {
   public:
     explicit TbbExecutor(int threads) : threads_(threads), arena_(threads, 1)
     {
-        // More threads than cores are real threads only if oneTBB is told so, and it listens process-wide: left
+        // oneTBB starts more threads than cores only if it is told so, and that setting is process-wide: it is left
         // alone unless the host asks for such a number.
         if (threads > tbb::this_task_arena::max_concurrency()) {
             limit_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -35,7 +35,7 @@ class TbbExecutor final : public Executor {
             try {
                 for (int worker = 1; worker < workers; ++worker) group.run([&job, worker] { job(worker); });
             } catch (const std::bad_alloc&) {
-                // Whoever has come will do.
+                // The step finishes with the workers that have started.
             }
             job(0);
             group.wait();

@@ -7,7 +7,7 @@
 
 namespace motley {
 
-/// `threads` >= 1; with 1 no thread is ever started and the job runs in line.
+/// `threads` >= 1; with 1 no thread is ever started and the job runs on the calling thread.
 std::unique_ptr<Executor> make_executor(int threads);
 
 }  // namespace motley

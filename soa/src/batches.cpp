@@ -1,4 +1,4 @@
-// Constraints counted, blocks opened and filled, and cut into chunks.
+// Counts constraints, opens and fills blocks, and cuts them into chunks.
 #include "batches.h"
 
 #include <algorithm>
@@ -12,13 +12,15 @@
 namespace motley {
 namespace {
 
-/// Blocks a chunk: one or two microseconds of work, ten times what claiming it costs.
+/// Blocks per chunk: one or two microseconds of work, ten times what claiming it costs.
 constexpr std::int32_t blocks_per_chunk = 16;
 /// Blocks of each class and colour in a tile: the contacts of a tile then fit a first or second level cache.
 constexpr std::int32_t blocks_per_tile = 8;
-/// Overflow blocks that stay open to newcomers: enough to fill lanes from a few hubs, few enough to search.
+/// Overflow blocks that are searched for a free lane: enough to fill lanes from a few hubs (bodies with more
+/// constraints than colours), few enough to search.
 constexpr std::int32_t open_overflow_blocks = 8;
-/// Constraints a chunk when they are sorted, at least: a chunk for each of many threads even of a small crowd.
+/// The least number of constraints per chunk when they are sorted: small enough that even a small crowd has a chunk
+/// for each of many threads.
 constexpr std::size_t placements_per_chunk = 1024;
 
 }  // namespace
@@ -55,7 +57,7 @@ bool BatchSet::Pool::holds(std::size_t block, BodyRow a, BodyRow b) const
     const BlockBodies& held = bodies[block];
     const bool same_kind = a.kind() == b.kind();
     for (int lane = 0; lane < counts[block]; ++lane) {
-        // Fixed bodies are shared freely; one kind may stand on either side.
+        // Fixed bodies may be shared. A moving body may be on either side where both sides are of its kind.
         if (a.kind() != BodyKind::fixed && (held.a[lane] == at_a || (same_kind && held.b[lane] == at_a)))
             return true;
         if (b.kind() != BodyKind::fixed && (held.b[lane] == at_b || (same_kind && held.a[lane] == at_b)))
@@ -87,7 +89,7 @@ void BatchSet::begin(std::span<const Placement> placements, bool has_patches)
 {
     placements_ = placements;
     has_patches_ = has_patches;
-    // A chunk's tables must not cost more than the chunk.
+    // A chunk's tables must not cost more than its constraints.
     per_chunk_ = has_patches ? Patches::contacts_a_patch : std::max(placements_per_chunk, keys());
     std::fill(occurs_.begin(), occurs_.end(), std::uint8_t{0});
     const std::size_t wanted = static_cast<std::size_t>(chunk_count()) * keys();
@@ -119,7 +121,8 @@ void BatchSet::count(std::int64_t chunk)
     }
 }
 
-/// Turns what each chunk has of a class into where its own begin; how many there are of each colour.
+/// Turns each chunk's counts of a class into the places where its constraints begin. Returns the number of each
+/// colour.
 std::array<std::int32_t, BatchSet::colours> BatchSet::add_up(std::size_t p)
 {
     std::array<std::int32_t, colours> totals{};
@@ -184,8 +187,8 @@ void BatchSet::open_patches(std::size_t p)
     pool.make_room(pool.all_blocks);
 }
 
-/// The overflow of a class behind its colours: first fit among the last few blocks, so that no block has a body
-/// twice.
+/// Puts the overflow of each class into blocks behind those of its colours: first fit among the last few blocks, so
+/// that no block has a moving body twice.
 void BatchSet::place_overflow()
 {
     for (const Placement& placement : placements_) {
@@ -228,7 +231,7 @@ void BatchSet::fill(std::int64_t chunk)
             continue;
         }
         pool.set_lane(block, lane, placement);
-        // Whoever has the first lane sees to the padding, which no other writes.
+        // The constraint in the first lane writes the padding, which no other chunk writes.
         if (lane == 0) {
             pool.pad(block, std::min(pool.constraints[placement.colour] - place, block_lanes),
                      placement.constraint);
@@ -237,7 +240,7 @@ void BatchSet::fill(std::int64_t chunk)
     if (has_patches_) finish_patch(chunk);
 }
 
-/// Counts and padding of a patch's blocks.
+/// Writes the counts and the padding of a patch's blocks.
 void BatchSet::finish_patch(std::int64_t chunk)
 {
     const std::span<std::int32_t> places = of_chunk(patch_places_, chunk);
@@ -352,7 +355,7 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
     if (has_patches_) cut_patches(table, tells_apart, sweeps, transfers);
 }
 
-/// Nothing in a patch is skipped: contacts are never left to figures.
+/// No block of a patch is skipped: patches hold contacts, and figures solve joints only.
 void BatchSet::cut_patches(const KernelTable& table, bool tells_apart, SweepLists& sweeps,
                            TransferList& transfers)
 {

@@ -1,9 +1,10 @@
-// Batches: coloured constraints sorted into blocks of sixteen lanes, and cut into chunks for whoever runs them.
+// Batches: coloured constraints sorted into blocks of sixteen lanes, and cut into chunks of work for the threads.
 //
-// A counting sort in two passes over chunks of constraints, so that any number of threads may share them: how many
-// of each class and colour a chunk has, then, when every chunk knows where its own begin, each constraint into its
-// lane. Blocks of one colour lie in line, and so do their streams: a sweep reads memory from front to back. Behind them lie
-// the patches, each with colours of its own.
+// This is a counting sort in two passes over chunks of constraints, which any number of threads may share. The first
+// pass counts how many constraints of each class and colour a chunk has; the counts say where each chunk's
+// constraints begin. The second pass writes each constraint into its lane. The blocks of one colour are consecutive
+// in memory, and so are their streams, so a sweep reads memory from front to back. The blocks of the patches come
+// after them; each patch has colours of its own.
 #pragma once
 
 #include <algorithm>
@@ -24,9 +25,10 @@ struct Placement {
     std::int32_t constraint = 0;  ///< index in the list or store of its type
     std::uint8_t type = 0;
     std::uint8_t colour = no_colour;
-    bool in_patch = false;  ///< inside one: see Patches
-    bool is_bad = false;    ///< a contact that cannot be taken: it is left out
-    /// Takes a lane in the block of the constraints before it and leaves it empty; `constraint` is ~ of one of them.
+    bool in_patch = false;  ///< the constraint is inside a patch: see Patches
+    bool is_bad = false;    ///< a contact that failed the checks: it is left out
+    /// A padding lane: `constraint` holds the bitwise complement of the index of a valid constraint, whose parameters
+    /// the lane copies.
     [[nodiscard]] bool is_gap() const { return constraint < 0; }
     [[nodiscard]] bool is_left_out() const { return colour == left_out_colour; }
 };
@@ -40,8 +42,9 @@ struct SweepChunk {
     std::int32_t begin, end;
     int type;
     BodyKind kind_a, kind_b;
-    /// By block, and null unless blocks are told apart: 1 when its islands want no more sweeps; the island that all its
-    /// constraints are of, or several_islands; at least how many sweeps somebody asked for.
+    /// One entry per block, and null unless blocks are told apart (see BatchSet::cut). `finished`: 1 when no island
+    /// of the block needs more sweeps. `islands`: the island of all its constraints, or several_islands. `wanted`:
+    /// how many sweeps the host wants at least; 0 where it asked for none.
     std::uint8_t* finished;
     std::int32_t* islands;
     std::int32_t* wanted;
@@ -59,7 +62,7 @@ struct TransferTile {
     std::int32_t first_part, last_part;
 };
 
-/// Calls work(first, last) for each run of numbers in [begin, end) that `takes` takes.
+/// Calls work(first, last) for each run of consecutive numbers in [begin, end) for which `takes` returns true.
 template <class Takes, class Work>
 void for_each_run(std::int32_t begin, std::int32_t end, const Takes& takes, const Work& work)
 {
@@ -75,8 +78,9 @@ void for_each_piece(std::int32_t begin, std::int32_t end, std::int32_t most, con
 {
     for (; begin < end; begin += most) work(begin, std::min(begin + most, end));
 }
-/// The same in pieces of about one size: one, or else a multiple of four, so that two or four threads have equal shares, and
-/// those of every colour and of the bodies end at about the same bodies. Pieces end at multiples of `unit`.
+/// The same in pieces of about equal size. There is one piece, or a multiple of four, so that two or four threads get
+/// equal shares and the shares of every colour and of the bodies end at about the same bodies. Pieces end at
+/// multiples of `unit`.
 template <int unit, class Work>
 void for_each_even_piece(std::int32_t begin, std::int32_t end, std::int32_t most, const Work& work)
 {
@@ -99,7 +103,7 @@ struct SweepLists {
     static constexpr int patch_list = parallel_colours + 1;
     std::array<std::vector<SweepChunk>, patch_list + 1> lists;
     std::vector<PatchChunks> patches;
-    std::uint32_t colours = 0;  ///< a bit for each that is in use, in patches or across
+    std::uint32_t colours = 0;  ///< a bit for each colour in use, inside patches or outside
 
     [[nodiscard]] std::span<const SweepChunk> of_colour(int colour) const
     {
@@ -120,9 +124,10 @@ struct SweepLists {
         lists[patch_list].push_back(chunk);
         colours |= 1U << colour;
     }
-    /// What was added to patches since there were `first_chunk` chunks is the next one, though it be nothing.
+    /// Closes the patch that began at `first_chunk`. It may be empty.
     void close_patch(std::int32_t first_chunk) { patches.push_back({first_chunk, patch_chunks()}); }
-    /// All chunks one after another, in an order that does not matter to whoever looks at each by itself.
+    /// All chunks of all lists, numbered one after another: for callers that treat each chunk by itself, in any
+    /// order.
     [[nodiscard]] std::int64_t chunk_count() const
     {
         std::size_t count = 0;
@@ -150,7 +155,7 @@ struct SweepLists {
 struct TransferList {
     std::vector<TransferTile::Part> parts;
     std::vector<TransferTile> tiles;
-    /// What came behind `first_part` is a tile, if anything did.
+    /// Makes a tile of the parts from `first_part` on, if there are any.
     void close_tile(std::int32_t first_part)
     {
         const auto last_part = static_cast<std::int32_t>(parts.size());
@@ -163,29 +168,30 @@ class BatchSet {
   public:
     BatchSet(int first_type, int last_type);
 
-    /// Starts over with these constraints, which must stay where they are until fill() is done. With patches, every chunk
-    /// is one.
+    /// Starts over with these constraints, which must stay where they are until fill() is done. With patches, every
+    /// chunk is one patch.
     void begin(std::span<const Placement> placements, bool has_patches);
     [[nodiscard]] std::int64_t chunk_count() const;
     /// Counts the constraints of a chunk. Chunks may run on different threads.
     void count(std::int64_t chunk);
-    /// When all are counted: makes room, and puts the overflow into its blocks, in order. `adds_up`: with room for the sums of
-    /// several substeps.
+    /// After all chunks are counted: makes space for the blocks, and puts the overflow into its blocks, in order.
+    /// `adds_up`: with space for sums over several substeps.
     void open(const KernelTable& kernels, bool adds_up);
-    /// Puts the constraints of a chunk into their lanes. Chunks may run on different threads, unless there are gaps.
+    /// Puts the constraints of a chunk into their lanes. Chunks may run on different threads, unless there are
+    /// padding lanes among them (Placement::is_gap).
     void fill(std::int64_t chunk);
 
-    /// Block number `nth` of a class and colour. Pointers stay good until the next begin().
+    /// Block number `nth` of a class and colour. Pointers stay valid until the next begin().
     struct Block {
         BlockStreams streams;
         std::int32_t index;
-        std::uint8_t* skipped;  ///< what the next cut() leaves out
+        std::uint8_t* skipped;  ///< from which chunks the next cut() leaves it out: see below
     };
     static constexpr std::uint8_t skip_nothing = 0, skip_sweeps = 1, skip_altogether = 2;
     [[nodiscard]] Block block(int constraint_class, int colour, std::int32_t nth);
 
-    /// Appends this set's chunks to the lists, with room to tell blocks apart, by residuals and wishes, if asked. Pointers in them
-    /// stay good until the next begin().
+    /// Appends this set's chunks to the lists. `tells_apart`: with space for the residuals, the islands and the
+    /// wanted number of sweeps of each block. Pointers in them stay valid until the next begin().
     void cut(const KernelTable& kernels, bool tells_apart, SweepLists& sweeps, TransferList& transfers);
 
     /// Blocks, constraints, overflow and streamed floats, for the report.
@@ -210,7 +216,7 @@ class BatchSet {
         std::array<std::int32_t, colours + 1> first_block{};       ///< of each colour, and one past the last
         std::array<std::int32_t, parallel_colours> constraints{};  ///< of each colour
         std::int64_t overflow = 0;
-        std::int32_t all_blocks = 0;  ///< those of patches too, which come last
+        std::int32_t all_blocks = 0;  ///< including those of patches, which come last
         [[nodiscard]] std::uint8_t skips(std::int32_t block) const
         {
             return skipped[static_cast<std::size_t>(block)];
@@ -229,15 +235,16 @@ class BatchSet {
 
     int first_class_;
     std::vector<Pool> pools_;           ///< by class, from first_class_ on
-    std::vector<std::uint8_t> occurs_;  ///< by class: 1 when a chunk has any
-    std::vector<std::size_t>
-        used_;  ///< those with blocks: hundreds of empty ones are not looked at each step
+    std::vector<std::uint8_t> occurs_;  ///< by class: 1 when a chunk has constraints of it
+    std::vector<std::size_t> used_;     ///< classes with blocks, so that a step skips hundreds of empty ones
     std::span<const Placement> placements_;
     std::size_t per_chunk_ = 1;
-    /// For each chunk and then each class and colour: first how many, then which place of the colour comes next.
+    /// For each chunk, and in it for each class and colour: first the number of constraints, then the next free place
+    /// of the colour.
     std::vector<std::int32_t> places_;
-    /// Of a chunk that is a patch, for each class and colour: how many, then the next place, in lanes of the class's blocks;
-    /// and which block comes first. The overflow, of which a patch has none, stands for the end of the class.
+    /// The same for chunks that are patches. `patch_places_`: the number of constraints, then the next free place,
+    /// counted in lanes of the class's blocks. `patch_blocks_`: the first block. A patch has no overflow, so the
+    /// entry of the overflow colour marks the end of the class's blocks.
     std::vector<std::int32_t> patch_places_, patch_blocks_;
     bool has_patches_ = false, adds_up_ = false;
 
@@ -247,7 +254,7 @@ class BatchSet {
         const int pool = class_of(placement.type, placement.a.kind(), placement.b.kind()) - first_class_;
         return static_cast<std::size_t>(pool * colours + placement.colour);
     }
-    /// A chunk's part of a table with an entry for each class and colour.
+    /// A chunk's part of a table with an entry for each chunk, class and colour.
     [[nodiscard]] std::span<std::int32_t> of_chunk(std::vector<std::int32_t>& table, std::int64_t chunk) const
     {
         return std::span(table).subspan(static_cast<std::size_t>(chunk) * keys(), keys());

@@ -1,8 +1,8 @@
 // Blocks of sixteen lanes, and the table of kernels that run over them.
 //
-// A block holds up to sixteen constraints of one type and one pair of body kinds, none of which shares a
-// moving body with another. Sixteen whatever the instruction set (it runs 16 x 1, 4 x 4, 2 x 8 or 1 x 16), so
-// that blocks, their order and so every bit do not depend on the machine.
+// A block holds up to sixteen constraints of one type and one pair of body kinds, none of which shares a moving body
+// with another. The number is sixteen on every instruction set (computed as 16 x 1, 4 x 4, 2 x 8 or 1 x 16), so that
+// the blocks, their order and with them every bit of the result do not depend on the machine.
 #pragma once
 
 #include <atomic>
@@ -16,13 +16,13 @@
 namespace motley {
 
 inline constexpr int block_lanes = 16;
-/// The most that a type may have in its Impulse.
+/// The most floats that a type may have in its Impulse.
 inline constexpr int most_impulse_floats = 32;
-/// The most that a body has in lanes.
+/// The most floats that a body has per lane.
 inline constexpr int most_body_floats = 20;
 
-/// Blocks say where a body's row begins, in pairs of floats: eight bytes are the most that an address of x86 counts in by
-/// itself, and kernels that move bodies in and out of lanes would multiply for every row they touch.
+/// Blocks store where a body's row begins as an offset in pairs of floats. Eight bytes is the largest scale factor of
+/// an x86 address, so kernels need no multiplication for each row that they load or store.
 inline constexpr int offset_floats = 2;
 constexpr std::int32_t offsets_a_row(BodyKind kind)
 {
@@ -39,26 +39,26 @@ struct alignas(64) BlockBodies {
     std::int32_t a[block_lanes];  ///< offset_of body a
     std::int32_t b[block_lanes];
 };
-/// Whose numbers are in a block: indices in the list or store of the type.
+/// The constraints of a block: their indices in the list or store of the type.
 struct alignas(64) BlockConstraints {
     std::int32_t lane[block_lanes];
 };
 
-/// Everything that a kernel reads and writes of one type and pair: blocks, and their streams of floats.
-/// Stream s of block k starts at s + k * floats * 16; a field of a row is sixteen floats in line.
+/// Everything that a kernel reads and writes of one type and pair: blocks, and their streams of floats. Stream s of
+/// block k starts at s + k * floats * 16; a field of a row is sixteen consecutive floats.
 struct BlockStreams {
     BodyKind kind_a{}, kind_b{};  ///< of the bodies
     const BlockBodies* bodies = nullptr;
     const std::uint8_t* counts = nullptr;           ///< lanes of each block that are not padding
-    const BlockConstraints* constraints = nullptr;  ///< read by prepare and store alone
+    const BlockConstraints* constraints = nullptr;  ///< read by prepare and store only
     float* rows = nullptr;                          ///< constant through a step
     float* substep_rows = nullptr;                  ///< made by warm_start each substep
     float* impulses = nullptr;
-    float* sums = nullptr;       ///< what the substeps so far come to; null for contacts of a single substep
+    float* sums = nullptr;       ///< over the substeps so far; null for contacts of a single substep
     float* residuals = nullptr;  ///< energies and speeds of LaneResidual; null unless they are measured
 };
 
-/// Where definitions and remembered impulses of a type lie, an entry a constraint.
+/// Where definitions and remembered impulses of a type lie, one entry per constraint.
 struct ConstraintData {
     const float* parameters = nullptr;
     std::int64_t parameter_stride = 0;  ///< floats
@@ -68,7 +68,7 @@ struct ConstraintData {
     float* memory_out = nullptr;     ///< by constraint
     std::int64_t memory_stride = 0;  ///< floats
     float* step_out =
-        nullptr;  ///< by constraint: what all substeps came to, a Wrench of joints, of contacts as in memory
+        nullptr;  ///< by constraint, the sum over all substeps: a Wrench for joints, for contacts as in memory_out
     std::int64_t step_stride = 0;               ///< floats
     const WorldPoints* world_points = nullptr;  ///< by constraint; null for types without
 };
@@ -78,7 +78,7 @@ struct BodyArrays {
     float* velocity = nullptr;
     float* delta = nullptr;
     float* unpushed = nullptr;
-    float* start_along = nullptr;  ///< see Flight, as is_jointed
+    float* start_along = nullptr;  ///< see Flight, like is_jointed
     const std::uint8_t* is_jointed = nullptr;
     const float* acceleration = nullptr;
     float* world_inverse_inertia = nullptr;
@@ -87,22 +87,23 @@ struct BodyArrays {
     BodyPose* pose = nullptr;
     Quat<PoseReal>* orientation = nullptr;
     std::int32_t size = 0;
-    bool can_move = false;  ///< else lanes read these rows and never write them
+    bool can_move = false;  ///< if false, kernels read these rows and never write them
 };
 
 /// Whether sweeps of solve and relax note each constraint's LaneResidual.
 enum class Measure {
     nothing,
-    while_solving,    ///< what the sweep found to do
-    without_solving,  ///< what a sweep would do to the bodies as they are: changes nothing
+    while_solving,    ///< of what the sweep changes
+    without_solving,  ///< of what a sweep would change; velocities and impulses stay as they are
 };
 
-/// Replays what the constraints of the last substep did to each body as the next one begins: a warm start without a
-/// sweep, exact where M^-1 J^T is constant through the step (contacts of particles and planar bodies).
+/// A warm start without a sweep: as a substep begins, each body gets again the velocity change that its constraints
+/// made in the last substep. Exact where M^-1 J^T is constant through the step (contacts of particles and planar
+/// bodies); M is the mass matrix, J the Jacobian.
 enum class Replay {
     nothing,
-    next_time,     ///< only notes what velocities were before any constraint pushed
-    last_substep,  ///< and notes it again
+    next_time,     ///< only stores the velocities before any constraint acts
+    last_substep,  ///< applies the change of the last substep, and stores again
 };
 
 struct KernelContext {
@@ -110,9 +111,10 @@ struct KernelContext {
     StepConstants relaxing;  ///< the same for sweeps that relax
     Measure measure = Measure::nothing;
     Replay replay = Replay::nothing;
-    bool bodies_are_far = false;  ///< more than a core keeps at hand: sweeps ask for the next block's in time
+    bool bodies_are_far = false;  ///< they exceed a core's cache: sweeps prefetch those of the next block
     BodyArrays bodies[body_kind_count];
-    /// Set by prepare where a joint pulls harder than a substep can follow: then `stiffen` is to be run. See tension.h.
+    /// Set by prepare where a joint pulls harder than a substep can follow: then `stiffen` must be run. See
+    /// tension.h.
     std::atomic<bool>* overloaded = nullptr;
 };
 
@@ -122,14 +124,15 @@ struct ConstraintKernels {
     using Transfer = void (*)(const KernelContext&, const BlockStreams&, const ConstraintData&,
                               std::int32_t begin, std::int32_t end);
     Transfer prepare = nullptr;  ///< definitions and memory -> rows and impulses
-    /// For this step, the inertias of what bears heavy loads (tension.h). Null for what pulls at no arm.
+    /// Increases, for this step, the inertia of bodies under heavy load (tension.h). Null for types that pull at no
+    /// lever arm.
     Sweep stiffen = nullptr;
     Sweep warm_start = nullptr;
     Sweep solve = nullptr;
     Sweep relax = nullptr;
     Sweep restitute = nullptr;  ///< null for types that do not bounce
     Sweep project = nullptr;
-    Sweep add_up = nullptr;    ///< impulses of a substep that is done, added to the sums
+    Sweep add_up = nullptr;    ///< adds the impulses of a finished substep to the sums
     Transfer store = nullptr;  ///< impulses and sums -> memory
 
     /// The same over one block whose lanes are copies of a figure, with body a and body b already in lanes (see
@@ -147,29 +150,28 @@ struct ConstraintKernels {
     int equality_count = 0;
 
     int row_floats = 0, substep_floats = 0, impulse_floats = 0, sum_floats = 0;
-    int swept_floats = 0;  ///< of row and substep row, what a sweep reads
+    int swept_floats = 0;  ///< of row and substep row, those that a sweep reads
 };
 
 /// The kernels of one kind of body, over rows begin ... end - 1.
 struct BodyKernels {
     using Move = void (*)(const KernelContext&, std::int32_t begin, std::int32_t end);
     Move integrate_velocities = nullptr;  ///< null for fixed bodies
-    Move begin_velocities = nullptr;      ///< the same for the first substep: notes Flight::start_along
+    Move begin_velocities = nullptr;      ///< the same for the first substep: also stores Flight::start_along
     Move integrate_positions = nullptr;
-    Move integrate_on =
-        nullptr;  ///< positions, and then the velocities of the next substep: one pass for two
-    /// Positions of `count` bodies of this kind, wherever they lie. Null for fixed bodies.
+    Move integrate_on = nullptr;  ///< positions, then the velocities of the next substep, in one pass
+    /// Integrates the positions of `count` bodies of this kind, in any rows. Null for fixed bodies.
     void (*integrate_listed)(const KernelContext&, const BodyRow* rows, std::int32_t count) = nullptr;
-    /// BodyStore::commit of sixteen rows from `first` on; false, and nothing done, unless each of them is a body that
-    /// can move and is finite. Null for fixed bodies.
+    /// BodyStore::commit of sixteen rows from `first` on. Returns false and does nothing unless each row is a body
+    /// that can move and whose state is finite. Null for fixed bodies.
     bool (*commit)(const KernelContext&, std::int32_t first) = nullptr;
-    // Of sixteen bodies, for watched_sweep.h:
-    /// As they are, into most_body_floats fields of sixteen floats.
+    // For sixteen bodies, see watched_sweep.h:
+    /// Copies the bodies into at most most_body_floats fields of sixteen floats.
     void (*keep)(const BodyArrays&, const std::int32_t* offsets, float* kept) = nullptr;
-    /// The energy of what their velocities have changed since, J, and 1/m.
+    /// dv^T M dv, J, of the velocity change dv since keep() (M: mass matrix), and the inverse mass, 1/kg.
     void (*find_energy)(const BodyArrays&, const std::int32_t* offsets, const float* kept, float* energy,
                         float* inverse_mass) = nullptr;
-    /// The velocities of the first `count` as they were kept. Null for fixed bodies.
+    /// Restores the kept velocities of the first `count` bodies. Null for fixed bodies.
     void (*bring_back)(const BodyArrays&, const std::int32_t* offsets, const float* kept,
                        int count) = nullptr;
 };
@@ -184,8 +186,8 @@ struct FigureKernels {
     Move store_velocities = nullptr;
     Move integrate_velocities = nullptr;
     Move integrate_positions = nullptr;
-    void (*factor)(const FigureBlock&) = nullptr;  ///< after equality_rows of each lock
-    /// Velocities and impulses such that J v + rate C = 0 for every lock.
+    void (*factor)(const FigureBlock&) = nullptr;  ///< factors the tree; after equality_rows of each lock
+    /// Changes velocities v and impulses so that J v + rate C = 0 for every lock (J: Jacobian, C: position error).
     void (*solve)(const FigureBlock&, float rate) = nullptr;
 };
 

@@ -1,4 +1,5 @@
-// What moves bodies, by row and as copies of figures, and sees what sweeps do to them, for one instruction set: see constraint_kernels.cpp.
+// The kernels that integrate bodies, by row and as copies of figures, and that measure what sweeps change, for one
+// instruction set: see constraint_kernels.cpp.
 #include "kernel_prelude.h"
 
 namespace motley {

@@ -1,4 +1,4 @@
-// What hangs together of the bodies that can move, whatever their kinds.
+// Sets of moving bodies, of any kinds, that constraints connect.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace motley {
 
-/// DisjointSets of all moving rows, which are numbered kind after kind. Fixed bodies tie nothing together.
+/// DisjointSets of all moving rows, which are numbered kind after kind. Fixed bodies connect nothing.
 class BodySets {
   public:
-    /// Starts over: every row alone. size_of(kind): rows of a kind.
+    /// Starts over with every row in a set of its own. size_of(kind) is the number of rows of a kind.
     template <class SizeOf>
     void reset(const SizeOf& size_of)
     {
@@ -28,21 +28,21 @@ class BodySets {
         if (a.kind() == BodyKind::fixed || b.kind() == BodyKind::fixed) return;
         sets_.tie(static_cast<std::int32_t>(number(a)), static_cast<std::int32_t>(number(b)));
     }
-    /// After the last tie, before root().
+    /// To be called after the last tie() and before root().
     void flatten() { sets_.flatten(); }
 
-    /// How many rows there are in all, and the number of a moving one of them.
+    /// The number of moving rows, and the index of one of them.
     [[nodiscard]] std::size_t size() const { return sets_.size(); }
     [[nodiscard]] std::size_t number(BodyRow body) const
     {
         return first_[static_cast<std::size_t>(body.kind())] + body.row();
     }
-    /// The number that names the set of a moving body.
+    /// The index that names the set of a moving body.
     [[nodiscard]] std::int32_t root(BodyRow body) const { return sets_.root(number(body)); }
 
   private:
     static constexpr int moving_kinds = body_kind_count - 1;
-    std::array<std::size_t, moving_kinds> first_{};  ///< number of the first row of a kind
+    std::array<std::size_t, moving_kinds> first_{};  ///< index of the first row of a kind
     DisjointSets sets_;
 };
 

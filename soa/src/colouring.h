@@ -1,7 +1,7 @@
-// Greedy colouring: constraints of one colour share no moving body, so they may be solved in any order, in
-// lanes and on threads. A body's mask has a bit for each colour that touches it; a constraint takes the first
-// colour that is free on both. First fit stays within a few colours of the best for crowds, and what persists
-// keeps its colour. Static and kinematic bodies have no mask: nobody writes them, so sharing is safe.
+// Greedy colouring: constraints of one colour share no moving body, so they may be solved in any order, in lanes and
+// on threads. A body's mask has a bit for each colour that touches it; a constraint takes the first colour that is
+// free on both bodies. First fit stays within a few colours of the best for crowds, and a constraint that persists
+// keeps its colour. Static and kinematic bodies have no mask: no constraint writes them, so sharing is safe.
 #pragma once
 
 #include <array>
@@ -15,7 +15,8 @@
 
 namespace motley {
 
-/// Of constraints on a contained body, which nothing may push: they are in no block.
+/// The colour of constraints that are in no block: bad contacts, and constraints on a contained body (one whose state
+/// was not finite), which no impulse may change.
 inline constexpr std::uint8_t left_out_colour = 254;
 
 /// Which colours touch each moving body.
@@ -36,7 +37,7 @@ class ColourMasks {
             masks_[kind].resize(bodies.rows(static_cast<BodyKind>(kind)).size(), 0U);
         }
     }
-    /// True and taken if both bodies are free of the colour. The overflow takes anyone.
+    /// Takes the colour and returns true if neither body has it yet. The overflow colour is always free.
     bool try_take(BodyRow a, BodyRow b, std::uint8_t colour)
     {
         if (colour == overflow_colour) return true;
@@ -48,7 +49,7 @@ class ColourMasks {
         if (mask_b) *mask_b |= bit;
         return true;
     }
-    /// The first colour free on both bodies, taken; overflow_colour when there is none.
+    /// Takes and returns the first colour free on both bodies; overflow_colour when there is none.
     std::uint8_t take_first(BodyRow a, BodyRow b)
     {
         std::uint32_t* mask_a = mask(a);

@@ -1,4 +1,4 @@
-// Contacts checked at the door. The quick test of every contact is one expression a range; only a contact
+// Checks contacts as they come in. Every contact gets a quick test of the ranges of its numbers. Only the first one
 // that fails it is looked at again, to say which field, which value and what was expected.
 #include "contact_intake.h"
 
@@ -26,7 +26,7 @@ bool is_unit(const Vec3<float>& n)
     return within(dot(n, n), 0.998F, 1.002F);
 }
 
-/// Without branches, and the same for every number, so that it is done in lanes: contacts are nearly always good.
+/// Without branches and the same for every number, so that it is vectorized: contacts are nearly always good.
 bool numbers_are_good(const Contact& c)
 {
     constexpr int count = 12;
@@ -44,7 +44,7 @@ bool numbers_are_good(const Contact& c)
     return bad == 0 && is_unit(c.normal);
 }
 
-/// Tells a body from a later one in the same slot.
+/// Distinguishes a body from a later one in the same slot.
 std::uint32_t fingerprint(BodyId body)
 {
     return body.slot ^ (body.generation * 0x9E3779B9U);
@@ -78,12 +78,12 @@ void ContactIntake::mark_bad(std::size_t index)
     }
 }
 
-/// The row of both bodies, if a contact between them is good.
+/// Fills in the rows of the bodies and the type. Returns whether the contact is good.
 bool ContactIntake::place(const BodyStore& bodies, const Contact& contact, Placement& placement)
 {
     if (!bodies.is_alive(contact.body_a) || !bodies.is_alive(contact.body_b)) return false;
     const BodyRow a = bodies.row_of(contact.body_a), b = bodies.row_of(contact.body_b);
-    // Field by field: a struct made first and copied waits for its own stores.
+    // Field by field: copying a struct that was just made would wait for its stores.
     placement.a = a;
     placement.b = b;
     placement.in_patch = false;
@@ -95,7 +95,7 @@ bool ContactIntake::place(const BodyStore& bodies, const Contact& contact, Place
            !(is_planar(a, b) && contact.normal.z != 0);
 }
 
-/// Tells contact i what it was in the last step: contact `before`, or none.
+/// Gives contact i the colour and the impulses of contact `before` of the last step, or none.
 void ContactIntake::remember(ContactCache& cache, std::uint32_t i, std::uint32_t before)
 {
     const ContactList& past = cache.current();
@@ -114,7 +114,7 @@ void ContactIntake::check_and_match(Scene& scene, std::span<const Contact> conta
     bool bounces = false;
     for (std::uint32_t i = begin; i < end; ++i) {
         const Contact& contact = contacts[i];
-        // Contacts lie in line, their bodies anywhere.
+        // Contacts are consecutive in memory; their bodies are scattered, so they are prefetched.
         constexpr std::uint32_t ahead = 8;
         if (i + ahead < end) {
             scene.bodies().prefetch(contacts[i + ahead].body_a);
@@ -124,7 +124,7 @@ void ContactIntake::check_and_match(Scene& scene, std::span<const Contact> conta
         placements[i].is_bad = !place(scene.bodies(), contact, placements[i]);
         if (placements[i].is_bad) {
             mark_bad(i);
-            // If it is skipped it is of no bodies that move, but has its place in the list and its key.
+            // If it is skipped, it gets fixed bodies, and keeps its place in the list and its key.
             placements[i].a = placements[i].b = BodyRow(BodyKind::fixed, 0);
             placements[i].type = 0;
             placements[i].in_patch = false;
@@ -145,7 +145,7 @@ void ContactIntake::check_and_match(Scene& scene, std::span<const Contact> conta
     if (bounces) bounces_.store(true, std::memory_order_relaxed);
 }
 
-/// With the table's cache misses overlapping.
+/// Prefetches ahead, so that the table's cache misses overlap.
 void ContactIntake::look_up(ContactCache& cache, std::int64_t part)
 {
     constexpr std::size_t ahead = 12;

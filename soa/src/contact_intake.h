@@ -1,4 +1,4 @@
-// The contacts of a step on their way in: checked, found again from the step before, and classified.
+// Takes in the contacts of a step: each is checked, matched with the same contact of the last step, and classified.
 #pragma once
 
 #include <atomic>
@@ -16,23 +16,24 @@ namespace motley {
 /// What the layout needs of each contact, in list order.
 class ContactIntake {
   public:
-    /// Makes room for a list of so many contacts.
+    /// Starts a list of `count` contacts.
     void begin(Scene& scene, std::size_t count);
-    /// Checks a part of the list, and finds again what lies about where it lay in the last one.
+    /// Checks a part of the list, and matches the contacts that are at about the same place as in the last list.
     void check_and_match(Scene& scene, std::span<const Contact> contacts, std::int64_t part);
-    /// Looks up what that missed, once ContactCache has entered what the last list has lost.
+    /// Looks up by key the contacts that check_and_match() did not match. Runs after ContactCache::enter_lost().
     void look_up(ContactCache& cache, std::int64_t part);
-    /// What is wrong with the first bad contact; empty when all are good, but for keys that come twice.
+    /// What is wrong with the first bad contact; empty when there is none. Does not look for repeated keys.
     [[nodiscard]] std::string first_error(const Scene& scene, std::span<const Contact> contacts) const;
 
-    /// When all have colours: marks those of a patch's stretch of the list that are inside it, and lists its bodies.
+    /// After all contacts are coloured: marks those of a patch's stretch of the list that are inside the patch, and
+    /// lists its bodies.
     void fill_patch(std::int64_t patch);
 
-    /// Contacts that cannot be taken in.
+    /// The number of contacts that failed the checks.
     [[nodiscard]] std::int64_t bad_contacts() const { return bad_contacts_.load(std::memory_order_relaxed); }
-    /// Whether one of the contacts taken in gives anything back.
+    /// Whether one of the good contacts has restitution.
     [[nodiscard]] bool bounces() const { return bounces_.load(std::memory_order_relaxed); }
-    /// What is wrong when a key came twice. Serial.
+    /// Names the first contact whose key is repeated; empty when there is none. Runs on the calling thread.
     [[nodiscard]] static std::string repeated_key(std::span<const Contact> contacts);
 
     AlignedVector<Placement> placements;  ///< with the colour of the step before, or no_colour

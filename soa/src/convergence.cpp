@@ -1,4 +1,4 @@
-// Islands by union-find, residuals and wishes by block.
+// Islands by union-find; residuals and wanted sweeps by block.
 #include "convergence.h"
 #include "motley/core/joint_store.h"
 
@@ -10,7 +10,7 @@
 namespace motley {
 namespace {
 
-/// Each block of the lists that still runs, in order.
+/// Calls visit for each block of the lists that is not finished, in order.
 template <class Visit>
 void for_each_unfinished(const SweepLists& sweeps, const Visit& visit)
 {
@@ -25,14 +25,14 @@ void for_each_unfinished(const SweepLists& sweeps, const Visit& visit)
 
 constexpr std::int32_t unseen = -1;
 
-/// Of numbers that are not negative, the order of their bits is their order; a NaN comes after all of them, once its sign
-/// is gone, which processors set as they like.
+/// Numbers that are not negative are ordered like their bits, and a NaN comes after all of them, once its sign is
+/// removed, which processors set differently.
 constexpr std::int32_t all_but_sign = 0x7FFFFFFF;
 std::int32_t bits_of(float value)
 {
     return std::bit_cast<std::int32_t>(value) & all_but_sign;
 }
-/// Integers, because a compiler may put a maximum of those in lanes, and of floats not.
+/// Compares integers, because a compiler may vectorize a maximum of integers, but not one of floats.
 std::int32_t largest_bits(const float* values, int count)
 {
     std::array<std::int32_t, block_lanes> bits;
@@ -102,7 +102,7 @@ void Convergence::count(std::span<const Placement> placements)
     }
 }
 
-/// Most blocks are of one island: their worst lane is all that has to be known of them.
+/// Most blocks are of one island only: then judge() needs no more than their worst lane.
 void Convergence::name_islands(const SweepLists& sweeps)
 {
     for (const auto& chunks : sweeps.lists) {
@@ -139,7 +139,7 @@ void Convergence::take_wishes(const Scene& scene, const SweepLists& sweeps)
                 for (int lane = 0; lane < chunk.streams.counts[block]; ++lane) {
                     wanted =
                         std::max(wanted, wanted_[static_cast<std::size_t>(island_of(chunk, block, lane))]);
-                    if (slot_of == nullptr) continue;  // of contacts
+                    if (slot_of == nullptr) continue;  // contacts ask for no sweeps
                     const std::uint32_t slot = slot_of[chunk.streams.constraints[block].lane[lane]];
                     wanted = std::max<std::int32_t>(wanted, scene.joints().slots[slot].iterations);
                 }

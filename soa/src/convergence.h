@@ -1,7 +1,8 @@
-// Which islands still want sweeps, and what is left of the whole.
+// Which islands still need sweeps, and the residual of the whole scene.
 //
-// An island is what constraints tie together, fixed bodies not counted. Nothing passes between islands, so one that is
-// solved well enough can be left alone while others go on. A block is left alone when all islands in it are.
+// An island is a set of moving bodies that constraints connect; fixed bodies connect nothing. Islands do not
+// influence each other, so one that is solved well enough can be left alone while others go on. A block is left alone
+// when all islands in it are finished.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +19,10 @@ namespace motley {
 struct ResidualSum {
     double energy = 0;   ///< J
     double squares = 0;  ///< m2/s2
-    double largest = 0;  ///< m/s; not a number as soon as one of them is not
+    double largest = 0;  ///< m/s; NaN if one of the residuals is NaN
     std::int64_t constraints = 0;
 };
-/// Of what a measuring sweep left.
+/// Sums the residuals that the last measuring sweep stored.
 ResidualSum sum_residuals(const SweepLists& sweeps);
 
 class Convergence {
@@ -29,11 +30,11 @@ class Convergence {
     /// Finds the islands of a step.
     void find_islands(const KernelContext& context, std::span<const Placement> joints,
                       std::span<const Placement> contacts, const SweepLists& sweeps);
-    /// After find_islands: how many sweeps the host asked for, by joint and by island.
+    /// After find_islands: looks up how many sweeps the host asked for, by joint and by island.
     void take_wishes(const Scene& scene, const SweepLists& sweeps);
-    /// The most that anybody asked for; 0 when nobody did.
+    /// The largest number of sweeps that the host asked for; 0 when it asked for none.
     [[nodiscard]] int most_wanted() const { return most_wanted_; }
-    /// Every island wants sweeps again: another substep.
+    /// For another substep: no island is finished any more.
     void start_over(const SweepLists& sweeps);
     /// After a measuring sweep: finishes the islands whose residuals are all at most `tolerance`.
     void judge(const SweepLists& sweeps, float tolerance);
@@ -43,7 +44,7 @@ class Convergence {
 
   private:
     BodySets bodies_;                   ///< an island is named by its root
-    std::vector<std::int32_t> worst_;   ///< bits of m/s, by root
+    std::vector<std::int32_t> worst_;   ///< largest residual, as the bits of a float in m/s, by root
     std::vector<std::int32_t> wanted_;  ///< sweeps, by root
     std::int64_t islands_ = 0, unfinished_ = 0;
     int most_wanted_ = 0;

@@ -1,4 +1,4 @@
-// Sets that grow together: what hangs together by constraints.
+// Disjoint sets that grow as constraints connect their members.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,10 @@
 
 namespace motley {
 
-/// Union-find. The smallest member names its set, so that a set's name does not depend on the order of its ties.
+/// Union-find. The smallest member names its set, so that its name does not depend on the order of ties.
 class DisjointSets {
   public:
-    /// Starts over with so many sets of one.
+    /// Starts over with `size` sets of one member each.
     void reset(std::size_t size)
     {
         parent_.resize(size);
@@ -32,7 +32,7 @@ class DisjointSets {
         const std::int32_t u = root_of(a), v = root_of(b);
         parent_[static_cast<std::size_t>(std::max(u, v))] = std::min(u, v);
     }
-    /// Points every member at its root: then root() tells it without looking further, until the next tie.
+    /// Points every member at its root, so that root() is a single read until the next tie().
     void flatten()
     {
         for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = root_of(static_cast<std::int32_t>(i));

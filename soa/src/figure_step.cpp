@@ -1,4 +1,4 @@
-// A plan run over a block of copies.
+// Runs a plan over a block of copies.
 #include "figure_step.h"
 
 namespace motley {
@@ -18,7 +18,7 @@ void sweep(const KernelContext& context, const FigureBlock& block,
     }
 }
 
-/// What goes between the stores of the scene and the rows of the block.
+/// Moves data between the stores of the scene and the rows of the block: kernel prepare or store.
 void transfer(const KernelContext& context, const FigureBlock& block, std::span<const ConstraintData> data,
               ConstraintKernels::Transfer ConstraintKernels::*kernel)
 {
@@ -30,7 +30,8 @@ void transfer(const KernelContext& context, const FigureBlock& block, std::span<
     }
 }
 
-/// What the joints beside the tree did in a substep that is done; the tree adds up as it solves.
+/// Adds the impulses of a finished substep to the sums, for joints outside the tree; the tree adds its own as it
+/// solves.
 void add_up(const KernelContext& context, const FigureBlock& block)
 {
     for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
@@ -45,7 +46,8 @@ std::int64_t impulse_floats(const FigureBlock::Joint& joint)
     return std::int64_t{joint.kernels->impulse_floats} * block_lanes;
 }
 
-/// J and C of every lock where the bodies are now, and the factors, stiffened by what the locks pull with.
+/// Computes the Jacobian J and the position error C of every lock at the present poses, and factors the tree,
+/// stiffened by the tension of the locks.
 void factor_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
 {
     const auto locate = [&](int which, float* rows, float* tensions) {
@@ -69,7 +71,7 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
     kernels.factor(block);
 }
 
-/// Runs the stages of a plan that are of a figure; the others are of the whole scene.
+/// Runs the stages of a plan that apply to a figure; the others apply to the whole scene.
 class CopiesRunner {
   public:
     CopiesRunner(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
@@ -138,7 +140,7 @@ class CopiesRunner {
 
     void iterate(ConstraintKernels::CopiesSweep ConstraintKernels::*kernel, int times, float rate) const
     {
-        // Locks alone are solved by their first sweep.
+        // Without joints outside the tree, the first sweep solves all.
         const int sweeps = has_others_ ? times : 1;
         for (int i = 0; i < sweeps; ++i) {
             sweep(context_, block_, kernel);

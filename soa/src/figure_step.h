@@ -8,17 +8,18 @@
 
 namespace motley {
 
-/// The whole step of a block that nothing but its own joints touches, in cache. `data` is that of each type; stages of the
-/// plan that are of the whole scene are left to whoever runs that.
+/// Runs the whole step, in cache, for a block whose bodies are touched by its own joints only. `data` has an entry
+/// for each type. Stages of the plan that concern the whole scene are skipped: the caller runs them.
 void step_figure(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
                  std::span<const ConstraintData> data, const Plan& plan);
 
-// Of blocks that something else touches, what is left to do beside ordinary sweeps: the tree.
-/// Factors where the bodies are: before each substep; or, with relaxations, before the first substep and after each move.
+// For a block whose bodies something else touches, ordinary sweeps do everything but the tree, which these do:
+/// Factors the tree at the present poses: before each substep; or, with relaxations, before the first substep and
+/// after each integration of positions.
 void prepare_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block);
 /// Before the first sweep of a substep: the impulses of its locks start from zero.
 void begin_tree(const FigureBlock& block);
-/// After each sweep.
+/// Solves the tree; after each sweep.
 void solve_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
                 float rate);
 

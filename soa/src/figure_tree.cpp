@@ -6,7 +6,7 @@
 namespace motley {
 namespace {
 
-constexpr int most_rows = 6;           ///< that a body can hang by
+constexpr int most_rows = 6;           ///< of the locks between a child body and its parent
 constexpr int most_closure_rows = 24;  ///< their system is dense, and each row costs a sweep of the tree
 
 std::size_t at(int index)
@@ -14,7 +14,8 @@ std::size_t at(int index)
     return static_cast<std::size_t>(index);
 }
 
-/// Builds the tree of a shape: first who hangs on whom, then which locks close loops, then where the numbers of each node are.
+/// Builds the tree of a shape: first the parent of each body, then the locks that close loops, then where the arrays
+/// of each node begin.
 class TreeBuilder {
   public:
     explicit TreeBuilder(FigureShape& shape)
@@ -41,8 +42,8 @@ class TreeBuilder {
     std::vector<std::vector<int>> locks_on_;  ///< joints, by body
     std::vector<int> node_of_;                ///< by body
     std::vector<std::uint8_t> is_in_node_;    ///< by joint
-    std::vector<FigureNode> nodes_;           ///< what is hung on before what hangs on it
-    std::size_t spread_ = 0;                  ///< nodes whose neighbours all hang
+    std::vector<FigureNode> nodes_;           ///< parents before children
+    std::size_t spread_ = 0;                  ///< nodes whose neighbours all have a node
     std::vector<FigureClosure> closures_;
     int closure_rows_ = 0;
 
@@ -63,7 +64,8 @@ class TreeBuilder {
             locks_on_[at(joint.b)].push_back(static_cast<int>(i));
         }
     }
-    /// What is reached hangs on what it was reached from: from fixed bodies first, then from some body of what floats.
+    /// A search along the locks: a body becomes a child of the body from which it was reached. It starts from fixed
+    /// bodies, then from one body of each set without a fixed body.
     void hang_all_bodies()
     {
         const int bodies = static_cast<int>(shape_.bodies.size());
@@ -91,7 +93,7 @@ class TreeBuilder {
             }
         }
     }
-    /// By all locks between the two, as far as a body has rows for them.
+    /// Makes a node of all locks between the two bodies, up to six rows.
     void hang(int body, int parent)
     {
         FigureNode node{};
@@ -117,7 +119,7 @@ class TreeBuilder {
             closure_rows_ += equalities;
         }
     }
-    /// Where the numbers of nodes and closures begin in FigureBlock::system.
+    /// Decides where the arrays of nodes and closures begin in FigureBlock::system.
     void lay_out()
     {
         std::int64_t end = 0;
@@ -141,7 +143,7 @@ class TreeBuilder {
         shape_.closure_target = shape_.closure_alone = take(closure_rows_);
         shape_.system_floats = end;
     }
-    /// What hangs comes before what it hangs on.
+    /// Moves the result into the shape, children before parents.
     void hand_over()
     {
         const int count = static_cast<int>(nodes_.size());

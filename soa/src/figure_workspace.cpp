@@ -1,4 +1,4 @@
-// Pointers into a workspace, in the order in which a step comes to what they point at.
+// Hands out pointers into a workspace, in the order in which a step uses what they point at.
 #include "figure_workspace.h"
 
 #include <utility>
@@ -17,7 +17,7 @@ void FigureWorkspace::make_room(std::span<const FigureBlock> blocks)
 {
     const FigureShape* last = nullptr;
     for (const FigureBlock& block : blocks) {
-        if (std::exchange(last, block.shape) == block.shape) continue;  // copies lie in line
+        if (std::exchange(last, block.shape) == block.shape) continue;  // same shape again
         const std::size_t joints = block.shape->joints.size();
         std::int64_t floats = body_floats(*block.shape) + block.shape->system_floats;
         for (std::size_t i = 0; i < joints; ++i) {

@@ -1,6 +1,6 @@
-// Where a worker solves figures. What a block that is alone needs only while it is solved (its bodies in lanes, its tree,
-// the rows of its joints) lies here, the same few hundred kilobytes for every block: they stay in the core's second level
-// cache, where memory of each block's own would stream through it.
+// The memory in which a worker solves figures. A block that is alone (see Figures) needs its bodies in lanes, its
+// tree and the rows of its joints only while it is solved. They are kept here, in the same few hundred kilobytes for
+// every block, which stay in the core's second level cache; memory of each block's own would stream through it.
 #pragma once
 
 #include <span>
@@ -12,9 +12,9 @@ namespace motley {
 
 class FigureWorkspace {
   public:
-    /// Room for any of these blocks. Allocates only when one is larger than all before.
+    /// Makes space for the largest of these blocks. Allocates only when one is larger than all before.
     void make_room(std::span<const FigureBlock> blocks);
-    /// The block as it is solved here, until the next one is taken in.
+    /// The block with its pointers into this memory; valid until the next take_in().
     [[nodiscard]] FigureBlock take_in(const FigureBlock& block);
 
   private:

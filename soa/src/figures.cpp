@@ -1,4 +1,4 @@
-// Components by union-find, shapes by what their joints look like in the order of their colours.
+// Finds components by union-find, and their shapes by comparing their joints in the order of their colours.
 #include "figures.h"
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 namespace motley {
 namespace {
 
-/// Fewer copies than this in a block's lanes are swept faster among others. A constant, so that blocks do not depend
-/// on the instruction set.
+/// A block with fewer copies than this is swept faster by colour, with all other joints. A constant, so that blocks
+/// do not depend on the instruction set.
 constexpr std::size_t fewest_copies = 8;
-/// Bodies of a figure whose lanes still fit a second level cache with its joints.
+/// The most bodies of a figure whose lanes, with those of its joints, still fit a second level cache.
 constexpr std::size_t most_bodies = 64;
 
 bool is_rigid(BodyRow body)
@@ -28,15 +28,15 @@ std::uint32_t rigid_row_of(const Placement& joint)
     return is_rigid(joint.a) ? joint.a.row() : joint.b.row();
 }
 
-/// Components that may be figures, in flat lists: those of member m are from first_joint[m] to first_joint[m + 1], and so on.
+/// Components that may be figures, in flat lists: the joints of member m are those from first_joint[m] to
+/// first_joint[m + 1], and likewise its bodies and its signature.
 struct Members {
     std::vector<const Figures::Candidate*> joints;  ///< by colour, type and body
     std::vector<BodyRow> bodies;                    ///< in the order in which the joints name them
-    std::vector<std::uint32_t>
-        signatures;  ///< what they look like, in numbers: members with equal ones are copies
+    std::vector<std::uint32_t> signatures;  ///< the shapes, in numbers: members with equal ones are copies
     std::vector<std::size_t> first_joint{0}, first_body{0}, first_number{0};
     std::vector<std::uint8_t>
-        is_refused;  ///< what light_between_heavy() finds keeps it from being solved exactly
+        is_refused;  ///< light_between_heavy() has found a body, so its locks are not solved exactly
 
     [[nodiscard]] std::size_t count() const { return first_joint.size() - 1; }
     [[nodiscard]] std::span<const Figures::Candidate* const> joints_of(std::size_t member) const
@@ -54,9 +54,10 @@ struct Members {
     }
 };
 
-/// A body with two locks or more, in a figure without a fixed body and with one more than 2,000 times as heavy; {} if there is none.
-/// The mass that its joints see is made of both and keeps too few digits of the light one: the joints hold, but their impulses do not
-/// cancel. Momentum changes by 3e-6 a second at 1 : 1,000 and by 3e-5 at 1 : 10,000 (light_between_heavy_test.cpp).
+/// A body with two locks or more, in a figure without a fixed body and with a body more than 2,000 times as heavy;
+/// {} if there is none. The mass that its joints see is made of both and keeps too few digits of the light one: the
+/// joints hold, but their impulses do not cancel. Momentum changes by 3e-6 per second at 1 : 1,000 and by 3e-5 at
+/// 1 : 10,000 (light_between_heavy_test.cpp).
 BodyId light_between_heavy(std::span<const Figures::Candidate* const> joints, const BodyStore& bodies)
 {
     constexpr double most_mass_ratio = 2000;
@@ -84,9 +85,10 @@ class BodyNames {
         : rigid_(bodies.rows(BodyKind::rigid).size()), fixed_(bodies.rows(BodyKind::fixed).size())
     {
     }
-    /// The next figure's. A rigid body is of one figure alone; fixed ones may be of many.
+    /// Begins to number the next figure. A rigid body is in one figure only; a fixed one may be in many.
     void start_figure() { ++figure_; }
-    /// Adds a body that this figure has not named to the end of `bodies`, which begin at `first`.
+    /// The number of a body. One that this figure has not numbered yet is added to the end of `bodies`, in which the
+    /// figure begins at `first`.
     std::uint32_t name(BodyRow body, std::vector<BodyRow>& bodies, std::size_t first)
     {
         Name& name = (is_rigid(body) ? rigid_ : fixed_)[body.row()];
@@ -105,7 +107,7 @@ class BodyNames {
     std::uint32_t figure_ = 0;
 };
 
-/// Names the bodies of the last member and writes its signature; then there may be another.
+/// Completes the last member: numbers its bodies and writes its signature.
 void close_member(Members& members, BodyNames& names, bool is_refused)
 {
     const std::size_t first_body = members.bodies.size();
@@ -152,16 +154,16 @@ bool can_be_in_lanes(const Placement& joint, const KernelTable& kernels)
 /// The root of a joint that cannot be in a figure.
 constexpr std::int32_t none = -1;
 
-/// A joint of the component whose first rigid row is `root`. No two joints of a colour share a moving body, so `order`
-/// is the same in every copy, whatever was added and removed before: the slots of a figure's bodies are in the order in which these
-/// were added.
+/// A joint of the component whose first rigid row is `root`. No two joints of a colour share a moving body, so
+/// sorting by `order` gives the same sequence in every copy, whatever was added and removed before: the slots of a
+/// figure's bodies are in the order in which these were added.
 struct JointOfComponent {
     std::int32_t root;
     std::uint64_t order;  ///< colour, type, slot of a rigid body
     const Figures::Candidate* joint;
 };
 
-/// The joints of all components of at most so many moving bodies that may be figures, component by component.
+/// The joints of all components that may be figures and have at most `largest` moving bodies, by component.
 std::vector<JointOfComponent> joints_by_component(std::span<const Figures::Candidate> joints,
                                                   const BodyStore& bodies, const KernelTable& kernels,
                                                   std::size_t largest)
@@ -184,7 +186,7 @@ std::vector<JointOfComponent> joints_by_component(std::span<const Figures::Candi
         for (const BodyRow body : {joint.a, joint.b})
             if (is_rigid(body)) excluded[static_cast<std::size_t>(components.root(body.row()))] = 1;
     }
-    // Counted by component, put in line, and each component's put in order.
+    // Joints are counted by component, stored one component after another, and sorted in each of them.
     std::vector<std::uint32_t> end(rigid_rows + 1, 0);
     const auto root_of = [&](const Figures::Candidate& joint) {
         if (!can_be_in_lanes(joint.placement, kernels)) return none;
@@ -242,7 +244,8 @@ Members members_of(std::span<const Figures::Candidate> joints, const BodyStore& 
     return members;
 }
 
-/// Members so that copies come one after another. (Two shapes of one hash, should there ever be such, are fewer copies at once.)
+/// The members in an order in which copies follow each other. (If two shapes had the same hash, fewer copies would be
+/// found at once.)
 std::vector<std::size_t> sorted_by_signature(const Members& members)
 {
     std::vector<std::pair<std::uint64_t, std::size_t>> hashed(members.count());
@@ -263,7 +266,7 @@ bool are_copies(const Members& members, std::size_t x, std::size_t y)
     return std::ranges::equal(members.signature_of(x), members.signature_of(y));
 }
 
-/// A lane without a constraint, in the block of this one.
+/// A padding lane in the block of this constraint: see Placement::is_gap.
 Placement gap_beside(Placement placement)
 {
     placement.constraint = ~placement.constraint;
@@ -294,7 +297,7 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
         std::size_t end = next + 1;
         while (end < order.size() && are_copies(members, order[next], order[end])) ++end;
         copies = std::span(order).subspan(next, end - next);
-        // Too few of them, and nothing to be solved exactly.
+        // Too few copies, and nothing to be solved exactly.
         if (!exact && copies.size() < fewest_copies) continue;
         std::unique_ptr<FigureShape> shape = shape_of(members, copies.front());
         const bool has_tree = exact && members.is_refused[copies.front()] == 0 && build_tree(*shape);
@@ -349,7 +352,7 @@ void Figures::bind(BatchSet& batches, const KernelTable& kernels)
 {
     joints_.assign(blocks_.size(), {});
     skipped_.assign(blocks_.size(), {});
-    std::map<std::pair<int, int>, std::int32_t> used;  // blocks, by class and colour
+    std::map<std::pair<int, int>, std::int32_t> used;  // blocks used so far, by class and colour
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
         for (const FigureShape::Joint& joint : blocks_[i].shape->joints) {
             const int constraint_class = class_of(joint.type, joint.kind_a, joint.kind_b);
@@ -360,7 +363,7 @@ void Figures::bind(BatchSet& batches, const KernelTable& kernels)
         }
     }
     for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i].joints = joints_[i].data();
-    // Which of them are alone changes from step to step, and shall not allocate.
+    // Which blocks are alone changes from step to step, and finding them must not allocate.
     alone_.reserve(blocks_.size());
     lone_.reserve(blocks_.size());
     touched_trees_.reserve(blocks_.size());

@@ -1,6 +1,6 @@
-// Finds the figures of a scene: sets of rigid bodies that hang together by joints, as many of one shape as there are.
-// Nobody has to say that a figure is one: what the host adds alike is found alike, a copy that loses a joint is a shape
-// of its own from then on, and one that touches something is swept by colour like everything else.
+// Finds the figures of a scene: sets of rigid bodies that joints connect, and all copies of the same shape. The host
+// declares nothing: sets that it builds alike are recognised as copies. A copy that loses a joint is a shape of its
+// own from then on, and one that touches something is swept by colour like everything else.
 #pragma once
 
 #include <memory>
@@ -18,23 +18,25 @@ class Figures {
     struct Candidate {
         Placement placement;
         int equalities;    ///< rows that may be solved exactly, or 0
-        bool locks_point;  ///< the first three of them are those of a point on a point
+        bool locks_point;  ///< the first three of them hold a point on a point
     };
-    /// Sorts the joints into `placed`: those of figures first, sixteen copies of a joint in line with gaps where a block has
-    /// fewer copies, so that each has a block of its own; then the rest as they were. `exact`: figures whose locks
-    /// form trees get one, and are figures however few they are; but those that refused() counts.
+    /// Sorts the joints into `placed`. Those of figures come first, sixteen consecutive copies of each joint, with
+    /// gaps where a block has fewer copies, so that each joint of a block of copies has a block of its own. The rest
+    /// follow in their old order. `exact`: the locks of figures are solved by trees, however few copies there are,
+    /// except for the locks that refused() counts.
     void find(std::span<const Candidate> joints, const BodyStore& bodies, const KernelTable& kernels,
               bool exact, std::vector<Placement>& placed);
-    /// Locks of figures without a fixed body in which a body is too light for what it joins; see StepReport::exact_joints_refused.
+    /// Locks that are not solved exactly, because their figure has no fixed body and has a body too light for the
+    /// other bodies; see StepReport::exact_joints_refused.
     struct Refused {
         std::int64_t joints = 0;
         BodyId light_body{};  ///< one such body
     };
     [[nodiscard]] const Refused& refused() const { return refused_; }
-    /// Once `placed` has been filled into its blocks.
+    /// After `placed` has been filled into its blocks: looks up the blocks of the joints.
     void bind(BatchSet& batches, const KernelTable& kernels);
 
-    /// A block is alone in a step when no contact touches it; then it needs no sweeps but its own.
+    /// Finds the blocks that are alone in a step: no contact touches their bodies, so they are solved on their own.
     void find_lone_blocks(std::span<const Placement> contacts, bool may_be_alone);
 
     [[nodiscard]] bool is_empty() const { return blocks_.empty(); }
@@ -48,7 +50,7 @@ class Figures {
         const std::int32_t block = block_of(row);
         return block >= 0 && alone_[static_cast<std::size_t>(block)] != 0;
     }
-    /// Joints of blocks that are alone.
+    /// The number of joints in blocks that are alone.
     [[nodiscard]] std::int64_t lone_joints() const { return is_empty() ? 0 : lone_joints_; }
 
   private:
@@ -57,10 +59,10 @@ class Figures {
     std::vector<FigureBlock> blocks_;
     std::vector<std::vector<FigureBlock::Joint>> joints_;  ///< of each block
     std::vector<std::vector<std::uint8_t*>> skipped_;  ///< of each block and joint: BatchSet::Block::skipped
-    AlignedVector<std::int32_t> offsets_;              ///< of all blocks in line
+    AlignedVector<std::int32_t> offsets_;              ///< of all blocks, one after another
     AlignedVector<float> memory_;                      ///< likewise
-    std::vector<std::int32_t> block_of_row_;  ///< as long as the rows were when figures were looked for
-    /// Negative for a body of no figure; those that came since have no joints.
+    std::vector<std::int32_t> block_of_row_;           ///< one entry per rigid row that existed at find()
+    /// Negative for a body of no figure. Bodies added since find() have no joints.
     [[nodiscard]] std::int32_t block_of(std::size_t row) const
     {
         return row < block_of_row_.size() ? block_of_row_[row] : -1;

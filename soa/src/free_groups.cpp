@@ -1,4 +1,4 @@
-// Groups are found when joints change, and looked at once a step.
+// Groups are found when joints change, and used at the beginning and the end of each step.
 #include "free_groups.h"
 
 #include <utility>
@@ -25,7 +25,7 @@ void FreeGroups::find(std::span<const Tie> ties, const BodyStore& bodies)
     for (const Tie& tie : ties) sets_.tie(tie.a, tie.b);
     sets_.flatten();
 
-    // Groups are numbered in the order of their first tie; then their members are counted and put in line.
+    // Groups are numbered in the order of their first tie; then their members are counted, and stored group by group.
     constexpr std::int32_t none = -1, held = -2;
     std::vector<std::int32_t> group_of_root(sets_.size(), none);
     const auto group_of = [&](BodyRow body) -> std::int32_t& {
@@ -56,7 +56,7 @@ void FreeGroups::find(std::span<const Tie> ties, const BodyStore& bodies)
     });
     std::uint32_t members = 0;
     for (std::uint32_t& end : end_of_members_)
-        members += std::exchange(end, members);  // where it begins, so far
+        members += std::exchange(end, members);  // where the group begins, until its members are stored
     members_.resize(members);
     start_momenta_.resize(end_of_members_.size());
     for_each_member(
@@ -70,7 +70,7 @@ std::span<const BodyRow> FreeGroups::members(std::int64_t group) const
     return std::span(members_).subspan(begin, end_of_members_[i] - begin);
 }
 
-/// Not finite when a member is: then land() finds no free flight in it.
+/// The sums are not finite when a member is not: then land() finds no free flight.
 FreeGroups::Sums FreeGroups::sums_of(const KernelContext& context, std::int64_t group) const
 {
     Sums sums;
@@ -108,7 +108,7 @@ void FreeGroups::land(const KernelContext& context, std::int64_t group) const
         float* delta = context.bodies[static_cast<int>(body.kind())].delta + row_offset(body);
         delta[0] -= back.x;
         delta[1] -= back.y;
-        if (!sums.in_plane) delta[2] -= back.z;  // of a planar body its yaw
+        if (!sums.in_plane) delta[2] -= back.z;  // of a planar body this is its yaw
     }
 }
 

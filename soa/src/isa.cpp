@@ -24,7 +24,7 @@ constexpr IsaEntry entries[] = {{Isa::scalar, "scalar", 1},
                                 {Isa::avx512, "avx512", 16},
                                 {Isa::neon, "neon", 4}};
 
-/// The builtin asks the processor and the operating system, for every flag the file is compiled with.
+/// The builtin asks the processor and the operating system, for every feature that the kernels are compiled with.
 bool is_available(Isa isa)
 {
     switch (isa) {
@@ -113,8 +113,8 @@ constexpr bool is_built(TypeList<Built...>)
     return (std::is_same_v<List, Built> || ...);
 }
 
-/// Whose lanes run what is rare or unusual: SSE2 and AVX-512 have no such kernels of their own, which would be a quarter of the library.
-/// Bits do not depend on it.
+/// The instruction set whose kernels run what is rare or unusual: SSE2 and AVX-512 have no such kernels of their own,
+/// which would be a quarter of the library. The bits do not depend on it.
 constexpr Isa rare_lanes_of(Isa isa)
 {
     switch (isa) {
@@ -143,7 +143,7 @@ void enter_constraints(KernelTable& table, TypeList<Lists...>)
     (enter(Lists{}), ...);
 }
 
-/// Made when first asked for. Classes that a wide instruction set leaves out run in scalar lanes.
+/// Made on first use. Classes that a wide instruction set leaves out run in scalar lanes.
 template <Isa isa>
 const KernelTable& table_of()
 {

@@ -1,11 +1,11 @@
-// Bodies in and out of lanes. Included inside an anonymous namespace, after Lanes.
-// The build inlines everything here: a call that stays a call would pass sixteen-lane vectors through memory.
-// What a kernel does not use of a loaded body is never fetched: the compiler drops loads without a reader.
+// Loads bodies into lanes and stores them. Included inside an anonymous namespace, after Lanes. The build inlines
+// everything here: a call that is not inlined would pass sixteen-lane vectors through memory. Fields of a loaded body
+// that a kernel does not use are never fetched: the compiler drops loads without a reader.
 
 template <BodyKind kind>
 using Body = LaneBody<Lanes, kind>;
 
-/// Four numbers of a pose in line, in one register where there is one so wide.
+/// Four consecutive numbers of a pose, in one register where there is one that wide.
 using PoseQuad [[gnu::vector_size(4 * sizeof(PoseReal)), gnu::aligned(sizeof(PoseReal)), gnu::may_alias]] =
     PoseReal;
 using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
@@ -84,7 +84,7 @@ using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
     store_quads(rows + 4, offset_floats, offsets, {body.angular.x, body.angular.y, body.angular.z, Lanes(0)},
                 count);
 }
-/// What cannot be moved is read by lanes and never written.
+/// Fixed bodies are read by many constraints and never written.
 [[gnu::always_inline]] inline void store_velocity(float*, const std::int32_t*, const Body<BodyKind::fixed>&,
                                                   int)
 {
@@ -103,7 +103,7 @@ template <class Body>
     store_quads(tensors + 4, offset_floats, offsets, {i.yz, i.zz, Lanes(0), Lanes(0)}, count);
 }
 
-/// A turned body has turned inertia.
+/// Rotates the inertia of a body from the start of the step to its present orientation.
 template <BodyKind kind>
 [[gnu::always_inline]] inline void turn_inertia(const BodyArrays& arrays, const std::int32_t* offsets,
                                                 Body<kind>& body)
@@ -112,7 +112,7 @@ template <BodyKind kind>
         body.inverse_inertia =
             rotate_tensor(body.delta_rotation, load_tensor(arrays.start_inverse_inertia, offsets));
 }
-/// The displacement, and the inertia that turns with it.
+/// Stores the displacement, and the inertia that rotates with it.
 [[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* offsets,
                                                const Body<BodyKind::particle>& body, int count)
 {
@@ -139,7 +139,7 @@ template <BodyKind kind>
 {
 }
 
-/// The same of a body that is in lanes already: fields of sixteen floats in line.
+/// Stores the velocity of a body that is kept in lanes, as fields of sixteen consecutive floats.
 [[gnu::always_inline]] inline void store_copy_velocity(const Body<BodyKind::rigid>& body, float* lanes)
 {
     store_row(body.linear, lanes);
@@ -150,7 +150,7 @@ template <BodyKind kind>
     store_row(body.inverse_inertia, lanes + CopyBody::inverse_inertia * block_lanes);
     store_row(body.inverse_inertia, lanes + CopyBody::start_inertia * block_lanes);
 }
-/// Asks for the rows of a whole block, with or without its displacements. Fixed bodies are few and stay in cache.
+/// Prefetches the rows of a whole block, with or without displacements. Fixed bodies are few and stay in cache.
 template <BodyKind kind, bool delta>
 [[gnu::always_inline]] inline void prefetch_bodies(const BodyArrays& arrays, const std::int32_t* offsets)
 {
@@ -164,7 +164,7 @@ template <BodyKind kind, bool delta>
     }
 }
 
-/// What forces and gravity make of a body's velocity a second, m/s2; nothing of what cannot move.
+/// The acceleration of a body by forces and gravity, m/s2; 0 for a body that cannot move.
 template <BodyKind kind>
 Vec3<Lanes> free_acceleration(const StepConstants& step, const BodyArrays& arrays,
                               const std::int32_t* offsets, const Body<kind>& body)

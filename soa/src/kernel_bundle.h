@@ -1,16 +1,17 @@
-// A bundle of constraints in a kernel: where its lanes lie, and what brings tables, poses and bodies into lanes and back.
-// Nothing here depends on the type of the constraint. What is outside the sweeps, or rare
-// within them, is a function of its own and not inlined: there is one copy for all types. Included inside an anonymous
-// namespace, after kernel_bodies.h.
+// A bundle: as many constraints of a block as the instruction set computes at once. This file says where its lanes
+// are in memory, and loads and stores tables, poses and bodies. Nothing here depends on the type of the constraint.
+// Functions that run outside the sweeps, or rarely within them, are not inlined, so that all types share one copy.
+// Included inside an anonymous namespace, after kernel_bodies.h.
 
-/// Where the velocities of a side go, by offsets of sixteen lanes: their rows, or nowhere. A joint's kernel for rigid bodies
-/// serves fixed ones too, whose rows have its shape and no inverse mass; those are many constraints' at once, and so never
-/// written. No branch: compilers move arithmetic behind it, and what it reads into memory, a fifth of a sweep.
+/// Where the velocities of one side (body a or b) are stored: in the rows of the bodies, or in a row that nothing
+/// reads. A joint's kernel for rigid bodies also serves fixed ones, whose rows have the same shape and no inverse
+/// mass. Many constraints share a fixed body, on several threads, so its row is never written. There is no branch,
+/// because compilers move arithmetic behind it and its operands into memory, which costs a fifth of a sweep.
 struct VelocitiesOut {
     float* rows;
     const std::int32_t* offsets;
 };
-/// Rows that nobody reads, one after another.
+/// A row that is written in place of a fixed body and never read.
 struct Nowhere {
     alignas(64) float row[8];
     static constexpr std::int32_t offsets[block_lanes] = {};
@@ -27,9 +28,9 @@ struct ConstraintBundle {
     float* row;
     float* substep;
     float* impulse;
-    float* sum;  ///< null where nothing is added up
+    float* sum;  ///< null where nothing is summed
     int count;   ///< lanes of this bundle that are not padding
-    int lane;    ///< of the block, where it begins
+    int lane;    ///< of the block, at which the bundle begins
     [[nodiscard]] Body<kind_a> load_a() const
     {
         return load_body(arrays_a, offsets_a, static_cast<Body<kind_a>*>(nullptr));
@@ -41,7 +42,7 @@ struct ConstraintBundle {
     VelocitiesOut out_a, out_b;
     void store_velocities(const Body<kind_a>& a, const Body<kind_b>& b) const
     {
-        // One branch for all: behind the call for a bundle with padding nothing is left to be kept.
+        // One branch for both bodies: no value has to survive the call that stores a bundle with padding.
         if (count >= Lanes_width) [[likely]] {
             store_velocity(out_a.rows, out_a.offsets, a, Lanes_width);
             store_velocity(out_b.rows, out_b.offsets, b, Lanes_width);
@@ -52,9 +53,10 @@ struct ConstraintBundle {
     }
 };
 
-// ---- tables, an entry a lane ---------------------------------------------------------------------------------
+// ---- tables, one entry per lane ---------------------------------------------------------------------------------
 
-/// Quads q of the entries of a table, as fields of Lanes_width floats in line.
+/// Loads the first `quads` quads (four floats each) of one table entry per lane, as fields of Lanes_width consecutive
+/// floats.
 [[gnu::noinline]] inline void gather_quads(const float* table, std::int64_t stride, const std::int32_t* index,
                                            int quads, float* fields)
 {
@@ -64,7 +66,8 @@ struct ConstraintBundle {
         for (int i = 0; i < 4; ++i) store_lanes(quad[i], fields + (4 * q + i) * Lanes_width);
     }
 }
-/// The way back. Impulses that are not finite are forgotten: a contained body must not poison the step that revives it.
+/// The reverse. Impulses that are not finite are stored as 0: a contained body must not spoil the step that revives
+/// it.
 [[gnu::noinline]] inline void scatter_finite_quads(const float* fields, int quads, float* table,
                                                    std::int64_t stride, const std::int32_t* index, int count)
 {
@@ -78,7 +81,7 @@ struct ConstraintBundle {
     }
 }
 
-/// Room for a struct of lanes as whole quads.
+/// Space for a struct of lanes as whole quads.
 template <class Struct>
 struct QuadBuffer {
     static constexpr int quads = (fields_of<Struct> + 3) / 4;
@@ -107,9 +110,9 @@ void scatter_finite(const Struct& value, float* table, std::int64_t stride, cons
     scatter_finite_quads(buffer.fields, buffer.quads, table, stride, index, count);
 }
 
-// ---- where bodies are when a step begins: subtracted as they are kept, and narrowed, a body at a time -------
+// ---- positions when a step begins: subtracted in the precision of poses, then narrowed, one body at a time -------
 
-/// x - point, narrowed a lane at a time.
+/// Position minus point, narrowed to float one lane at a time.
 template <BodyKind kind, class Point>
 Vec3<Lanes> from_points(const BodyArrays& arrays, const std::int32_t* offsets, const Point& point_of)
 {
@@ -124,7 +127,7 @@ Vec3<Lanes> from_points(const BodyArrays& arrays, const std::int32_t* offsets, c
     return {load_lanes(x), load_lanes(y), load_lanes(z)};
 }
 
-/// Four numbers of a pose in line, in one register where there is one so wide.
+/// Four consecutive numbers of a pose, in one register where there is one that wide.
 using PoseQuad [[gnu::vector_size(4 * sizeof(PoseReal)), gnu::aligned(sizeof(PoseReal)), gnu::may_alias]] =
     PoseReal;
 using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
@@ -134,7 +137,7 @@ inline const PoseQuad& quad_at(const PoseReal& first)
     return *reinterpret_cast<const PoseQuad*>(&first);
 }
 
-/// quad_of(lane) of every lane, narrowed: out[i] holds number i of each.
+/// quad_of(lane) of every lane, narrowed to float: out[i] holds number i of each.
 template <class QuadOf>
 [[gnu::always_inline]] inline void narrow_quads(const QuadOf& quad_of, Lanes (&out)[4])
 {
@@ -189,7 +192,8 @@ template <BodyKind kind>
 
 // ---- what is rare in a sweep -----------------------------------------------------------------------------------
 
-/// Asks for the bodies of a block, which lie anywhere. Its streams lie in line: the hardware sees to them.
+/// Prefetches the bodies of a block, which are scattered in memory. Its streams are consecutive: the hardware
+/// prefetches them.
 template <BodyKind kind_a, BodyKind kind_b, bool delta>
 [[gnu::noinline]] void prefetch_bodies_of(const BodyArrays& a, const BodyArrays& b, const BlockBodies& bodies)
 {
@@ -197,7 +201,8 @@ template <BodyKind kind_a, BodyKind kind_b, bool delta>
     prefetch_bodies<kind_b, delta>(b, bodies.b);
 }
 
-/// What a body's inertia is for this step: when it begins, nothing has turned yet.
+/// Stores a changed inertia for this step. Runs when the step begins, so nothing has rotated yet and both tensors are
+/// equal.
 template <BodyKind kind>
 [[gnu::noinline]] void store_inertia(const BodyArrays& arrays, const std::int32_t* offsets,
                                      const Body<kind>& body, int count)
@@ -210,7 +215,7 @@ template <BodyKind kind>
     }
 }
 
-/// What a position solve did to a body: its displacement, and its inertia turned along.
+/// Stores the result of a position solve: the displacement of a body, and its inertia rotated with it.
 template <BodyKind kind>
 [[gnu::noinline]] void store_displaced(const BodyArrays& arrays, const std::int32_t* offsets,
                                        const Body<kind>& displaced, int count)

@@ -1,13 +1,15 @@
-// Locks that close loops of a figure: a small dense system of what the tree answers to each of their rows. Included inside
-// an anonymous namespace, after kernel_trees.h.
+// Locks that close loops of a figure: a small dense system, made of the tree's response to each of their rows.
+// Included inside an anonymous namespace, after kernel_trees.h.
 //
-// With the tree's locks held, a push along row j changes J v of row i by K_ij. Loops are often redundant (a flat four-bar
-// closes by five rows and needs two): rows whose pivot is lost get nothing, and those before them hold.
+// With the tree's locks held, a unit impulse along row j changes J v of row i by K_ij (J: Jacobian, v: velocities).
+// Loops are often redundant (a flat four-bar closes by five rows and needs two): rows whose pivot is only rounding
+// get no impulse, because the rows before them already enforce them.
 
-/// Share of J M^-1 J^T of its two bodies alone below which a row depends on those before it.
+/// A row depends on those before it if its pivot is below this share of J M^-1 J^T of its two bodies alone (M: mass
+/// matrix).
 constexpr float closure_rounding = 1e-4F;
 
-/// One row of a closure and its ends in lanes.
+/// One row of a closure and its two bodies in lanes.
 struct ClosureRow {
     EqualityRow<Lanes> row;
     float* a;
@@ -32,7 +34,7 @@ void for_each_closure_row(const FigureBlock& figure, int lane, const Work& work)
     }
 }
 
-/// linear . v + lever . w of one end.
+/// linear . v + lever . w of one body (v: velocity, w: angular velocity).
 inline Lanes end_speed(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, const float* body)
 {
     const Mover m = load_row<Mover>(body);
@@ -42,7 +44,7 @@ inline Lanes speed_along(const ClosureRow& c)
 {
     return end_speed(c.row.linear, c.row.lever_b, c.b) - end_speed(c.row.linear, c.row.lever_a, c.a);
 }
-/// v += M^-1 J^T lambda, and what that is of J M^-1 J^T.
+/// v += M^-1 J^T lambda for one body. Returns the body's part of J M^-1 J^T.
 inline Lanes push_end(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, float* body, bool moves,
                       const Lanes& lambda)
 {
@@ -60,7 +62,7 @@ inline Lanes push_along(const ClosureRow& c, const Lanes& lambda)
            push_end(c.row.linear, c.row.lever_a, c.a, c.a_moves, -lambda);
 }
 
-/// K of the closures, and its factors, once the tree has its own.
+/// Computes K of the closures and factors it, after the tree has been factored.
 inline void factor_closures(const FigureBlock& figure, int lane)
 {
     const FigureShape& shape = *figure.shape;
@@ -106,7 +108,7 @@ inline void factor_closures(const FigureBlock& figure, int lane)
         for (int j = 0; j < i; ++j) {
             Lanes scaled = load_lanes(at(i, j));
             for (int m = 0; m < j; ++m) scaled = scaled - load_lanes(at(i, m)) * load_lanes(at(j, m));
-            store_lanes(scaled, at(i, j));  // of L D, until the row is done
+            store_lanes(scaled, at(i, j));  // entry of L D, until the row is done
         }
         for (int j = 0; j < i; ++j) {
             const Lanes scaled = load_lanes(at(i, j));
@@ -119,7 +121,7 @@ inline void factor_closures(const FigureBlock& figure, int lane)
     }
 }
 
-/// Pushes along the closures until they, and the tree with them, hold.
+/// Applies the impulses with which the closures hold, then solves the tree so that its locks hold too.
 inline void solve_closures(const FigureBlock& figure, float rate, int lane)
 {
     const FigureShape& shape = *figure.shape;
@@ -140,7 +142,7 @@ inline void solve_closures(const FigureBlock& figure, float rate, int lane)
     for (int i = shape.closure_rows; i-- > 0;) {
         Lanes value = load_lanes(x(i)) * at(i, i);
         for (int j = i + 1; j < shape.closure_rows; ++j) value = value - at(j, i) * load_lanes(x(j));
-        // A row without a pivot pushes nothing.
+        // A row without a pivot gets no impulse.
         store_lanes(select(at(i, i) > Lanes(0), value, Lanes(0)), x(i));
     }
     for (const FigureClosure& closure : shape.closures) {

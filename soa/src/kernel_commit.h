@@ -1,8 +1,9 @@
-// The end of a step, sixteen rows in line: deltas go into poses. Included inside an anonymous namespace, after
-// kernel_bodies.h. What is done to poses is written as loops over lanes, which the compiler turns into as many
-// doubles at once as the instruction set has. Same bits as BodyStore::commit, which takes what is refused here.
+// The end of a step: adds deltas to poses, sixteen consecutive rows at a time. Included inside an anonymous
+// namespace, after kernel_bodies.h. Operations on poses are written as loops over lanes, which the compiler turns
+// into as many doubles at once as the instruction set has. The bits are those of BodyStore::commit, which handles the
+// rows that are refused here.
 
-/// Whether none of so many floats in line is infinite or not a number.
+/// Whether `count` consecutive floats are all finite.
 inline bool all_finite(const float* values, int count)
 {
     std::uint32_t bad = 0;
@@ -10,7 +11,8 @@ inline bool all_finite(const float* values, int count)
     return bad == 0;
 }
 
-/// A body that is free or contained has no inverse mass.
+/// Whether all sixteen rows are moving bodies with a finite state. Unused rows and contained bodies have no inverse
+/// mass.
 template <BodyKind kind>
 bool can_commit(const float* velocity, const float* delta)
 {
@@ -21,13 +23,13 @@ bool can_commit(const float* velocity, const float* delta)
            all_finite(delta, floats * block_lanes);
 }
 
-/// Sixteen quaternions, a component after another.
+/// Sixteen quaternions, component by component.
 template <class Real>
 struct Turns {
     alignas(64) Real x[block_lanes], y[block_lanes], z[block_lanes], w[block_lanes];
 };
 
-/// orientation = delta * orientation, towards unit length.
+/// orientation = delta * orientation, normalised, and the same narrowed to float.
 inline void turn(const float* delta, Quat<PoseReal>* orientation, Turns<float>& narrowed)
 {
     Turns<PoseReal> turned;
@@ -49,12 +51,12 @@ inline void turn(const float* delta, Quat<PoseReal>* orientation, Turns<float>& 
     }
 }
 
-/// A turned body has turned inertia.
+/// Rotates the world inverse inertia to the new orientation.
 inline void turn_inertia(const BodyArrays& arrays, std::int32_t first, const Turns<float>& turns)
 {
     for (int lane = 0; lane < block_lanes; lane += Lanes_width) {
         const RowIndex<BodyKind::rigid> index(first + lane);
-        // Six floats in line: the first four and the last four.
+        // Six consecutive floats: the first four and, overlapping them, the last four.
         static_assert(sizeof(Sym3<float>) == 6 * sizeof(float));
         std::int32_t row[Lanes_width];
         for (int i = 0; i < Lanes_width; ++i) row[i] = first + lane + i;
@@ -72,7 +74,8 @@ inline void turn_inertia(const BodyArrays& arrays, std::int32_t first, const Tur
     }
 }
 
-/// What sixteen bodies are to be moved back by, s2 per m/s2 of acceleration: see Flight. `first` is a multiple of sixteen.
+/// How far sixteen bodies must be moved back after free flight, in m per m/s2 of acceleration (s2): see Flight.
+/// `first` is a multiple of sixteen.
 template <BodyKind kind>
 void find_excess(const KernelContext& context, const BodyArrays& arrays, std::int32_t first,
                  float (&excess)[block_lanes])
@@ -102,7 +105,8 @@ bool commit(const KernelContext& context, std::int32_t first)
     constexpr bool turns_in_plane = kind == BodyKind::planar;
     const Vec3<float>& g = context.step.gravity;
     const FloatQuad gravity{g.x, g.y, turns_in_plane ? 0 : g.z, 0};
-    // A planar body does not move along z, the others have no yaw: there -0 is added, which leaves every number as it is, -0 too.
+    // A planar body does not move along z, and the others have no yaw. Adding -0 there leaves every number as it is,
+    // even -0.
     const PoseQuad nothing{-PoseReal(0), -PoseReal(0), -PoseReal(0), -PoseReal(0)};
     static_assert(sizeof(BodyPose) == sizeof(PoseQuad));
     for (int lane = 0; lane < block_lanes; ++lane) {

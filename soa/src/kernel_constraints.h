@@ -4,7 +4,8 @@
 
 // ---- the kernels -------------------------------------------------------------------------------------------
 
-/// The part of a row that a sweep reads: what the type has set apart; else all of it, unless there is a substep row.
+/// The part of a row that a sweep reads: the member `in_sweep` if the type has one; else the whole row, or nothing of
+/// it if there is a substep row.
 struct NothingInSweep {};
 template <bool has_substep_row, class Row>
 const auto& swept(const Row& row)
@@ -30,9 +31,10 @@ struct Kernels {
     using Memory = typename Type::template Memory<Lanes>;
     static constexpr bool has_substep_row = !std::is_empty_v<Substep>;
     using Swept = std::remove_cvref_t<decltype(swept<has_substep_row>(std::declval<Row>()))>;
-    /// A substep row is made from where the bodies are; what has none looks in each sweep.
+    /// A substep row is made from the bodies' displacements; types without one read these in each sweep.
     static constexpr bool sees_delta_once = has_substep_row;
-    /// What substeps are added up as: contacts have the same rows in all of them, those of joints turn.
+    /// What is summed over substeps: impulses for contacts, whose rows are the same in all substeps; wrenches for
+    /// joints, whose rows rotate.
     using Sum = std::conditional_t<Type::is_contact, Impulse, Wrench<Lanes>>;
     static constexpr int row_stride = fields_of<Row> * block_lanes;
     static constexpr int substep_stride = fields_of<Substep> * block_lanes;
@@ -41,7 +43,7 @@ struct Kernels {
 
     using Bundle = ConstraintBundle<kind_a, kind_b>;
 
-    /// See VelocitiesOut. Of a contact a fixed body has a kernel of its own.
+    /// See VelocitiesOut. Contacts have a kernel of their own for fixed bodies.
     template <BodyKind kind>
     [[gnu::always_inline]] static VelocitiesOut velocities_out(const BodyArrays& arrays,
                                                                const std::int32_t* offsets, Nowhere& nowhere)
@@ -64,7 +66,7 @@ struct Kernels {
         for (int lane = 0; lane < count; lane += Lanes_width) {
             work(Bundle{arrays_a, arrays_b, bodies.a + lane, bodies.b + lane,
                         streams.constraints[block].lane + lane, streams.rows + block * row_stride + lane,
-                        // A stream of nothing is null, and stays so.
+                        // An empty stream is null, and no offset is added to it.
                         substep_stride == 0 ? nullptr : streams.substep_rows + block * substep_stride + lane,
                         streams.impulses + block * impulse_stride + lane,
                         streams.sums == nullptr ? nullptr : streams.sums + block * sum_stride + lane,
@@ -104,7 +106,7 @@ struct Kernels {
         }
     };
 
-    /// The bodies of a step that is done, loaded when they are asked for.
+    /// The bodies at the end of a step, each loaded when a type asks for it.
     struct End {
         const Bundle& bundle;
         [[nodiscard]] A a() const { return bundle.load_a(); }
@@ -170,7 +172,7 @@ struct Kernels {
         }
     }
 
-    /// What a constraint is in this substep, and its impulses of the last one.
+    /// Makes the substep row, and applies the impulses of the last substep.
     [[gnu::always_inline]] static void begin_substep(const Bundle& bundle, A& a, B& b)
     {
         const auto row = load_row<Row>(bundle.row);
@@ -195,7 +197,7 @@ struct Kernels {
         }
     }
 
-    /// Asks for the bodies of the next block, if they are far.
+    /// Prefetches the bodies of the next block, if bodies exceed the core's cache.
     template <bool delta>
     [[gnu::always_inline]] static void prefetch(const KernelContext& context, const BlockStreams& streams,
                                                 std::int32_t block, std::int32_t end)
@@ -216,7 +218,7 @@ struct Kernels {
     {
         sweep(context, context.relaxing, streams, begin, end);
     }
-    /// One copy for both, or kernels would be half as large again.
+    /// Shared by solve and relax: a copy for each would make the kernels half as large again.
     [[gnu::noinline]] static void sweep(const KernelContext& context, const StepConstants& step,
                                         const BlockStreams& streams, std::int32_t begin, std::int32_t end)
     {
@@ -271,7 +273,7 @@ struct Kernels {
         for (int i = 0; i < fields_of<Sum>; ++i) store_lanes(Lanes(0), sum + i * block_lanes);
     }
 
-    /// What the impulses of a substep are added up as.
+    /// What a substep adds to the sum.
     static Sum summand(const Bundle& bundle)
     {
         const auto impulse = load_row<Impulse>(bundle.impulse);
@@ -393,7 +395,7 @@ struct Kernels {
         }
     }
 
-    /// What every substep runs.
+    /// Enters what every substep runs.
     static void enter_swept(ConstraintKernels& kernels)
     {
         static_assert(fields_of<Impulse> <= most_impulse_floats);
@@ -413,7 +415,7 @@ struct Kernels {
         kernels.sum_floats = fields_of<Sum>;
     }
 
-    /// What runs when a step begins and when it is done, and before the trees of exact joints.
+    /// Enters what runs at the start and at the end of a step, and before trees of exact joints are factored.
     static void enter_once(ConstraintKernels& kernels)
     {
         kernels.prepare = prepare;
@@ -424,11 +426,11 @@ struct Kernels {
         }
     }
 
-    /// What a setting or a definition asks for.
+    /// Enters what only some settings or definitions need.
     static void enter_rare(ConstraintKernels& kernels)
     {
         if constexpr (Type::has_restitution) kernels.restitute = restitute;
-        // So few bodies bear such loads that one copy of this, of one lane, serves every instruction set.
+        // Few bodies are under such loads, so one scalar copy of this serves every instruction set.
         if constexpr (Type::pulls_at_arms && Lanes_width == 1) {
             kernels.stiffen = stiffen;
             if constexpr (has_copies) kernels.stiffen_copies = stiffen_copies;

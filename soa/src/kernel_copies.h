@@ -1,10 +1,10 @@
-// The bodies of a block of copies: in and out of lanes, and their integration there. Included inside an anonymous
-// namespace, after kernel_bodies.h.
+// The bodies of a block of copies: loads them into lanes, stores them, and integrates them there. Included inside an
+// anonymous namespace, after kernel_bodies.h.
 
 using Mover = Body<BodyKind::rigid>;
 
-/// Calls work(body's kind, its lanes, its rows, how many lanes are not padding) for each body and bundle. A fixed body has the
-/// lanes of a rigid one, without inverse mass.
+/// Calls work(body's kind, its lanes, its rows, how many lanes are not padding) for each body and bundle. A fixed
+/// body has the lanes of a rigid one, without inverse mass.
 template <class Work>
 void for_each_copy(const FigureBlock& figure, const Work& work)
 {
@@ -41,7 +41,7 @@ inline void load_copies(const KernelContext& context, const FigureBlock& figure)
         float* acceleration = body + CopyBody::acceleration * block_lanes;
         store_row(Vec3<Lanes>{a[0], a[1], a[2]}, acceleration);
         store_row(Vec3<Lanes>{t[0], t[1], t[2]}, acceleration + 3 * block_lanes);
-        // Figures are loaded when a step begins: nothing has turned yet.
+        // Figures are loaded when a step begins: nothing has rotated yet.
         store_row(loaded.inverse_inertia, body + CopyBody::start_inertia * block_lanes);
     });
 }

@@ -1,26 +1,29 @@
-// What each file of kernels defines for its instruction set: functions that enter its kernels into a table made elsewhere. A
-// table made there would need a constructor, a weak function compiled for that instruction set.
+// What each file of kernels defines for its instruction set: functions that enter its kernels into a table made
+// elsewhere. A table made there would need a constructor, a weak function compiled for that instruction set, which
+// the linker could pick for the whole program.
 #pragma once
 
 #include "block.h"
 
 namespace motley {
 
-/// Kernels are compiled in four shares.
+/// Kernels are compiled in four shares, optimised for speed or for size.
 enum class KernelShare {
-    swept,  ///< what every substep runs of usual pairs (see is_usual): for speed
-    once,   ///< what brings those into lanes when a step begins, and stores what they did: for size
-    unusual,  ///< what every substep runs of unusual pairs: for speed, but in some lanes only (see rare_lanes_of)
-    rare,  ///< what a setting asks for, and the rest of unusual pairs: for size, and in some lanes only
+    swept,  ///< run in every substep, for usual pairs (see is_usual): for speed
+    once,   ///< run at the start and end of a step, for usual pairs: for size
+    unusual,  ///< run in every substep, for the other pairs: for speed; not on every instruction set (rare_lanes_of)
+    rare,  ///< run only with some settings, or at the start and end for the other pairs: for size; likewise
 };
 
-/// Of the types of one constraint header, by pair of body kinds: the entry of class_of, counted from the first of them.
+/// Enters the kernels of the types of one constraint header, by pair of body kinds: `pairs` is indexed by class_of,
+/// counted from the first of these types.
 template <Isa isa, KernelShare share, class Types>
 void enter_constraint_kernels(ConstraintKernels* pairs);
-/// What moves bodies, sees what sweeps do to them, and brings copies of figures into lanes and back.
+/// Enters the kernels that integrate bodies, that measure what sweeps change, and that load and store copies of
+/// figures.
 template <Isa isa>
 void enter_body_kernels(BodyKernels* kinds, FigureKernels& figures);
-/// FigureKernels::factor and solve.
+/// Enters FigureKernels::factor and solve.
 template <Isa isa>
 void enter_tree_kernels(FigureKernels& figures);
 

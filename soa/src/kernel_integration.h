@@ -1,4 +1,4 @@
-// The motion of bodies, a row of theirs a lane. Included inside an anonymous namespace, after kernel_bodies.h.
+// The integration of bodies, one row per lane. Included inside an anonymous namespace, after kernel_bodies.h.
 
 // ---- v += h a ----------------------------------------------------------------------------------------
 
@@ -21,7 +21,7 @@ inline void accelerate(const KernelContext& context, const BodyArrays& arrays, c
                   h * Vec2<Lanes>{a[0] + Lanes(context.step.gravity.x), a[1] + Lanes(context.step.gravity.y)};
     body.yaw_rate = body.yaw_rate + h * a[2];
 }
-/// `a` and `t`: acceleration and torque, three and a spare each.
+/// `a` and `t` are acceleration and torque: three components and an unused one each.
 inline void accelerate(const StepConstants& step, const Lanes (&a)[4], const Lanes (&t)[4],
                        Body<BodyKind::rigid>& body)
 {
@@ -39,12 +39,12 @@ inline void accelerate(const KernelContext& context, const BodyArrays& arrays, c
     accelerate(context.step, a, t, body);
 }
 
-/// Where the rows of a bundle begin, consecutive or listed; from the count on, the null row.
+/// Where the rows of a bundle begin. They are consecutive or listed; lanes from `count` on are the null row.
 template <BodyKind kind>
 struct RowIndex {
     std::int32_t offsets[Lanes_width];
     int count;
-    /// Of all of them the compiler makes one address and constants beside it.
+    /// The compiler turns these into one address plus constants.
     explicit RowIndex(std::int32_t first) : count(Lanes_width)
     {
         for (int lane = 0; lane < Lanes_width; ++lane) offsets[lane] = (first + lane) * offsets_a_row(kind);
@@ -62,7 +62,7 @@ struct RowIndex {
     }
 };
 
-/// Calls work(where they begin) for all rows from `begin` to `end` - 1, a bundle at a time.
+/// Calls work(RowIndex) for all rows from `begin` to `end` - 1, a bundle at a time.
 template <BodyKind kind, class Work>
 [[gnu::always_inline]] inline void for_each_rows(std::int32_t begin, std::int32_t end, const Work& work)
 {
@@ -80,7 +80,7 @@ template <BodyKind kind, class Work>
     if (first < count) work(RowIndex<kind>(rows + first, count - first));
 }
 
-/// Calls change(component, of `from`) for each component of velocity.
+/// Calls change(component of `body`, component of `other`) for each component of velocity.
 template <class Body, class Change>
 void for_each_component(Body& body, const Body& other, const Change& change)
 {
@@ -95,14 +95,14 @@ void for_each_component(Body& body, const Body& other, const Change& change)
     }
 }
 
-/// By forces and gravity, and by what constraints did in the last substep where that is replayed.
+/// Applies forces and gravity and, where Replay says so, the velocity change by constraints in the last substep.
 template <BodyKind kind>
 void change_velocity(const KernelContext& context, const BodyArrays& arrays, const RowIndex<kind>& index,
                      Body<kind>& body)
 {
     const Body<kind> before = body;
     accelerate(context, arrays, index.offsets, body);
-    // A body without inverse mass is a null, free or contained row: it must not even fall.
+    // A row without inverse mass is the null row, unused, or a contained body: not even gravity moves it.
     const auto moves = body.inverse_mass > Lanes(0);
     for_each_component(body, before, [&](Lanes& now, const Lanes& then) { now = select(moves, now, then); });
     if (context.replay == Replay::nothing) return;
@@ -119,7 +119,7 @@ void change_velocity(const KernelContext& context, const BodyArrays& arrays, con
     store_velocity(arrays_unpushed, index.offsets, unpushed, index.count);
 }
 
-/// Velocity and acceleration times acceleration: see flew_freely.
+/// The products v . a and a . a of velocity v and acceleration a: see flew_freely.
 struct Along {
     Lanes v_a, a_a;
 };
@@ -147,8 +147,8 @@ void integrate_velocities(const KernelContext& context, std::int32_t begin, std:
         change_velocity(context, arrays, index, body);
         store_velocity(arrays, index.offsets, body, index.count);
         if constexpr (begins) {
-            // Stored last: for all the compiler knows, it could change what change_velocity() has yet to load. A whole bundle
-            // is one store.
+            // Stored last, because the compiler must assume that this store changes what change_velocity() loads. A
+            // whole bundle is one store.
             float* to = arrays.start_along + index.offsets[0] / offsets_a_row(kind);
             if (index.count == Lanes_width) {
                 for (int lane = 0; lane < Lanes_width; ++lane) to[lane] = start[lane];
@@ -161,10 +161,11 @@ void integrate_velocities(const KernelContext& context, std::int32_t begin, std:
 
 // ---- x += h v ----------------------------------------------------------------------------------------
 
-/// Turns a body by the velocity that it has half way, and carries its angular momentum L = I w through the turn: its speed is
-/// what its turned inertia makes of that. So L is kept to rounding, the turn is right to second order, and a tumbling body
-/// cannot gain energy without bound. One that turns by more than a radian a substep, which no substep can follow, or has no inverse
-/// inertia keeps its speed instead, and with it its energy.
+/// Rotates a body by its angular velocity at the middle of the substep, and carries its angular momentum L = I w
+/// through the rotation (I: inertia, w: angular velocity): afterwards w = I^-1 L with the rotated inertia. So L is
+/// kept to rounding, the rotation is right to second order, and a tumbling body cannot gain energy without bound. A
+/// body that turns by more than a radian per substep, which no substep can follow, or that has no inverse inertia
+/// keeps w instead, and with it its energy.
 inline void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inertia, const Lanes& h)
 {
     const Vec3<Lanes> speed = body.angular;
@@ -194,7 +195,7 @@ void advance(const BodyArrays& arrays, const std::int32_t* offsets, Body<kind>& 
         body.delta_rotation = normalised(rotation_by(h * body.angular) * body.delta_rotation);
 }
 
-/// `runs_on`: and the velocities of the next substep.
+/// Integrates positions and, with `runs_on`, the velocities of the next substep.
 template <BodyKind kind, bool runs_on>
 [[gnu::always_inline]] inline void move_on(const KernelContext& context, const RowIndex<kind>& index)
 {

@@ -1,4 +1,4 @@
-// What files of kernels need from outside, before they open their anonymous namespaces.
+// The headers that files of kernels include before they open their anonymous namespaces.
 #pragma once
 
 #include <algorithm>

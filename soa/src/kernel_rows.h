@@ -1,4 +1,4 @@
-// Rows in and out of lanes. Included inside an anonymous namespace, after Lanes.
+// Loads rows into lanes and stores them. Included inside an anonymous namespace, after Lanes.
 
 inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float));
 
@@ -10,7 +10,7 @@ void unused(const Numbers&...)
 template <class Row>
 inline constexpr int fields_of = std::is_empty_v<Row> ? 0 : static_cast<int>(sizeof(Row) / sizeof(Lanes));
 
-/// A row is nothing but Reals, so it is its fields in line: field i of lanes l ... is at stream[16 i + l].
+/// A row consists of Reals only, stored field by field: field i of the lanes from l on is at stream[16 i + l].
 template <class Row, int... field>
 void load_fields(Row& row, const float* stream, std::integer_sequence<int, field...>)
 {

@@ -8,7 +8,7 @@ namespace motley {
 
 inline constexpr int class_count = constraint_type_count * body_kind_count * body_kind_count;
 
-/// By class_of, by kind of body, and of figures.
+/// Kernels of constraints by class_of, of bodies by kind, and of figures.
 struct KernelTable {
     ConstraintKernels constraints[class_count];
     BodyKernels bodies[body_kind_count];

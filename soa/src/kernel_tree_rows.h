@@ -1,14 +1,15 @@
-// J and C of the locks that a body hangs by, in the two forms that a tree keeps them. Included inside an anonymous
-// namespace, before kernel_trees.h.
+// The Jacobian J and the position errors C of the locks between a child body and its parent, in the two forms in
+// which a tree keeps them. Included inside an anonymous namespace, before kernel_trees.h.
 //
-// Of a point's rows most numbers are 0 or 1. What hangs by one point and locks of turning (by a ball-socket, a hinge or a
-// fixed joint: nearly every figure does) keeps its levers and computes without the rest, which leaves a third of the memory
-// and half of the work. Sums are in the order of the whole rows: the bits are the same.
+// Most numbers in the rows that hold a point on a point are 0 or 1. A node with one such point and purely angular
+// rows (a ball-socket, a hinge or a fixed joint: nearly every figure) keeps only its lever arms and computes without
+// the rest, which takes a third of the memory and half of the work. Sums are in the order of the whole rows, so the
+// bits are the same.
 
 using Row6 = Lanes[6];
 
-/// Calls work(i) for i = 0 ... count - 1, each i a constant: what a node computes with has to stay in registers, and
-/// compilers give up unrolling loops within loops.
+/// Calls work(i) for i = 0 ... count - 1, each i a compile-time constant: the numbers of a node must stay in
+/// registers, and compilers give up on unrolling loops within loops.
 template <int count, class Work>
 [[gnu::always_inline]] inline void unrolled(const Work& work)
 {
@@ -38,13 +39,14 @@ inline void put(const Vec3<Lanes>& linear, const Vec3<Lanes>& angular, Row6& out
     out[3] = angular.x, out[4] = angular.y, out[5] = angular.z;
 }
 
-/// The lever of a point's rows along x, y and z: r x e_x = (0, r_z, -r_y), ...
+/// The lever arm r of a point, from its rows: r x e_x = (0, r_z, -r_y) along x, r x e_y = (-r_z, 0, r_x) along y.
 inline Vec3<Lanes> lever_of_point(const Vec3<Lanes>& along_x, const Vec3<Lanes>& along_y)
 {
     return {along_y.z, -along_x.z, along_x.y};
 }
 
-/// A row pushes where it acts, and turns nothing there; one without a linear part turns.
+/// Adds a row's wrench at the point where the row acts: there a row with a linear part is a pure impulse, and one
+/// without is a pure angular impulse.
 inline void add_row(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, const Lanes& lambda,
                     Wrench<Lanes>& sum)
 {
@@ -53,14 +55,14 @@ inline void add_row(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, const L
     sum.turn = sum.turn + turns * lever;
 }
 
-/// Locks of any kind: J on the body that hangs, on the one that it hangs on, and C. Rows are told by integral constants.
+/// Locks of any kind: J on the child body, J on the parent body, and C. Rows are indexed by integral constants.
 template <int rows>
 struct AnyRows {
     static constexpr int count = rows;
     Row6 child[rows], parent[rows];
     Lanes error[rows];
 
-    /// From EqualityRows, and from what keep() left of them.
+    /// of() reads EqualityRows, kept() what keep() has stored in their place.
     static AnyRows of(const float* from)
     {
         AnyRows out;
@@ -78,7 +80,8 @@ struct AnyRows {
         unrolled<rows>(
             [&](auto i) { store_lanes(error[i], to + i * FigureNode::row_floats + 9 * block_lanes); });
     }
-    /// Entries of J on the child before this one are 0; J on the parent of this row and those before it is 0 there.
+    /// Entries of J on the child before first_entry(row) are 0. If reaches_parent(row, entry) is false, that entry of
+    /// J on the parent is 0 in this row and in those before it.
     static constexpr int first_entry(int) { return 0; }
     static constexpr bool reaches_parent(int, int) { return true; }
 
@@ -92,12 +95,12 @@ struct AnyRows {
     }
     Lanes along_child(auto i, const Row6& x) const { return dot6(child[i], x); }
     Lanes along_parent(auto i, const Row6& x) const { return dot6(parent[i], x); }
-    /// x += J^T y of the body that it hangs on.
+    /// x += J^T y of the parent body.
     void push_parent(const Lanes (&y)[rows], Row6& x) const
     {
         unrolled<rows>([&](auto i) { unrolled<6>([&](auto c) { x[c] = x[c] + y[i] * parent[i][c]; }); });
     }
-    /// What lambda of the rows from `first` to before `last` is on the child, where they act.
+    /// The wrench of the impulses lambda of rows [first, last) on the child body, at the point where they act.
     [[nodiscard]] Wrench<Lanes> wrench(const Lanes (&lambda)[rows], int first, int last) const
     {
         const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
@@ -111,14 +114,14 @@ struct AnyRows {
     }
 };
 
-/// Three rows of a point on a point along x, y and z, and locks of turning.
+/// Three rows that hold a point on a point along x, y and z, and purely angular rows.
 template <int rows>
 struct PointRows {
     static constexpr int count = rows;
     static constexpr int turns = rows - 3;
     Vec3<Lanes> arm_child, arm_parent;
     Lanes error[rows];
-    Vec3<Lanes> turn[turns > 0 ? turns : 1];  ///< J on the child, and - J on the parent
+    Vec3<Lanes> turn[turns > 0 ? turns : 1];  ///< angular rows: J on the child, and -J on the parent
 
     static PointRows of(const float* from)
     {
@@ -181,7 +184,7 @@ struct PointRows {
             x[5] = x[5] - y[3 + i] * turn[i].z;
         });
     }
-    /// Of the only lock.
+    /// The wrench of the node's only lock.
     [[nodiscard]] Wrench<Lanes> wrench(const Lanes (&lambda)[rows], int, int) const
     {
         Wrench<Lanes> sum{{lambda[0], lambda[1], lambda[2]}, {Lanes(0), Lanes(0), Lanes(0)}};

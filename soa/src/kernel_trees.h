@@ -1,16 +1,19 @@
-// All locks of a figure at once: J M^-1 J^T factored along its tree, a copy a lane. Included inside an anonymous
-// namespace, after kernel_tree_rows.h.
+// Solves all locks of a figure at once: J M^-1 J^T is factored along its tree, one copy per lane. Included inside an
+// anonymous namespace, after kernel_tree_rows.h.
 //
 // In the system
 //
 //   | M  -J^T | | change |   |   0    |
 //   | J    0  | | lambda | = | target |,   target = -(J v + rate C)
 //
-// a body that nothing hangs on is eliminated first, then its locks, which add J_p^T K^-1 J_p to the mass of the body that
-// they hang on: the articulated inertia of R. Featherstone (Rigid Body Dynamics Algorithms, 2008, chapter 7). Masses
-// are only ever added, so nothing cancels whatever their ratio; eliminated from the locks' side, 1/m + 1/m' - ... would.
+// (M: mass matrix, J: Jacobian of the locks, v: velocities, change: what is added to v, lambda: impulses, C: position
+// errors, rate: share of C to remove, 1/s) a body without children is eliminated first, then its locks, which add
+// J_p^T K^-1 J_p to the mass matrix of the parent body, where J_p is their Jacobian on the parent and K^-1 their
+// effective mass: the articulated inertia of R. Featherstone (Rigid Body Dynamics Algorithms, 2008, chapter 7).
+// Masses are only ever added, so nothing cancels whatever their ratio. If all bodies were eliminated first, the
+// system of the locks would consist of terms 1/m + 1/m' - ..., which cancel.
 
-/// Of a lower triangle row by row, the diagonal with it.
+/// The index of an entry of a lower triangle that is stored row by row, including the diagonal.
 constexpr int in_triangle(int row, int column)
 {
     return row * (row + 1) / 2 + column;
@@ -23,8 +26,8 @@ struct Triangle {
     Lanes& at(int row, int column) { return entry[in_triangle(row, column)]; }
     const Lanes& at(int row, int column) const { return entry[in_triangle(row, column)]; }
 };
-/// Factors K in place, whose pivots are known to be at least `least`: what rounding takes from a pivot is given back.
-/// Rows without a pivot get nothing.
+/// Factors K in place. Its pivots are known to be at least `least`, so one that rounding has made smaller is raised
+/// to that. For a row without a pivot, 1 / D is 0.
 template <int n>
 void factor_in_place(Triangle<n>& k, const Lanes (&least)[n])
 {
@@ -56,7 +59,7 @@ void solve_in_place(const Triangle<n>& f, Lanes (&x)[n])
     });
 }
 
-/// Locks that have the hanging body as their body a are turned round: J v and C change sign.
+/// Swaps the sides of a row whose body a is the child body: J v and C change sign.
 inline void turn_round(float* row)
 {
     auto r = load_row<EqualityRow<Lanes>>(row);
@@ -69,7 +72,7 @@ Triangle<n> load_factor(const float* from)
     return load_row<Triangle<n>>(from);
 }
 
-/// M of a body; of what does not move that of a body of 1 kg, for its pivots are struck out.
+/// M of a body. One that does not move gets 1 kg here, and factor_mass() clears its pivots.
 inline Triangle<6> mass_of(const Mover& body)
 {
     const auto moves = body.inverse_mass > Lanes(0);
@@ -87,13 +90,13 @@ inline void pivots_of(const Mover& body, const Triangle<6>& mass, Row6& pivots)
 {
     pivots[0] = pivots[1] = pivots[2] = mass.at(0, 0);
     pivots[3] = mass.at(3, 3);
-    // In this order: squares of moments leave the range of floats.
+    // In this order, because squares of moments of inertia leave the range of floats.
     pivots[4] = mass.at(4, 4) - mass.at(4, 3) * (mass.at(4, 3) * inverse_or_zero(mass.at(3, 3)));
     // The last pivot of I is 1 / (I^-1)_zz.
     pivots[5] = inverse_or_zero(body.inverse_inertia.zz);
 }
 
-/// Factors M', in whose pivots nothing is less than in those of M alone.
+/// Factors M', whose pivots are at least those of the body's own M.
 inline void factor_mass(const Mover& body, const Row6& pivots_alone, Triangle<6>& mass)
 {
     factor_in_place(mass, pivots_alone);
@@ -101,14 +104,16 @@ inline void factor_mass(const Mover& body, const Row6& pivots_alone, Triangle<6>
     unrolled<6>([&](auto i) { mass.at(i, i) = select(moves, mass.at(i, i), Lanes(0)); });
 }
 
-/// Share of J M^-1 J^T of the body alone below which a pivot of K is nothing but rounding.
+/// A pivot of K below this share of J M^-1 J^T of the child body alone is only rounding.
 constexpr float tree_rounding = 1e-7F;
 
-/// How far a substep may turn a body, rad, to mend what the last ones left of its locks. A light link that whips round
-/// leaves more than that; mended at once it would be thrown, and leave more yet.
+/// How far a substep may rotate a body (rad) to correct the position error of its locks. A light link that swings
+/// fast has a larger error: correcting it at once would throw the link, and the next substep would have a larger
+/// error still.
 constexpr float tree_turn = 0.25F;
 
-/// The size of a node's levers, m (of its axes, 1): what an error divided by it turns bodies by.
+/// The size of a node's lever arms, m (1 for an angular row). An error divided by it is about the angle by which
+/// correcting it rotates the bodies.
 template <class Rows>
 Lanes reach_of(const Rows& j)
 {
@@ -150,7 +155,7 @@ void factor_locks(const Mover& body, const FigureNode& node, float* system, floa
     factor_in_place(k, least);
     store_row(k, system + node.factor);
     if (parent_mass == nullptr) return;
-    // J_p^T K^-1 J_p = B^T D^-1 B, B = L^-1 J_p.
+    // J_p^T K^-1 J_p = B^T D^-1 B with K = L D L^T and B = L^-1 J_p.
     auto sum = load_row<Triangle<6>>(parent_mass);
     Row6 b[rows];
     unrolled<rows>([&](auto i) {
@@ -172,10 +177,11 @@ void factor_locks(const Mover& body, const FigureNode& node, float* system, floa
     store_row(sum, parent_mass);
 }
 
-/// Whether what is solved is the step, or what the tree answers to a push while all the world stands still.
+/// `solves`: a solve of the step. `answers`: the response of the tree to an impulse while everything else is at rest.
 enum class TreeSweep { solves, answers };
 
-/// From what hangs to what it hangs on: y = K^-1 (target - J_c M'^-1 f), and what it pulls with.
+/// From child to parent: computes y = K^-1 (target - J_c M'^-1 f), where J_c is the Jacobian on the child and f the
+/// force on it, and adds J_p^T y to the force on the parent.
 template <class Rows>
 void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, float* parent_force,
               const Row6& change, const Lanes& rate, TreeSweep sweep, int lane)
@@ -212,7 +218,7 @@ inline float* impulse_of(const FigureBlock& figure, int joint)
            static_cast<std::int64_t>(lanes.block) * lanes.kernels->impulse_floats * block_lanes;
 }
 
-/// What a lock of the tree did more to its body b.
+/// Adds what a lock of the tree has just done to its body b to the sum of the step.
 inline void add_to_sum(const FigureBlock& figure, int joint, const Wrench<Lanes>& more, int lane)
 {
     const FigureBlock::Joint& lanes = figure.joints[joint];
@@ -222,7 +228,7 @@ inline void add_to_sum(const FigureBlock& figure, int joint, const Wrench<Lanes>
     store_row(Wrench<Lanes>{sum.push + more.push, sum.turn + more.turn}, at);
 }
 
-/// And back: lambda = y - K^-1 J_p (change of what it hangs on), change = M'^-1 (f + J_c^T lambda).
+/// From parent to child: lambda = y - K^-1 J_p (velocity change of the parent), change = M'^-1 (f + J_c^T lambda).
 template <class Rows>
 void reach_down(const FigureBlock& figure, const FigureNode& node, float* system, const float* parent_change,
                 Row6& change, TreeSweep sweep, int lane)
@@ -258,7 +264,7 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
     }
 }
 
-/// Calls work with a null pointer to the form of a node's rows.
+/// Calls work with a null pointer whose type is the form of the node's rows: PointRows or AnyRows.
 template <class Work>
 void with_rows(const FigureNode& node, const Work& work)
 {
@@ -275,11 +281,13 @@ void with_rows(const FigureNode& node, const Work& work)
     });
 }
 
-/// Between light bodies that bear heavy loads a taut joint is a stiff spring against turning: a substep that sees its
-/// force stay where it was swings them wider each time, however exactly it holds the joint. So the spin that the end of
-/// the substep brings is taken into account: (M + h2 K) w' = M w + ..., with K = (f . r)(1 - n n^T), n = r / |r|, of a force f
-/// that pulls at the lever r. (M. Tournier and others, Stable Constrained Dynamics, 2015; S. Andrews and others,
-/// Geometric Stiffness, 2017.) Only as much of it as an explicit substep cannot follow.
+/// Between light bodies under heavy load a taut joint is a stiff spring against rotation. A substep that takes the
+/// joint's force f as constant swings the bodies wider each time, however exactly it holds the joint. So the angular
+/// velocity w' at the end of the substep is taken into account: (M + h2 K) w' = M w + ..., with
+/// K = (f . r)(1 - n n^T) and n = r / |r|, where M is the inertia, h the substep, w the angular velocity before, and
+/// r the lever arm at which f pulls; `tension` is h2 f. (M. Tournier and others, Stable Constrained Dynamics, 2015;
+/// S. Andrews and others, Geometric Stiffness, 2017.) Only the part of K that an explicit substep cannot follow is
+/// used.
 inline void stiffen(const Mover& body, const Vec3<Lanes>& lever, const Vec3<Lanes>& tension, float* mass,
                     float* pull)
 {

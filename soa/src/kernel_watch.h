@@ -1,7 +1,7 @@
-// What a sweep changes of bodies, of a block of them in any place: see watched_sweep.h. Included inside an anonymous
+// Measures what a sweep changes of the bodies of a block: see watched_sweep.h. Included inside an anonymous
 // namespace, after kernel_integration.h.
 
-/// Bodies as they are, fields of sixteen floats in line.
+/// Copies the bodies into fields of sixteen consecutive floats.
 template <BodyKind kind>
 void keep_bodies(const BodyArrays& arrays, const std::int32_t* offsets, float* kept)
 {
@@ -21,7 +21,7 @@ void find_energy(const BodyArrays& arrays, const std::int32_t* offsets, const fl
     }
 }
 
-/// Velocities as they were kept.
+/// Restores the kept velocities.
 template <BodyKind kind>
 void bring_back(const BodyArrays& arrays, const std::int32_t* offsets, const float* kept, int count)
 {

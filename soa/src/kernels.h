@@ -28,8 +28,8 @@ constexpr bool is_built(BodyKind kind)
     }
 }
 
-/// Whether there is such a pair at all: two bodies that cannot move need no constraint, a particle has no axes to lock, and
-/// the scene refuses both.
+/// Whether the scene accepts such a pair. It refuses two bodies that cannot move, which need no constraint, and a
+/// particle where the type locks axes, which a particle does not have.
 template <class Type, BodyKind a, BodyKind b>
 constexpr bool occurs()
 {
@@ -37,28 +37,29 @@ constexpr bool occurs()
     constexpr bool has_particle = a == BodyKind::particle || b == BodyKind::particle;
     return is_built(a) && is_built(b) && moves && !(has_particle && Type::needs_bodies_that_turn);
 }
-/// Moving bodies of two models.
+/// Two moving bodies of different kinds.
 constexpr bool is_mixed(BodyKind a, BodyKind b)
 {
     return a != b && a != BodyKind::fixed && b != BodyKind::fixed;
 }
-/// Bodies of one model, or of one and fixed ones; but not joints of planar bodies about axes, whose rows are mostly of what the
-/// plane forbids: a ball-socket is the hinge of the plane, a distance its rope.
+/// Two bodies of one kind, or one of them fixed. Not joints about axes on planar bodies: most of their rows lock what
+/// the plane forbids anyway, and in the plane a ball-socket serves as the hinge and a distance joint as the rope.
 template <class Type, BodyKind a, BodyKind b>
 constexpr bool is_usual()
 {
     const bool is_planar = a == BodyKind::planar || b == BodyKind::planar;
     return !is_mixed(a, b) && !(is_planar && Type::needs_bodies_that_turn) && !Type::is_rare;
 }
-/// Joints between moving bodies of two models are few in any scene: one copy of them, of one lane, serves every instruction
-/// set, with the same bits. See kernel_table().
+/// Joints between moving bodies of different kinds are few in any scene, so one scalar copy of their kernels serves
+/// every instruction set, with the same bits. See kernel_table().
 template <class Type, BodyKind a, BodyKind b>
 constexpr bool is_left_to_scalar()
 {
     return Lanes_width > 1 && is_mixed(a, b) && !Type::is_contact;
 }
 
-/// Of a joint that does not ask which of its bodies are fixed: such a body is a rigid one without inverse mass.
+/// The kind as which a kernel computes a body: a joint that does not need to know which of its bodies are fixed takes
+/// a fixed body for a rigid one without inverse mass.
 template <class Type, BodyKind kind, BodyKind partner>
 constexpr BodyKind computed_as()
 {

@@ -1,12 +1,12 @@
-// A bundle of lanes as a Real: xsimd's batch under the few operations that constraint maths may use. The
-// wrapper exists because equal bits need one answer everywhere: negation flips the sign (xsimd 8.1 subtracts
-// from zero with AVX-512, which loses -0), and nothing that differs between instruction sets has a name here.
+// A bundle of lanes as a Real: xsimd's batch under the few operations that constraint maths may use. The wrapper
+// exists because every instruction set must give the same bits: negation flips the sign (xsimd 8.1 subtracts from
+// zero with AVX-512, which loses -0), and no operation that differs between instruction sets is offered.
 //
-// Included by one kernels_*.cpp each, inside an anonymous namespace: every template over these lanes then has
-// internal linkage, so code compiled for a wide instruction set cannot be picked by the linker for another.
-// No include guard and no includes: the including file sets Arch first.
+// Included once by each file of kernels (see constraint_kernels.cpp), inside an anonymous namespace: every template
+// over these lanes then has internal linkage, so code compiled for a wide instruction set cannot be picked by the
+// linker for another. No include guard and no includes: the including file sets Arch first.
 
-// Rounded to nearest: what does not do that has its own (exact_neon.h).
+// Both must round to nearest. Where xsimd does not, overloads replace them (exact_neon.h).
 template <class Batch>
 [[gnu::always_inline]] inline Batch quotient(const Batch& x, const Batch& y)
 {

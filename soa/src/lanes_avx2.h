@@ -1,4 +1,4 @@
-// AVX2: eight lanes. Compiled with FMA allowed but contraction off: equal bits forbid it.
+// AVX2: eight lanes. Compiled with FMA enabled but without contraction, which would change the bits.
 // Included inside an anonymous namespace, once by each file of kernels: see constraint_kernels.cpp.
 
 using Arch = xsimd::avx2;

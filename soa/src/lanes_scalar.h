@@ -1,4 +1,4 @@
-// Scalar: one lane, the lane maths instantiated on float. What the other instruction sets must equal to the bit.
+// Scalar: one lane, the lane maths instantiated on float. The other instruction sets must give the same bits.
 // Included inside an anonymous namespace, once by each file of kernels: see constraint_kernels.cpp.
 
 using Lanes = float;

@@ -21,13 +21,13 @@ namespace motley {
 /// Rows of bodies begin ... end - 1: the unit of work of an integration.
 struct RowRange {
     std::int32_t begin, end;
-    std::int32_t beside = 0;  ///< how many of them no patch lists
+    std::int32_t beside = 0;  ///< how many of them are in no patch
 };
 
 /// How joints may be solved in this step.
 struct FigureUse {
-    bool in_lockstep = false;  ///< figures that nothing else touches, away from all others
-    bool exactly = false;      ///< locks that form trees, at once
+    bool in_lockstep = false;  ///< figures that nothing else touches are solved on their own
+    bool exactly = false;      ///< all locks of a figure are solved at once, by its tree
 };
 
 /// Lives as long as its solver; buffers are kept from step to step. What persists of a result (colours,
@@ -38,7 +38,7 @@ class Layout {
 
     /// First the host's contacts are taken in...
     ContactIntake intake;
-    /// ...then room is made, and joints that changed are coloured and placed...
+    /// ...then space is made, and the joints are coloured and placed if they have changed...
     void begin(Scene& scene, std::size_t contact_count, const FigureUse& use);
     /// ...then every contact gets a colour, in order, by one thread, without allocating...
     void colour_contacts(const BodyStore& bodies, ContactList& list);
@@ -48,10 +48,10 @@ class Layout {
     /// ...and the blocks are cut into work.
     void cut(Scene& scene, std::span<const Contact> list, bool tells_apart);
 
-    /// The step's numbers and the rows of the bodies.
+    /// The step's constants and the rows of the bodies.
     KernelContext context;
     void point_at(Scene& scene, const StepConstants& step);
-    /// Once the joints are prepared: some pull harder than a substep can follow (tension.h).
+    /// After the joints are prepared: whether one of them pulls harder than a substep can follow (tension.h).
     [[nodiscard]] bool is_overloaded() const { return overloaded_; }
 
     [[nodiscard]] const SweepLists& sweeps() const { return sweeps_; }
@@ -59,23 +59,23 @@ class Layout {
     [[nodiscard]] std::span<const Placement> contact_placements() const { return contacts.placements(); }
     /// The figures of the scene, and which of them are solved on their own.
     Figures figures;
-    /// What joints tie together.
+    /// Groups of bodies that joints connect: see FreeGroups.
     FreeGroups groups;
-    /// The bodies of a kind, less those of figures that are alone.
+    /// The bodies of a kind, except those of figures that are alone.
     [[nodiscard]] const std::vector<RowRange>& rows(int kind) const
     {
         return rows_[static_cast<std::size_t>(kind)];
     }
-    /// Finds those of range `i` of a kind that no patch lists...
+    /// Lists the bodies of range `i` of a kind that are in no patch...
     void list_beside_patches(BodyKind kind, std::int64_t i);
-    /// ...which are then here.
+    /// ...and returns them.
     [[nodiscard]] std::span<const BodyRow> beside_patches(BodyKind kind, std::int64_t i) const;
     [[nodiscard]] const TransferList& transfers() const { return transfers_; }
     [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
     [[nodiscard]] std::span<const ConstraintData> data() const { return data_; }
     [[nodiscard]] const KernelTable& kernels() const { return kernels_; }
-    /// True when M^-1 J^T of no constraint turns within the step: contacts alone, and no rigid body, whose
-    /// inertia turns with it.
+    /// True when M^-1 J^T of every constraint is constant through the step (M: mass matrix, J: Jacobian): there are
+    /// contacts only, and no rigid bodies, whose inertia rotates with them.
     [[nodiscard]] bool has_constant_responses() const
     {
         return joints_.is_empty() &&
@@ -91,20 +91,20 @@ class Layout {
     std::vector<std::uint32_t> uncoloured_;
     std::shared_ptr<const char> joint_version_;
     FigureUse use_;
-    /// What the cuts of joints depend on beside the joints, where no contact takes part.
+    /// What the chunks of a step without contacts depend on in addition to the joints.
     struct Cut {
         std::array<std::uint32_t, body_kind_count> rows;
         bool in_lockstep, tells_apart;
         friend bool operator==(const Cut&, const Cut&) = default;
     };
-    std::optional<Cut> cut_;  ///< what the lists still are of
+    std::optional<Cut> cut_;  ///< what sweeps_ and transfers_ were cut for; empty if they must be cut again
     std::vector<Figures::Candidate> candidates_;
     std::vector<FreeGroups::Tie> ties_;
     std::array<std::vector<std::uint8_t>, body_kind_count> is_jointed_;  ///< by kind and row
     std::array<AlignedVector<float>, body_kind_count> start_along_;      ///< see Flight
     std::atomic<bool> overloaded_ = false;
     std::array<std::vector<RowRange>, body_kind_count> rows_;
-    std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< of each range, where the range begins
+    std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< in no patch; at the range's first row
     ColourMasks joint_masks_, masks_;
     SweepLists sweeps_;
     TransferList transfers_;

@@ -1,12 +1,13 @@
 // Patches: parts of a large crowd whose contacts are solved on their own, in a core's cache.
 //
-// A sweep by colours alone passes all bodies once a colour, and a cache line of four bodies for the sake of one: a crowd that
-// no cache holds would come through memory five times a sweep. So the host's list is cut into stretches. A moving body is of
-// the patch of the first stretch that touches it, and a contact among bodies of its own stretch's patch is inside: nothing
-// inside one patch touches what is inside another, and each is swept colour after colour by one thread, apart from all that
-// lies across. A patch's bodies are listed, so that one visit can solve it, move its bodies and relax it. A list in which
-// neighbours in space are neighbours leaves little across; any other only has less inside. What is inside depends on the order
-// of the list alone, not on threads, lanes or where bodies lie in memory.
+// A sweep by colours alone reads all bodies once per colour, and a cache line of four bodies for the sake of one: a
+// crowd that fits no cache would be read from memory five times a sweep. So the host's list of contacts is cut into
+// stretches, one for each patch. A moving body belongs to the patch of the first stretch that touches it. A contact
+// is inside the patch of its stretch if its moving bodies belong to that patch. Contacts inside different patches
+// share no moving body, so each patch is swept by one thread, colour after colour, apart from the contacts that are
+// in no patch. A patch's bodies are listed, so that one visit can solve it, move its bodies and relax it. A list in
+// which neighbours in space are neighbours leaves few contacts in no patch; any other list only has fewer inside.
+// What is inside depends only on the order of the list, not on threads, lanes or where bodies are in memory.
 #pragma once
 
 #include <algorithm>
@@ -24,12 +25,12 @@ namespace motley {
 
 class Patches {
   public:
-    /// A stretch. With bodies, rows and impulses its patch takes about 300 KB.
+    /// The length of a stretch. With bodies, rows and impulses its patch takes about 300 KB.
     static constexpr std::size_t contacts_a_patch = 4096;
-    /// Fewer contacts fit the caches by themselves, and make too few patches for many threads to share.
+    /// Fewer contacts get no patches: they fit the caches anyway, and would be too few patches for many threads.
     static constexpr std::size_t from_contacts = std::size_t{1} << 16;
 
-    /// Starts over for a list of so many contacts.
+    /// Starts over for a list of `contacts` contacts.
     void begin(const BodyStore& bodies, std::size_t contacts)
     {
         wanted_ = contacts >= from_contacts && contacts / contacts_a_patch < most_patches;
@@ -46,7 +47,8 @@ class Patches {
     }
     [[nodiscard]] bool are_wanted() const { return wanted_; }
 
-    /// Contact `index` of the list touches this body. May be called from several threads: the first of the list wins.
+    /// Notes that contact `index` of the list touches this body. May be called from several threads: the first
+    /// contact of the list wins.
     void claim(BodyRow body, std::uint32_t index)
     {
         if (body.kind() == BodyKind::fixed) return;
@@ -56,7 +58,8 @@ class Patches {
         while (mine > seen && !owner.compare_exchange_weak(seen, mine, std::memory_order_relaxed)) {
         }
     }
-    /// When all are claimed: goes along a patch's stretch of the list, told of every body, and lists those of the patch.
+    /// After all claims: is told of every body of a patch's stretch of the list, and lists those that belong to the
+    /// patch.
     class Roll {
       public:
         Roll(Patches& patches, std::size_t patch)
@@ -66,11 +69,11 @@ class Patches {
               end_(patches.bodies_.data() + patch * bodies_a_patch)
         {
         }
-        /// The patch's bodies of one kind lie in line.
+        /// Sorts the patch's bodies by kind.
         ~Roll();
         Roll(const Roll&) = delete;
         Roll& operator=(const Roll&) = delete;
-        /// Whether the body is of the patch, or cannot move.
+        /// Whether the body belongs to the patch or cannot move. Lists it when it belongs and is not listed yet.
         [[nodiscard]] bool holds(BodyRow body)
         {
             if (body.kind() == BodyKind::fixed) return true;
@@ -78,7 +81,8 @@ class Patches {
                 patches_.owners_[static_cast<std::size_t>(body.kind())][body.row()]);
             const std::uint32_t found = owner.load(std::memory_order_relaxed);
             if ((found | listed) != (claim_ | listed)) return false;
-            // Written always and counted when new: no predictor guesses who has been listed.
+            // Written in any case and counted only when new: a branch on whether a body is new would often be
+            // mispredicted.
             owner.store(claim_ | listed, std::memory_order_relaxed);
             *end_ = body;
             end_ += found == claim_ ? 1 : 0;
@@ -91,7 +95,7 @@ class Patches {
         std::uint32_t claim_;
         BodyRow* end_;
     };
-    /// Of the present list and a kind that moves.
+    /// A patch's bodies of one kind, which must be a moving one, in the present list.
     [[nodiscard]] std::span<const BodyRow> bodies_of(std::size_t patch, BodyKind kind) const
     {
         const KindCounts& counts = counts_[patch];
@@ -100,7 +104,7 @@ class Patches {
             first += counts[before];
         return {bodies_.data() + first, counts[static_cast<std::size_t>(kind)]};
     }
-    /// Whether a patch lists the body, of a kind that moves.
+    /// Whether a patch lists the body, which must be of a moving kind.
     [[nodiscard]] bool lists(BodyRow body) const
     {
         return owners_[static_cast<std::size_t>(body.kind())][body.row()] >> list_shift == list_;
@@ -108,24 +112,25 @@ class Patches {
 
   private:
     static constexpr int moving_kinds = 3;
-    static constexpr std::size_t bodies_a_patch = 2 * contacts_a_patch + 1;  // and one to write to in vain
+    static constexpr std::size_t bodies_a_patch = 2 * contacts_a_patch + 1;  // one more, for dummy writes
     using KindCounts = std::array<std::uint32_t, moving_kinds>;
-    // A claim: the number of the list, the patch, and a bit for a body that its patch has listed.
+    // A claim consists of the number of the list, the patch, and a bit that says that the patch has listed the body.
     static constexpr int patch_bits = 17, list_shift = patch_bits + 1;
     static constexpr std::uint32_t listed = 1;
     static constexpr std::uint32_t most_patches = 1U << patch_bits;
     static constexpr std::uint32_t last_list = (1U << (32 - list_shift)) - 1;
-    /// A later list beats an earlier one, so that nobody has to take old claims away; in a list the first patch wins.
+    /// A claim of a later list is larger than any of an earlier one, so old claims need not be cleared. Within a list
+    /// the first patch has the largest claim.
     [[nodiscard]] std::uint32_t claim_of(std::size_t patch) const
     {
         return list_ << list_shift | (most_patches - 1 - static_cast<std::uint32_t>(patch)) << 1;
     }
 
     bool wanted_ = false;
-    std::uint32_t list_ = 0;  ///< a number of its own among the last few thousand lists
-    std::array<AlignedVector<std::uint32_t>, moving_kinds> owners_;  ///< the best claim, by row
+    std::uint32_t list_ = 0;  ///< the number of the list, unique among the last few thousand
+    std::array<AlignedVector<std::uint32_t>, moving_kinds> owners_;  ///< the largest claim, by row
     std::vector<KindCounts> counts_;                                 ///< of each patch's bodies
-    AlignedVector<BodyRow> bodies_;                                  ///< of each patch, in its own room
+    AlignedVector<BodyRow> bodies_;                                  ///< of each patch, in a range of its own
 };
 
 inline Patches::Roll::~Roll()

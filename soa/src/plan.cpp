@@ -1,4 +1,4 @@
-// See plan.h. make_plan() is the step, in the words of the README.
+// See plan.h. make_plan() lists the stages of a step as the README describes them.
 #include "plan.h"
 
 #include <algorithm>
@@ -98,7 +98,7 @@ void make_plan(const SolverSettings& settings, const StepNeeds& needs, Plan& pla
         stages->clear();
     plan.replays_warm_starts = false;
     if (settings.method == Method::direct) {
-        plan.substeps = 0;  // the reference makes its own
+        plan.substeps = 0;  // the reference solver makes its own
         plan.after = {{Operation::solve_directly}, {Operation::move_bodies}};
         return;
     }
@@ -118,12 +118,12 @@ void make_plan(const SolverSettings& settings, const StepNeeds& needs, Plan& pla
     in_substep({Operation::add_up_impulses, Substeps::all_but_first});
     in_substep({Operation::integrate_velocities});
     if (needs.solves_trees) {
-        // Where bodies relax, their trees have been factored after the last move.
+        // With relaxation, trees have been factored after the last integration of positions.
         in_substep({Operation::factor_trees, relaxes ? Substeps::first : Substeps::every});
         in_substep({Operation::begin_trees});
     }
     in_substep({Operation::warm_start});
-    // Limits and motors shall see bodies that hold together.
+    // Limits and motors must start from velocities with which the exact joints hold.
     if (needs.solves_trees) in_substep({Operation::solve_trees});
     in_substep({.operation = Operation::solve, .times = settings.iterations});
     if (needs.measures) in_substep({Operation::measure, Substeps::last});
@@ -131,7 +131,7 @@ void make_plan(const SolverSettings& settings, const StepNeeds& needs, Plan& pla
     if (projects && settings.projections > 0)
         in_substep({.operation = Operation::project, .times = settings.projections});
     if (relaxes) {
-        // Impulses act where the bodies are, or angular momentum is lost.
+        // Impulses must act at the present poses, or angular momentum is lost.
         if (needs.solves_trees) in_substep({Operation::factor_trees});
         in_substep({.operation = Operation::relax, .times = settings.relaxations});
     }

@@ -1,4 +1,4 @@
-// Quads in and out of eight lanes: two 4 x 4 transposes side by side. The upper half of each register is
+// Loads and stores quads in eight lanes: two 4 x 4 transposes side by side. The upper half of each register is
 // loaded by an insertion from memory, which does not need the shuffle port that bounds these kernels.
 
 [[gnu::always_inline]] inline void turn(__m256& r0, __m256& r1, __m256& r2, __m256& r3)
@@ -30,7 +30,8 @@
     out[3].v = r3;
 }
 
-/// The first `count` lanes of a bundle with padding: rows 0 to 3 and, in the upper halves, 4 to 7. Once a colour at most.
+/// Stores the first `count` lanes of a bundle with padding: `turned` holds rows 0 to 3 and, in the upper halves, 4 to
+/// 7. Runs at most once per colour.
 [[gnu::noinline, gnu::cold]] inline void store_some_quads(float* rows, std::int64_t stride,
                                                           const std::int32_t* index, const __m256* turned,
                                                           int count)

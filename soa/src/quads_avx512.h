@@ -1,4 +1,4 @@
-// Quads in and out of sixteen lanes: four 4 x 4 transposes side by side; see quads_avx.h for the insertions.
+// Loads and stores quads in sixteen lanes: four 4 x 4 transposes side by side; see quads_avx.h for the insertions.
 
 [[gnu::always_inline]] inline void turn(__m512& r0, __m512& r1, __m512& r2, __m512& r3)
 {
@@ -31,7 +31,7 @@
     out[3].v = r3;
 }
 
-/// The first `count` lanes of a bundle with padding. Once a colour at most.
+/// Stores the first `count` lanes of a bundle with padding. Runs at most once per colour.
 [[gnu::noinline, gnu::cold]] inline void store_some_quads(float* rows, std::int64_t stride,
                                                           const std::int32_t* index, const __m512* turned,
                                                           int count)

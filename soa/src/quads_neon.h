@@ -1,4 +1,4 @@
-// Quads in and out of four lanes with NEON; see quads_sse.h.
+// Loads and stores quads in four lanes with NEON; see quads_sse.h.
 
 [[gnu::always_inline]] inline void turn(float32x4_t& r0, float32x4_t& r1, float32x4_t& r2, float32x4_t& r3)
 {
@@ -21,7 +21,7 @@
     out[3].v = r3;
 }
 
-/// The first `count` lanes of a bundle with padding. Once a colour at most.
+/// Stores the first `count` lanes of a bundle with padding. Runs at most once per colour.
 [[gnu::noinline, gnu::cold]] inline void store_some_quads(float* rows, std::int64_t stride,
                                                           const std::int32_t* index,
                                                           const float32x4_t* turned, int count)

@@ -1,4 +1,4 @@
-// Quads in and out of one lane. See quads_sse.h for what a quad is.
+// Loads and stores quads in one lane. See quads_sse.h for what a quad is.
 
 [[gnu::always_inline]] inline float load_lanes(const float* address)
 {

@@ -1,7 +1,7 @@
-// Quads in and out of four lanes. A quad is four floats of a row in memory; `load_quads` fetches the quad at
-// rows + stride * index[lane] for each lane and turns them, so that out[i] holds float i of every lane. The
-// turn is a 4 x 4 transpose; wider lanes do the same in each 128-bit part (quads_avx.h, quads_avx512.h).
-// `store_quads` writes the first `count` lanes back.
+// Loads and stores quads in four lanes. A quad is four floats of a row in memory; `load_quads` fetches the quad at
+// rows + stride * index[lane] for each lane and transposes them, so that out[i] holds float i of every lane. `turn`
+// is a 4 x 4 transpose; wider lanes do the same in each 128-bit part (quads_avx.h, quads_avx512.h). `store_quads`
+// writes the first `count` lanes back.
 
 [[gnu::always_inline]] inline void turn(__m128& r0, __m128& r1, __m128& r2, __m128& r3)
 {
@@ -25,7 +25,7 @@
     out[3].v = r3;
 }
 
-/// The first `count` lanes of a bundle with padding. Once a colour at most.
+/// Stores the first `count` lanes of a bundle with padding. Runs at most once per colour.
 [[gnu::noinline, gnu::cold]] inline void store_some_quads(float* rows, std::int64_t stride,
                                                           const std::int32_t* index, const __m128* turned,
                                                           int count)

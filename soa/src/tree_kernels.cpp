@@ -1,4 +1,5 @@
-// All locks of a figure at once, a copy a lane, for one instruction set: see constraint_kernels.cpp.
+// The kernels that solve all locks of a figure at once, one copy per lane, for one instruction set: see
+// constraint_kernels.cpp.
 #include "kernel_prelude.h"
 
 namespace motley {

@@ -8,7 +8,7 @@
 namespace motley {
 namespace {
 
-/// One side of a block of rows, from before a sweep on.
+/// The bodies of one side (a or b) of a block, as they were before a sweep.
 class Side {
   public:
     Side(const KernelContext& context, const KernelTable& kernels, BodyKind kind, const std::int32_t* offsets)

@@ -1,4 +1,5 @@
-// The exact laws of crowds, at the default settings. Independent evidence: momentum balance and kinematics on paper.
+// The exact laws of crowds, at the default settings. Independent evidence: momentum balance and kinematics, done by
+// hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,10 +24,10 @@ RunResult run(const char* scene, std::int64_t agents, double seconds = 0, const 
 
 TEST(CrowdLaws, LeaningRowsHandOnWhatIsBehindThem)
 {
-    // Contact k from the back carries k F. Pass mark: a hundredth of what the wall bears, every step.
+    // Contact k from the back carries k F. Bound: a hundredth of the force on the wall, in every step.
     EXPECT_LT(run("lean-10", 100).error->value, 0.01);
     EXPECT_LT(run("lean-30", 90).error->value, 0.01);
-    // A hundred in line settle slowly at the default: README, "Limits and debts".
+    // A row of a hundred settles slowly at the default settings: tests/README.md, "Limits and debts".
     SolverSettings stiffest;
     stiffest.substeps = 16;
     stiffest.contact_hertz = 1e6F;
@@ -35,22 +36,22 @@ TEST(CrowdLaws, LeaningRowsHandOnWhatIsBehindThem)
 
 TEST(CrowdLaws, AnInelasticPulseTakesAllAlong)
 {
-    // The n-th is hit at g n (n + 1)/(2 v). Pass mark: a hundredth of that time, in which the first body, at v/n, goes
-    // (n + 1)/200 gaps: 0.045 at the eighth, the last that is hit within 3 s.
+    // The n-th disc is hit at g n (n + 1)/(2 v). Bound: an error of a hundredth of that time, in which the first
+    // disc, which moves at v/n, crosses (n + 1)/200 gaps: 0.045 for the eighth disc, the last that is hit within 3 s.
     EXPECT_LT(run("pulse", 20).error->value, 0.045);
 }
 
 TEST(CrowdLaws, AStripOfAPushedCrowdIsAnInelasticPulse)
 {
-    // Gaps are shorter than what a step covers. Pass mark as above: 10 s reach the 42nd, so 0.2 gaps at the end, and in the
-    // mean, as it grows with the root of time, the root of a half of that.
+    // Here a disc crosses more than a gap in a step. Bound as above: 42 discs are hit within 10 s, so 0.2 gaps at the
+    // end. The error grows with the root of time, so its rms over the run is the root of a half of that.
     EXPECT_LT(run("strip", 100).error->value, 0.2 * std::sqrt(0.5));
 }
 
 TEST(CrowdLaws, AnElasticPulseIsHandedOn)
 {
-    // Each moves on by a gap and stands. An impact is told to the next up to a step late: 1.5 m/s / 60 Hz = a quarter of the
-    // gap. (Here a gap takes four steps to the digit, and nothing is late.)
+    // Each disc moves on by a gap and stops. The next disc learns of an impact up to a step late, and 1.5 m/s / 60 Hz
+    // is a quarter of the gap. (Here a gap takes exactly four steps, so that nothing is late.)
     const RunResult result = run("bounce", 20);
     EXPECT_LT(result.error->value, 0.25);
     ASSERT_FALSE(result.figures.empty());
@@ -63,14 +64,14 @@ TEST(CrowdLaws, AWaveKeepsItsMomentum)
     const RunResult result = run("wave", 1000, 1);
     ASSERT_FALSE(result.figures.empty());
     EXPECT_EQ(result.figures.front().first, "momentum along, off what was given (share)");
-    // Rounding of 1,000 bodies' speeds, 60 steps of 4 substeps.
+    // Bound: rounding of 1,000 bodies' speeds in 60 steps of 4 substeps.
     EXPECT_LT(std::abs(result.figures.front().second), 1e-5);
     EXPECT_LT(result.overlap_p99, 0.01);
 }
 
 TEST(Runs, TellOfAllTheirStepsInNumbers)
 {
-    // The pulse has left the row long before the end: in the last step nothing touches.
+    // The pulse has left the row long before the end, so that nothing touches in the last step.
     const RunResult result = run("bounce", 20, 3);
     ASSERT_EQ(result.last.contacts, 0);
     ASSERT_GT(result.constraints, 0);

@@ -1,4 +1,4 @@
-// The page of `motley report`: what it says of a sweep, and that its charts have every point.
+// The page of `motley report`: what it says about a sweep, and that its charts have every point.
 #include "page.h"
 
 #include <gtest/gtest.h>
@@ -61,11 +61,11 @@ TEST(Page, NamesThePeersPointsThatMotleyHasNoAnswerTo)
 
 TEST(Page, PricesTheDefaultAgainstTheFastestThatIsAsExact)
 {
-    // Four substeps take twice as long as the impulses that are as exact; one substep is beaten by nobody.
+    // Four substeps take twice as long as the sequential impulses that are as exact; no point beats one substep.
     EXPECT_DOUBLE_EQ(price_of_default(small_result()).settings, 2);
     EXPECT_DOUBLE_EQ(price_of_default(small_result()).front, 2);
     SweepResult result = small_result();
-    result.points[2].seconds = result.points[0].seconds;  // then four substeps are all of the front
+    result.points[2].seconds = result.points[0].seconds;  // then four substeps are the whole front
     EXPECT_DOUBLE_EQ(price_of_default(result).front, 1);
     EXPECT_EQ(price_of_default({}).settings, 0);
 }
@@ -84,7 +84,8 @@ TEST(Page, DrawsEveryPointAndNeedsNothingFromElsewhere)
     report.costs = {{"a group", "first", 1e-3, -1}, {"a group", "second", 2e-3, 0.01}};
     const std::string page = page_of(report);
     EXPECT_EQ(count_of(page, "<svg"), 3U);
-    // Five points that have an error, and a key for each of three series; the other symbols are gnuplot's definitions.
+    // Five points that have an error, and one symbol for each of three series in the key; all other symbols are
+    // gnuplot's definitions.
     EXPECT_EQ(count_of(page, "' transform='translate("), 5U + 3U);
     EXPECT_EQ(count_of(page, "src=") + count_of(page, "<link") + count_of(page, "@import"), 0U);
     EXPECT_NE(page.find("five points &amp; &lt;one> that came apart"), std::string::npos);

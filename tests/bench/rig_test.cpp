@@ -1,5 +1,5 @@
-// The program's joint scenes: their sizes against the published ones, their truths against conservation of energy, and
-// motley's and the peers' runs of them against the truths.
+// The program's joint scenes: their sizes against the published ones, their reference motions against conservation of
+// energy, and motley's and the peers' runs against the reference motions.
 #include "rig.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(Rigs, StartTogether)
     }
 }
 
-/// Kinetic and potential energy of the double pendulum in minimal coordinates, written on its own.
+/// Kinetic and potential energy of the double pendulum in minimal coordinates, written independently.
 double energy_of_double_pendulum(const std::array<double, 2>& angle, const std::array<double, 2>& rate)
 {
     const double upper_x = 0.5 * std::cos(angle[0]) * rate[0], upper_y = 0.5 * std::sin(angle[0]) * rate[0];
@@ -57,7 +57,7 @@ double energy_of_double_pendulum(const std::array<double, 2>& angle, const std::
 
 TEST(Rigs, TruthOfTheDoublePendulumKeepsItsEnergy)
 {
-    // Its acceleration changes no energy, wherever it is: differences of the energy along the motion.
+    // The acceleration must not change the energy in any state: differences of the energy along the motion.
     constexpr double h = 1e-6;
     for (int i = 0; i < 20; ++i) {
         const Motion<2>::State s{{0.7 * i, 3 - 1.1 * i}, {2 - 0.3 * i, 0.4 * i}};
@@ -80,7 +80,7 @@ TEST(Rigs, TruthsAreIntegratedToTwelveDigits)
     EXPECT_NEAR(spring.at(10)[0], std::cos(10.0), 1e-12);
 }
 
-/// The error of a second of a rig in an engine, rms over its steps.
+/// The error of a rig in an engine, rms over its steps.
 double error_of(const Rig& rig, Engine& engine, int steps)
 {
     std::vector<RigPose> poses(rig.bodies.size());
@@ -96,7 +96,7 @@ double error_of(const Rig& rig, Engine& engine, int steps)
 
 TEST(Rigs, MotleyConvergesToTheTruthsAsSubstepsGrow)
 {
-    // Semi-implicit Euler is of first order: sixteen times the substeps, about a sixteenth of the error.
+    // Semi-implicit Euler is of first order: with sixteen times the substeps the error is about a sixteenth.
     for (const char* name : {"pendulum", "double-pendulum", "four-bar"}) {
         const Rig rig = make(name, 1);
         double errors[2];
@@ -114,7 +114,7 @@ TEST(Rigs, MotleyConvergesToTheTruthsAsSubstepsGrow)
 
 TEST(Rigs, PeersComeNearTheTruths)
 {
-    // Not to judge them: to know that their rigs are the same ones.
+    // This does not judge the peers; it shows that their rigs are the same.
     for (const Peer& peer : peers()) {
         for (const char* name : {"pendulum", "double-pendulum", "four-bar"}) {
             const Rig rig = make(name, 1);
@@ -139,7 +139,7 @@ TEST(Rigs, EveryEngineHoldsRagdollsWithinTheirLimits)
         EXPECT_LT(separation_of(rig, poses).max, 0.02);
         for (const RigJoint& joint : rig.joints) {
             if (joint.tie != RigTie::hinge) continue;
-            // Angle between two hinged limbs: that of their relative rotation.
+            // The angle between two hinged limbs is that of their relative rotation.
             const auto a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
             const Quat<double> turn = conjugate(poses[a].orientation) * poses[b].orientation;
             EXPECT_LT(2 * std::acos(std::min(1.0, std::abs(turn.w))),
@@ -165,8 +165,9 @@ TEST(BoxContacts, OfAPyramidAtRest)
     std::vector<RigPose> poses;
     for (const RigBody& body : rig.bodies) poses.push_back({body.position, {0, 0, 0, 1}});
     const auto contacts = boxes.find(poses, scene.ground());
-    // Three boxes on the floor with four corners each; three on two others each, four points a pair; neighbours are
-    // 2 cm apart, within the margin or not by rounding: those push sideways and are not counted.
+    // Three boxes on the floor have four corners each; each of the three boxes on two others has four points with
+    // each pair. Boxes side by side are 2 cm apart, and rounding decides whether that is within the margin: contacts
+    // that push sideways are not counted.
     int upwards = 0;
     std::set<std::uint64_t> keys;
     for (const Contact& contact : contacts) {

@@ -1,4 +1,5 @@
-// What `motley scale` measures: figures of the right size, and that go together. How fast is no test's business.
+// What `motley scale` measures: that its figures have plausible sizes and agree with each other. No test checks
+// speed.
 #include "scale.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@ TEST(Scale, EverySizeHasItsFigures)
         measure_scale({.people = {200, 800}, .rounds = 1, .solver = {.threads = 1}, .progress = false});
     ASSERT_EQ(result.sizes.size(), 2U);
     for (const ScaleResult::Size& size : result.sizes) {
-        // At 5 per m2 about every person touches, or is within the margin of, two others.
+        // At 5 people per m2 a person touches, or is within the margin of, about two others.
         const auto people = static_cast<double>(size.people);
         EXPECT_GT(size.contacts, 0.3 * people);
         EXPECT_LT(size.contacts, 3 * people);
@@ -20,7 +21,7 @@ TEST(Scale, EverySizeHasItsFigures)
         EXPECT_GT(size.sweep_share, 0);
         EXPECT_LT(size.sweep_share, 1);
         EXPECT_GT(size.sweep_seconds, 0);
-        // A smooth contact between planar bodies: 36 B of row, 100 of its bodies and impulse.
+        // A smooth contact between planar bodies moves 36 B of its row and 100 B of its bodies and impulse.
         EXPECT_NEAR(size.sweep_bytes_per_second * size.sweep_seconds, 136, 1e-6);
         EXPECT_GT(size.triad_bytes_per_second, 1e8);
     }

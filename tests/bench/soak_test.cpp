@@ -1,4 +1,4 @@
-// The soak in small: a town of sixty for fifty seconds of its own, by one and by two threads.
+// A small soak: a town of sixty people for fifty simulated seconds, on one and on two threads.
 #include "soak.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ TEST(Soak, ATownOfSixtyLosesNobodyInThreeThousandSteps)
     const SoakResult result = soak({.steps = 3000, .people = 60, .progress = false});
     EXPECT_EQ(result.failure, "");
     EXPECT_EQ(result.steps, 3000);
-    // Each of the things that it is about has happened.
+    // Each kind of event that the soak exercises has happened.
     EXPECT_GT(result.joined, 60);
     EXPECT_GT(result.left, 50);
     EXPECT_GT(result.fallen, 10);

@@ -59,8 +59,8 @@ TEST(Dials, EveryCombinationOnceUnderItsOwnName)
     grid.warm_starts = {0, 1};
     grid.tolerances = {0, 0.001F};
     const std::vector<Dials> all = expand(grid);
-    // soft: 5 substeps x 2 iterations x 2 relaxations x 2 hertz x 2 exact x 2 x 2 x 2; impulse: 5 x 4 x 2 x 2 x 2 x 2; direct:
-    // 2 x 2.
+    // soft_step: 5 substeps x 2 iterations x 2 relaxations x 2 hertz x 2 exact x 2 x 2 x 2; sequential_impulse: 5 x 4
+    // x 2 x 2 x 2 x 2; direct: 2 x 2.
     EXPECT_EQ(all.size(), 640U + 320U + 4U);
     std::set<std::string> labels;
     for (const Dials& dials : all) labels.insert(label_of(dials));
@@ -115,7 +115,7 @@ TEST(Sweep, WritesWhatItMeasured)
     EXPECT_EQ(json["joints"], 40);
     std::set<std::string> engines;
     for (const auto& point : json["points"]) engines.insert(point["engine"]);
-    // Every peer is there or is told to be missing.
+    // Every peer is either built in or listed as missing.
     EXPECT_EQ(engines.size(), 1 + peers().size());
     EXPECT_EQ(peers().size() + missing_peers().size(), 2U);
     for (const auto& point : json["points"]) {
@@ -128,7 +128,7 @@ TEST(Sweep, WritesWhatItMeasured)
     std::getline(lines, line);
     const auto commas = std::count(line.begin(), line.end(), ',');
     while (std::getline(lines, line)) {
-        // Labels have commas of their own.
+        // Labels contain commas.
         const std::size_t first = line.find('"'), last = line.rfind('"');
         label = line.substr(first, last - first);
         EXPECT_EQ(std::count(line.begin(), line.end(), ',') - std::count(label.begin(), label.end(), ','),
@@ -140,11 +140,11 @@ TEST(Sweep, WritesWhatItMeasured)
 
 TEST(Sweep, JudgesASceneByItsOwnError)
 {
-    // The pulse's law is not about overlap, which there is none of.
+    // The pulse has no overlap: its error is that against the pulse's law.
     DialGrid grid;
     grid.methods = {Method::soft_step};
     grid.substeps = {4};
-    grid.relaxations = {1};  // without, soft contacts push off what should stay together
+    grid.relaxations = {1};  // with 0, soft contacts push bodies apart that should stay together
     SweepOptions options;
     options.agents = 20;
     options.seconds = 1;

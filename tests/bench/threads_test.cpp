@@ -1,4 +1,4 @@
-// What `motley threads` measures: figures that go together, and bits that are the same. How fast is no test's business.
+// What `motley threads` measures: that its figures agree with each other and bits are the same. No test checks speed.
 #include "threads.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(Threads, RefusesOneThreadAndScenesThatAreNotThere)
     EXPECT_THROW(measure_threads({.scenes = {"nowhere"}}), std::runtime_error);
 }
 
-/// An executor that brings no second thread, as it may.
+/// An executor that never brings its second thread, which executors are allowed to do.
 class Lonely final : public Executor {
   public:
     [[nodiscard]] int concurrency() const override { return 2; }

@@ -1,4 +1,5 @@
-// A host of a library that was built in part: MOTLEY_JOINTS=ball_socket, MOTLEY_MODELS=planar;rigid. The rest is refused by name.
+// A host of a library that was built in part, with MOTLEY_JOINTS=ball_socket and MOTLEY_MODELS=planar;rigid.
+// Everything else is refused by name.
 #include <motley/motley.h>
 
 #include <cstdio>
@@ -6,7 +7,7 @@
 
 namespace {
 
-/// Whether a call is refused with these words.
+/// Whether a call is refused with exactly these words.
 template <class Call>
 bool refuses(const Call& call, const std::string& words)
 {
@@ -37,7 +38,7 @@ int main()
         refuses([&] { scene.add_body(person); },
                 "BodyDefinition.model is particle; expected one that is built, MOTLEY_MODELS: planar, rigid");
 
-    // Two people who overlap by 1 cm are pushed apart alike.
+    // Two people who overlap by 1 cm are pushed apart by equal amounts.
     motley::Contact touch;
     touch.body_a = a;
     touch.body_b = b;

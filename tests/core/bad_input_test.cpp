@@ -1,5 +1,5 @@
-// Promise 4: bad input is refused at the door with a message that names the field, the value and the valid range,
-// and changes nothing. One table line for each field and each way in which it can be wrong.
+// Promise 4: bad input is refused when it is given, with a message that names the field, the value and the valid
+// range, and it changes nothing. One table line for each field and each way in which it can be wrong.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -69,7 +69,7 @@ void expect_refused(const Case& c)
     EXPECT_EQ(f.scene.joint_count(), joints) << c.what;
 }
 
-/// A case that spoils one field of a good body.
+/// A case with one bad field in an otherwise good body.
 Case body(const char* what, std::function<void(BodyDefinition&)> spoil, const char* field, const char* value)
 {
     return {what,
@@ -77,7 +77,7 @@ Case body(const char* what, std::function<void(BodyDefinition&)> spoil, const ch
                 BodyDefinition good;
                 BodyDefinition bad = good;
                 spoil(bad);
-                // In a batch behind a good one: all or none.
+                // In a batch after a good body: either all bodies of a batch are added or none.
                 const BodyDefinition both[2] = {good, bad};
                 BodyId ids[2];
                 f.scene.add_bodies(both, ids);
@@ -259,7 +259,7 @@ TEST(BadInput, EveryFieldOfAJointIsChecked)
     for (const Case& c : cases) expect_refused(c);
 }
 
-/// Spoils one field of a joint between frames.
+/// A case with one bad field in a joint between frames.
 template <class Definition>
 Case frames(const char* what, std::function<void(Definition&, Fixture&)> spoil, const char* field,
             const char* value)
@@ -382,7 +382,7 @@ TEST(BadInput, EveryFieldOfAJointBetweenFramesIsChecked)
     for (const Case& c : cases) expect_refused(c);
 }
 
-/// As frames(), of a joint between a rigid and a planar body that has no frames.
+/// Like frames(), for a joint without frames between a rigid and a planar body.
 template <class Definition>
 Case bodies(const char* what, std::function<void(Definition&, Fixture&)> spoil, const char* field,
             const char* value)
@@ -713,7 +713,7 @@ TEST(BadInput, EveryFieldOfAContactIsRefusedByTheStepWhichChangesNothing)
         EXPECT_NE(report.error.find(c.field), std::string::npos) << report.error;
         EXPECT_NE(report.error.find(c.value), std::string::npos) << report.error;
         EXPECT_EQ(f.scene.state_hash(), hash) << c.field;
-        // The same solver goes on as if nothing had been said.
+        // The same solver continues as if the bad list had not been given.
         EXPECT_EQ(solver.step(f.scene, 0.01F, {contacts, 1}).status, StepStatus::done) << c.field;
     }
     Fixture f;

@@ -1,4 +1,5 @@
-// Handles of bodies and joints against a map that is told the same: RapidCheck says who is added and removed.
+// Handles of bodies and joints against a map that is updated in the same way. RapidCheck decides what is added and
+// removed.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -69,7 +70,7 @@ RC_GTEST_PROP(Handles, NameWhoTheyNamedUntilRemovedAndNobodyAfterwards,
             RC_ASSERT(joints_ever.insert({name_of(id), true}).second);
             joints[name_of(id)] = {a, b};
         }
-        // Rows move when others go; who a handle names does not.
+        // Rows move when others are removed, but a handle still names the same body.
         for (const Known& known : alive) {
             RC_ASSERT(scene.is_alive(known.id));
             RC_ASSERT(scene.state(known.id).position.x == known.x);

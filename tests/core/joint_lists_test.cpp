@@ -1,4 +1,4 @@
-// Which joints are on a body: lists through the joints, beside the definitions, which say the same.
+// Which joints a body has: the linked lists through the joints against a search of all definitions.
 #include <gtest/gtest.h>
 
 #include <algorithm>

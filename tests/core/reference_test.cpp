@@ -129,7 +129,8 @@ TEST(Reference, FrameJacobiansMatchFiniteDifferencesForEveryCombinationOfLocks)
                 };
                 Eigen::VectorXd difference =
                     (error(p.moved(epsilon)) - error(p.moved(-epsilon))) / (2 * epsilon);
-                // A locked point's rows are seen by who turns with the mean of both spins.
+                // The Jacobian of a locked point gives the derivative of C in a frame that turns with the mean of
+                // both spins.
                 if (locks.first == LinearLock::point) {
                     const Eigen::Vector3d spin = (p.a.velocity.tail<3>() + p.b.velocity.tail<3>()) / 2;
                     difference.head<3>() -= spin.cross(point_error(p.a, p.b, a.position, b.position));
@@ -145,7 +146,8 @@ TEST(Reference, FrameJacobiansMatchFiniteDifferencesForEveryCombinationOfLocks)
 
 TEST(Reference, DriveJacobiansMatchFiniteDifferencesAlongMotionsThatTheirJointsAllow)
 {
-    // A twist is that of a hinge: about the axis that both bodies share.
+    // Both bodies turn about one axis, as a hinge allows: only then does the Jacobian give the derivative of the
+    // twist.
     Random random(10);
     for_every_pair([&](const Pair& p) {
         const Frame a{p.local_a, Eigen::Quaterniond(random.symmetric(), random.symmetric(),
@@ -209,7 +211,7 @@ TEST(Reference, SwingJacobianMatchesFiniteDifferences)
         };
         const Frame a = frame(), b = frame();
         const double angle = swing_angle(p.a, p.b, a, b);
-        if (angle < 0.05 || angle > 3.1) return;  // no direction at the ends
+        if (angle < 0.05 || angle > 3.1) return;  // at 0 and pi a swing has no direction
         const double difference = (swing_angle(p.moved(epsilon).a, p.moved(epsilon).b, a, b) -
                                    swing_angle(p.moved(-epsilon).a, p.moved(-epsilon).b, a, b)) /
                                   (2 * epsilon);

@@ -1,6 +1,6 @@
-// Eleven traps that textbooks of this theory set: for each, what the printed form does, as a number, and what the form
-// that we use does. Independent evidence: finite differences and closed forms in double, on the reference's own rows. What
-// the lanes do about them is in tests/parallel/traps_test.cpp.
+// Eleven traps in textbooks of this theory: for each, the error of the printed form, as a number, and that of the
+// form used here ("mended"). Independent evidence: finite differences and closed forms in double, on the reference's
+// own rows. tests/parallel/traps_test.cpp tests the lanes.
 #include <gtest/gtest.h>
 
 #include "mixed_scene.h"
@@ -51,7 +51,8 @@ double rate_of(const Body& a, const Body& b, const Function& c)
 
 TEST(Trap1, ASquaredPositionConstraintLosesItsJacobianWhereItIsSatisfied)
 {
-    // Printed: C = d . d, J = 2 d^T [-1, .., 1, ..]. K falls as d^2, and lambda = -J v / K loses every digit.
+    // Printed: C = d . d, J = 2 d^T [-1, .., 1, ..]. K is proportional to d^2, so lambda = -J v / K loses every
+    // digit.
     Body a, b;
     b.position = {1e-8, 0, 0};
     const Eigen::Vector3d none = Eigen::Vector3d::Zero(), d = point_error(a, b, none, none);
@@ -59,14 +60,14 @@ TEST(Trap1, ASquaredPositionConstraintLosesItsJacobianWhereItIsSatisfied)
     const Jacobian printed = 2 * d.transpose() * rows;
     const double printed_k = (printed * pair_inverse_mass(a, b) * printed.transpose())(0, 0);
     EXPECT_NEAR(printed_k, 8e-16, 1e-20);  // 4 d^2 (1/m_a + 1/m_b)
-    // Mended: three rows, whose K does not know of d.
+    // Mended: three rows, whose K does not depend on d.
     const Eigen::Matrix3d k = rows * pair_inverse_mass(a, b) * rows.transpose();
     EXPECT_LT((k - 2 * Eigen::Matrix3d::Identity()).norm(), 1e-15);
 }
 
 TEST(Trap2, AnAxisThatTurnsWithAHasItsLeverEndAtB)
 {
-    // Printed: [-e, -(r_a x e), e, r_b x e]. The true derivative of e . d has r_a + d; the fault grows with d.
+    // Printed: [-e, -(r_a x e), e, r_b x e]. The true derivative of e . d has r_a + d, so the error grows with d.
     Random random;
     double printed_fault[3] = {}, mended_fault = 0;
     const double distances[3] = {0.01, 0.1, 1};
@@ -98,8 +99,8 @@ TEST(Trap2, AnAxisThatTurnsWithAHasItsLeverEndAtB)
 
 TEST(Trap3, TheQuaternionMatricesWithTheScalarFirstTurnTheWrongWay)
 {
-    // Printed: products of L(q), R(q) made for (w, x, y, z) on quaternions kept as (x, y, z, w): at the identity what
-    // remains is diag(-1, 1, 1) / 2. A correction by it drives an error about x away from zero.
+    // Printed: products of L(q) and R(q), which are meant for quaternions (w, x, y, z), applied to (x, y, z, w). At
+    // the identity the result is diag(-1, 1, 1) / 2, and a correction with it increases an error about x.
     const Eigen::Vector3d printed_diagonal(-0.5, 0.5, 0.5);
     const Eigen::Matrix3d printed = printed_diagonal.asDiagonal();
     const Frame frame;
@@ -115,7 +116,7 @@ TEST(Trap3, TheQuaternionMatricesWithTheScalarFirstTurnTheWrongWay)
         }
         return frame_error(a, b, frame, frame, LinearLock::none, AngularLock::all).norm();
     };
-    EXPECT_GT(error_after(printed), 0.4);  // from 0.1
+    EXPECT_GT(error_after(printed), 0.4);  // started at 0.1
     const Body identity;
     const Eigen::Matrix3d mended =
         frame_jacobian(identity, identity, frame, frame, LinearLock::none, AngularLock::all).rightCols<3>();
@@ -125,7 +126,8 @@ TEST(Trap3, TheQuaternionMatricesWithTheScalarFirstTurnTheWrongWay)
 
 TEST(Trap4, AnAngleByArcsineIsNotANumberNearHalfATurn)
 {
-    // Printed: theta = 2 asin(v . e), in float. Rounding passes 1 in a share of the poses near pi.
+    // Printed: theta = 2 asin(v . e), in float. For some of the poses near pi rounding makes the argument larger than
+    // 1.
     Random random;
     int printed_nan = 0, mended_nan = 0;
     double mended_fault = 0;
@@ -145,7 +147,7 @@ TEST(Trap4, AnAngleByArcsineIsNotANumberNearHalfATurn)
     EXPECT_GT(printed_nan, trials / 20);
     EXPECT_EQ(mended_nan, 0);
     EXPECT_LT(mended_fault, 1e-6);  // two roundings of a float near pi, 2.4e-7 each, and of the quaternion
-    // The hemisphere: q and -q are one rotation, and must be one error.
+    // q and -q are the same rotation and must give the same error.
     Body a, b, flipped;
     b.orientation = random_turn(random);
     flipped.orientation.coeffs() = -b.orientation.coeffs();
@@ -158,7 +160,8 @@ TEST(Trap4, AnAngleByArcsineIsNotANumberNearHalfATurn)
 
 TEST(Trap5, TheLockOfAllRotationsIsSingularAtHalfATurn)
 {
-    // det G = cos(theta / 2): an unguarded inverse of K grows without bound; the pseudo-inverse leaves the row alone.
+    // det G = cos(theta / 2): an unguarded inverse of K grows without bound; the pseudo-inverse leaves the singular
+    // row out.
     const Frame frame;
     double largest = 0;
     for (const double short_of_pi : {1e-2, 1e-4, 1e-6, 0.0}) {
@@ -172,12 +175,13 @@ TEST(Trap5, TheLockOfAllRotationsIsSingularAtHalfATurn)
         }
         if (short_of_pi == 0) largest = effective_mass(j, a, b).norm();
     }
-    EXPECT_LT(largest, 1);  // of the other two rows: 1/2 each
+    EXPECT_LT(largest, 1);  // the other two rows have 1/2 each
 }
 
 TEST(Trap6, ALimitSolvedAsAnEqualitySticks)
 {
-    // A body that leaves its limit at 2 m/s. Printed: lambda = -K^-1 J v, which stops it. Mended: clamped at zero.
+    // A body that leaves its limit at 2 m/s. Printed: lambda = -K^-1 J v, which stops it. Mended: lambda is clamped
+    // at zero.
     Body a, b;
     a.motion = BodyMotion::static_body;
     b.velocity(0) = 2;
@@ -186,7 +190,7 @@ TEST(Trap6, ALimitSolvedAsAnEqualitySticks)
     const double lambda = -(effective_mass(row, a, b) * row * velocity_of(a, b))(0);
     EXPECT_EQ(2 + lambda, 0);
     EXPECT_EQ(2 + std::max(lambda, 0.0), 2);
-    // A row that nobody can move along has a zero diagonal: skipped, not divided by.
+    // A row along which neither body can move has a zero diagonal: it must be skipped, not divided by.
     b.motion = BodyMotion::static_body;
     EXPECT_EQ(effective_mass(row, a, b)(0, 0), 0);
 }
@@ -206,13 +210,13 @@ TEST(Trap7, BaumgartesSignAsPrintedDiverges)
 
 TEST(Trap8, RectificationByHalvesMovesTheCommonCentreAndLeavesHalfAgainstAStaticBody)
 {
-    // Masses 1 and 100, 0.1 m apart. Printed: each moves half the error.
+    // Masses 1 and 100, 0.1 m apart. Printed: each body moves by half the error.
     const double m_a = 1, m_b = 100, error = 0.1;
     const double printed_centre = (m_a * error / 2 - m_b * error / 2) / (m_a + m_b);
     EXPECT_GT(std::abs(printed_centre), 0.04);
     const double printed_left_against_static = error - error / 2;
     EXPECT_EQ(printed_left_against_static, 0.05);
-    // Mended: by inverse masses, through the rows.
+    // Mended: bodies share the correction by inverse masses, through the rows.
     for (const bool is_static : {false, true}) {
         Body a, b;
         a.mass = m_a;
@@ -234,7 +238,8 @@ TEST(Trap8, RectificationByHalvesMovesTheCommonCentreAndLeavesHalfAgainstAStatic
 
 TEST(Trap9, IntegratingPositionsBeforeTheSolveDrifts)
 {
-    // A body held against gravity. Printed: v += g h, x += h v, then the solve takes v: g h^2 a step stays.
+    // A body held against gravity. Printed: v += g h, x += h v, and only then the solve removes v: each step adds g
+    // h^2 to x.
     const double h = 1.0 / 60, g = -9.81;
     double printed_x = 0, printed_v = 0, mended_x = 0, mended_v = 0;
     for (int step = 0; step < 60; ++step) {
@@ -252,7 +257,7 @@ TEST(Trap9, IntegratingPositionsBeforeTheSolveDrifts)
 
 TEST(Trap10, ASweepOverTheRowsOfAJointLeavesMostOfTheErrorOfALongLever)
 {
-    // What a sweep of Gauss-Seidel over the three rows leaves of J v, against the inverse of the block.
+    // The part of J v that a Gauss-Seidel sweep over the three rows leaves, against the inverse of the block.
     Random random;
     double left_by_rows[2] = {}, left_by_block = 0;
     const double levers[2] = {2, 5};
@@ -278,10 +283,11 @@ TEST(Trap10, ASweepOverTheRowsOfAJointLeavesMostOfTheErrorOfALongLever)
 
 TEST(Trap11, AWarmStartClampedAtAFixedNumberKnowsNothingOfUnitsOrSteps)
 {
-    // Printed: cached impulses are clamped at 1e5. A crane's load of 1e7 kg needs 1.6e6 N s in each 1/60 s.
+    // Printed: cached impulses are clamped at 1e5. A crane's load of 1e7 kg needs 1.6e6 N s in each step of 1/60 s.
     const double needed = 1e7 * 9.81 / 60;
     EXPECT_LT(std::min(needed, 1e5), 0.1 * needed);
-    // Unscaled, an impulse of a step of 1/60 s in one of 1/600 throws its load up by nine tenths of g / 60.
+    // Used unscaled in a step of 1/600 s, the impulse of a step of 1/60 s throws its load up at nine tenths of g /
+    // 60.
     const double thrown = 9.81 / 60 - 9.81 / 600, scaled = 0.1 * 9.81 / 60 - 9.81 / 600;
     EXPECT_GT(thrown, 0.14);
     EXPECT_NEAR(scaled, 0, 1e-15);

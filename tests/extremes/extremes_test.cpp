@@ -1,5 +1,5 @@
-// Each scene at the edge, under each way to solve, within its bound; and the same bits on every instruction set. The bounds
-// and why they hold: bench/extremes.cpp.
+// Each extreme scene, under each way to solve, is within its bound and has the same bits on every instruction set.
+// bench/extremes.cpp has the bounds and the reasons for them.
 #include "extremes.h"
 
 #include <gtest/gtest.h>

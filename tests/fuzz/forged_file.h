@@ -1,4 +1,4 @@
-// Files of scenes that somebody has changed and made look whole.
+// Files of scenes that somebody has changed and then given a valid size and checksum.
 #pragma once
 
 #include <cstring>
@@ -15,7 +15,7 @@ namespace motley::testing {
 
 inline constexpr std::size_t snapshot_header = 32;  ///< bytes; the size is at 16, the checksum at 24
 
-/// As the file says that it is checked.
+/// The checksum by which a reader verifies the file.
 inline std::uint64_t snapshot_checksum(const std::string& file)
 {
     std::uint64_t hash = 0xCBF29CE484222325ULL;
@@ -33,7 +33,7 @@ inline std::uint64_t snapshot_checksum(const std::string& file)
     return hash;
 }
 
-/// Makes size and checksum right again.
+/// Makes size and checksum valid again.
 inline void make_whole(std::string& file)
 {
     const std::uint64_t size = file.size() - snapshot_header, checksum = snapshot_checksum(file);
@@ -47,7 +47,7 @@ inline std::string bytes_of(const std::string& path)
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A joint of every type, as its definition has it by default.
+/// Adds a joint of every type, with the defaults of its definition.
 template <class... Types>
 void add_one_of_each(Scene& scene, BodyId a, BodyId b, TypeList<Types...>)
 {
@@ -59,8 +59,9 @@ void add_one_of_each(Scene& scene, BodyId a, BodyId b, TypeList<Types...>)
     (add(typename Types::Definition{}), ...);
 }
 
-/// Something of everything that a file holds, some steps old: each model of body and type of joint, figures in lockstep,
-/// wishes, watches, contacts, and what removed bodies and joints have left free.
+/// A scene some steps old that has something of everything that a file holds: each body model and type of joint,
+/// figures in lockstep, requested iterations, break limits, contacts, and slots that removed bodies and joints have
+/// left free.
 inline StepProblem seed_problem()
 {
     StepProblem problem;
@@ -105,7 +106,7 @@ inline StepProblem seed_problem()
     return problem;
 }
 
-/// The seed in a file, as bytes; `path` is written to on the way.
+/// Writes the seed to a file at `path` and returns its bytes.
 inline std::string seed_file(const std::string& path, bool problem)
 {
     const StepProblem seed = seed_problem();
@@ -117,12 +118,12 @@ inline std::string seed_file(const std::string& path, bool problem)
     return bytes_of(path);
 }
 
-/// The seed with these bytes xored over its fields, over and over.
+/// The seed with each of these changes xored into one of its bytes.
 inline std::string forged(const std::string& path, const std::string& changes, bool problem)
 {
     static const std::string seeds[] = {seed_file(path, false), seed_file(path, true)};
     std::string file = seeds[problem ? 1 : 0];
-    // Three bytes each: where, and what.
+    // Three bytes each: two for the place, one for the change.
     for (std::size_t i = 0; i + 2 < changes.size(); i += 3) {
         const std::size_t where =
             static_cast<unsigned char>(changes[i]) * 256U + static_cast<unsigned char>(changes[i + 1]);
@@ -133,7 +134,7 @@ inline std::string forged(const std::string& path, const std::string& changes, b
     return file;
 }
 
-/// What a host may do with any scene: it steps by both ways to solve joints, and bodies and joints go and come.
+/// What a host may do with any scene: step it with swept and with exact joints, and add and remove bodies and joints.
 inline void live_on(Scene& scene)
 {
     for (const bool exact : {false, true}) Solver({.exact_joints = exact}).step(scene, 1.0F / 60);

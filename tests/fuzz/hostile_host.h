@@ -1,5 +1,6 @@
-// A host that calls the public API in an order and with numbers that bytes decide, hostile ones among them, and checks
-// what it was promised: a refused call changes nothing, a step that is done leaves finite bodies, handles tell the truth.
+// A host that calls the public API in an order and with numbers that bytes decide, hostile ones among them. It checks
+// the promises of the API: a refused call changes nothing, a completed step leaves finite bodies, and handles are
+// valid exactly while their object is alive.
 #pragma once
 
 #include <cmath>
@@ -40,7 +41,7 @@ class HostileHost {
     std::span<const std::uint8_t> rest_;
     Scene scene_;
     Solver solver_{SolverSettings{}};
-    std::vector<BodyId> bodies_{scene_.ground(), BodyId{}};  ///< dead ones too
+    std::vector<BodyId> bodies_{scene_.ground(), BodyId{}};  ///< also removed ones
     std::vector<ConstraintId> joints_{ConstraintId{}};
 
     static void demand(bool holds, const char* what)
@@ -55,7 +56,7 @@ class HostileHost {
         rest_ = rest_.subspan(1);
         return value;
     }
-    /// Mostly what a host would say; else the edge of what floats are.
+    /// Mostly a number that a host would use; otherwise one at the limits of float.
     float number()
     {
         static constexpr float edges[] = {0,
@@ -149,7 +150,7 @@ class HostileHost {
         demand(scene_.is_alive(bodies_.back()), "an added body is not alive");
     }
 
-    /// A definition is two bodies and numbers: any of them may be overwritten.
+    /// A definition is two bodies and numbers, any of which may be overwritten.
     template <class... Types>
     void add_some_joint(TypeList<Types...>)
     {
@@ -209,7 +210,7 @@ class HostileHost {
             if (byte() % 4 == 0) contact.restitution = number();
         }
         const std::uint64_t before = scene_.state_hash();
-        // The simultaneous solution is slow where numbers are wild: small scenes only.
+        // The direct method is slow with extreme numbers, so it runs only on small scenes.
         if (solver_.settings().method == Method::direct && scene_.joint_count() + contacts.size() > 6) return;
         const float dt = byte() % 4 != 0 ? 1.0F / 60 : number();
         const StepReport report = solver_.step(scene_, dt, contacts);

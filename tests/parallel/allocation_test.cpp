@@ -1,4 +1,4 @@
-// Promise 5: nothing allocates in a warm step. Counted by replacing operator new for this whole executable.
+// Promise 5: a warm step allocates nothing. Counted by replacing operator new in this whole executable.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -32,7 +32,7 @@ void* counted(std::size_t size, std::size_t alignment)
 
 }  // namespace
 
-// Not inlined: the compiler would see memory of one function freed by another, and warn.
+// Not inlined: the compiler would see that memory of one function is freed by another, and warn.
 [[gnu::noinline]] void* operator new(std::size_t size)
 {
     return counted(size, alignof(std::max_align_t));
@@ -63,7 +63,7 @@ namespace {
 
 using testing::allocations;
 
-/// Allocations of 20 steps after 200 to warm up.
+/// The number of allocations in 20 steps after 200 steps of warming up.
 long allocations_of_warm_steps(int threads, float tolerance = 0)
 {
     testing::MixedScene mixed;
@@ -80,7 +80,7 @@ long allocations_of_warm_steps(int threads, float tolerance = 0)
     return allocations - before;
 }
 
-/// The same of a crowd that is large enough for patches.
+/// The same for a crowd that is large enough for patches.
 long allocations_of_patches(int threads)
 {
     testing::LatticeCrowd crowd;
@@ -92,7 +92,7 @@ long allocations_of_patches(int threads)
     return allocations - before;
 }
 
-/// The same of steps whose contacts all have new keys: as many come as go.
+/// The same for steps in which every contact has a new key.
 long allocations_of_new_contacts()
 {
     testing::MixedScene mixed;
@@ -103,14 +103,14 @@ long allocations_of_new_contacts()
         for (Contact& contact : contacts) contact.key += std::uint64_t{1} << 48;
         solver.step(mixed.scene, 1.0F / 60, contacts);
     };
-    // Coloured all anew, they may want other blocks than before: once.
+    // Colouring all contacts anew may need other blocks than before, but only once.
     step_anew();
     const long before = allocations;
     for (int step = 0; step < 20; ++step) step_anew();
     return allocations - before;
 }
 
-/// The same of forty chains of three, in lockstep, one of which something touches now and then.
+/// The same for forty chains of three in lockstep, one of which a contact touches in every fourth step.
 long allocations_of_figures(bool exact, int threads)
 {
     Scene scene;
@@ -148,7 +148,7 @@ long allocations_of_figures(bool exact, int threads)
 TEST(Allocation, TheCounterCounts)
 {
     const long before = allocations;
-    ::operator delete(::operator new(16));  // a new-expression might be optimised away, a call is not
+    ::operator delete(::operator new(16));  // a new-expression might be optimised away
     EXPECT_GT(allocations, before);
 }
 TEST(Allocation, AWarmStepOnOneThreadAllocatesNothing)

@@ -8,11 +8,11 @@ namespace motley::testing {
 
 inline constexpr long never = std::numeric_limits<long>::max();
 extern std::atomic<long> allocations;
-/// How many more succeed, and how many of those after that fail.
+/// How many more allocations succeed, and how many of those after that fail.
 extern std::atomic<long> allocations_until_failure;
 extern std::atomic<long> failures_left;
 
-/// For as long as it lives, the allocation after `successes` fails: it alone, or with all that follow.
+/// While it lives, the allocation after `successes` others fails: only that one, or also all that follow.
 class FailingAllocator {
   public:
     FailingAllocator(long successes, bool for_good)
@@ -23,7 +23,7 @@ class FailingAllocator {
     ~FailingAllocator() { allocations_until_failure = never; }
     FailingAllocator(const FailingAllocator&) = delete;
     FailingAllocator& operator=(const FailingAllocator&) = delete;
-    /// Whether it has come to that.
+    /// Whether an allocation has failed.
     [[nodiscard]] static bool has_failed() { return allocations_until_failure < 0; }
 };
 

@@ -1,5 +1,5 @@
-// The budget: what fits into a time. By numbers made up, never by the clock, but for two budgets that no clock can
-// mistake.
+// The budget: how many units of work fit into a time. Costs are made up, never measured, except for two budgets so
+// small and so large that any clock gives the same result.
 #include "budget.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ TEST(Budget, PicksWhatFits)
 {
     Budget budget;
     EXPECT_EQ(budget.units_within(1, 100), 1);
-    budget.learn(0.002, 0.004, 4);  // 2 ms anyway, 1 ms a unit
+    budget.learn(0.002, 0.004, 4);  // 2 ms of fixed cost, 1 ms a unit
     EXPECT_EQ(budget.units_within(0.0101, 100), 8);
     EXPECT_EQ(budget.units_within(0.0101, 5), 5);
     EXPECT_EQ(budget.units_within(0.001, 100), 1);

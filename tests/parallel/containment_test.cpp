@@ -1,5 +1,6 @@
-// What a step does about a body whose state is not finite: it is frozen, named, and what ties it to others is left out,
-// until the host revives it. Independent evidence: free fall, and the same scene without the bad body, to the bit.
+// What a step does with a body whose state is not finite: the body is frozen and named, and its joints and contacts
+// are left out until the host revives it. Independent evidence: free fall, and the same scene without the bad body,
+// bit for bit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +14,7 @@ namespace {
 
 constexpr float dt = 1.0F / 60;
 
-/// So light that a force which is a number makes an acceleration that is none.
+/// So light that a finite force gives an acceleration that is not finite.
 constexpr float light = 1e-6F;
 
 BodyDefinition ball(const Vec3<double>& position, BodyModel model = BodyModel::rigid, float mass = 1)
@@ -48,7 +49,7 @@ Contact contact_between(BodyId a, BodyId b)
     return contact;
 }
 
-/// Freezes a light body: a force drives it past the range of floats.
+/// Freezes a light body: a force drives it beyond the range of floats.
 void freeze(Scene& scene, Solver& solver, BodyId body)
 {
     scene.set_force(body, {3e38F, 3e38F, 0}, {});
@@ -72,7 +73,7 @@ TEST_P(Containment, LeavesOutJointsAndContactsOfAFrozenBody)
     const Vec3<double> at = scene.state(bad).position;
     EXPECT_TRUE(std::isfinite(at.x) && std::isfinite(at.y) && std::isfinite(at.z));
 
-    // Added at a speed, a metre off: joined and in touch, but to nothing that may push them.
+    // Bodies joined to and in contact with the frozen body, both with an error: neither may be pushed.
     const auto neighbour = [&](Scene& to, double side) {
         return to.add_body(ball({at.x + side * 1.8, at.y, at.z}));
     };
@@ -97,7 +98,7 @@ TEST_P(Containment, LeavesOutJointsAndContactsOfAFrozenBody)
     EXPECT_EQ(scene.state(bad).position.x, at.x);
     EXPECT_EQ(scene.state(bad).position.y, at.y);
 
-    // Back in play: its joint pulls, its contact pushes.
+    // After the revival its joint pulls and its contact pushes.
     scene.revive(bad, {at.x, scene.state(left).position.y, at.z}, scene.state(left).linear_velocity);
     EXPECT_FALSE(scene.is_contained(bad));
     const StepReport report = solver.step(scene, dt, contacts);
@@ -108,7 +109,7 @@ TEST_P(Containment, LeavesOutJointsAndContactsOfAFrozenBody)
 
 TEST_P(Containment, LeavesOtherIslandsTheirBits)
 {
-    // Twelve chains of four; the force reaches one of them. Beside it, the same scene without the force.
+    // Twelve chains of four links; the force acts on one of them. Compared with the same scene without the force.
     const auto build = [](Scene& scene, std::vector<BodyId>& ids) {
         for (int chain = 0; chain < 12; ++chain) {
             for (int i = 0; i < 4; ++i) {
@@ -192,7 +193,7 @@ TEST(ContainedBodies, FeelTheForcesThatWereSetMeanwhileOnceTheyAreRevived)
         scene.set_force(bad, {3 * light, 0, 0}, {0, 0, torque});
         scene.revive(bad, {0, 0, 0}, {});
         solver.step(scene, 0.5F);
-        // v = F t / m, w = T t / I, within the rounding of four substeps.
+        // v = F t / m, w = T t / I, up to the rounding of four substeps.
         EXPECT_NEAR(scene.state(bad).linear_velocity.x, 1.5, 1e-5);
         EXPECT_NEAR(scene.state(bad).angular_velocity.z, torque * 0.5F / 4, 1e-5);
     }

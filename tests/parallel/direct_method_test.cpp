@@ -1,5 +1,5 @@
-// Method::direct as a host uses it: against closed forms, against what the sequential methods converge to, and where
-// constraints are redundant, contradictory or singular.
+// Method::direct as a host uses it: against closed forms, against the limit to which the sequential methods converge,
+// and where constraints are redundant, contradictory or singular.
 #include <Eigen/Geometry>
 #include <initializer_list>
 #include <numbers>
@@ -24,8 +24,7 @@ SolverSettings direct(DriftCorrection correction, Vec3<float> gravity = {0, -9.8
     return settings;
 }
 
-/// The world as a contact's other side: a plane through the origin with the normal of a slope of `angle`, the point of a
-/// ball of radius 0.5 nearest to it.
+/// The contact of a ball of radius 0.5 with a slope: a plane of the ground through the origin, tilted by `angle`.
 Contact ball_on_slope(const Scene& scene, BodyId ball, double angle, float friction)
 {
     const Vec3<double> n{-std::sin(angle), std::cos(angle), 0}, x = scene.state(ball).position;
@@ -42,7 +41,8 @@ Contact ball_on_slope(const Scene& scene, BodyId ball, double angle, float frict
 
 TEST(DirectMethod, AChainWithAThousandfoldWeightHoldsItsJoints)
 {
-    // Ten links of 1 kg, 1,000 kg at the end, starting level: what sequential methods cannot hold, at 60 Hz, 10 s.
+    // Ten links of 1 kg and 1,000 kg at the end, starting level, for 10 s at 60 Hz: sequential methods cannot hold
+    // it.
     Scene scene;
     std::vector<ConstraintId> joints;
     BodyId before = scene.ground();
@@ -56,7 +56,7 @@ TEST(DirectMethod, AChainWithAThousandfoldWeightHoldsItsJoints)
     }
     SolverSettings settings = direct(DriftCorrection::projection);
     settings.projections = 3;
-    settings.substeps = 8;  // the light links whip round by several tenths of a radian a substep
+    settings.substeps = 8;  // the light links turn by several tenths of a radian a substep
     Solver solver(settings);
     double squares = 0, violation = 0;
     int count = 0;
@@ -92,7 +92,7 @@ TEST(DirectMethod, JointReportsHoldTheWeight)
 
 TEST(DirectMethod, ABlockSticksBelowTheAngleOfFrictionAndSlidesAboveIt)
 {
-    // A particle: a = g (sin - mu cos) above atan(mu), nothing below.
+    // A particle accelerates by g (sin - mu cos) where tan(angle) > mu, and otherwise not at all.
     const double angle = 0.4;
     for (const float mu : {0.5F, 0.3F}) {
         Scene scene;
@@ -133,7 +133,7 @@ TEST(DirectMethod, ABallRollsDownASlopeWithoutSlipping)
     EXPECT_NEAR(scene.contact_impulses()[0].normal / scene.last_step, 2 * g * std::cos(angle), 1e-3);
 }
 
-/// Balls in a heap, some of which slide and some of which stick, pushed from the side.
+/// A heap of balls, some of which slide and some of which stick, pushed from the side.
 struct Heap {
     Scene scene;
     std::vector<BodyId> balls;
@@ -179,7 +179,8 @@ struct Heap {
 
 TEST(DirectMethod, IsWhereSweepsOverAHeapWithFrictionConverge)
 {
-    // The same step by sweeps, ten times as many each time: independent code, in float and one row after another.
+    // The same step with sweeps, ten times as many each time: independent code, in float, one constraint after
+    // another.
     const Heap start;
     Heap truth = start;
     SolverSettings settings = direct(DriftCorrection::baumgarte);
@@ -207,7 +208,7 @@ TEST(DirectMethod, IsWhereSweepsOverAHeapWithFrictionConverge)
     EXPECT_LT(before, 2e-5);
 }
 
-/// Cubes of 1 m, the corners of each on those that it stands on.
+/// Cubes of 1 m. Each touches the cubes that it stands on with its lower corners.
 struct Cubes {
     Scene scene;
     std::vector<BodyId> cubes;
@@ -222,7 +223,7 @@ struct Cubes {
         for (const BodyId other : below) stands_on.emplace_back(other, cubes.back());
         return cubes.back();
     }
-    /// Finds the corners again that are on a face; a cube's face is taken to stay level.
+    /// Finds the corners that lie on a face. The faces are taken to be level.
     void find_contacts(float friction)
     {
         contacts.clear();
@@ -251,7 +252,7 @@ struct Cubes {
             }
         }
     }
-    /// The worst violation of some steps, each of which has to be solved.
+    /// The largest violation over some steps, each of which must be solved.
     double run(Solver& solver, int steps, float friction)
     {
         double violation = 0;
@@ -268,7 +269,8 @@ struct Cubes {
 
 TEST(DirectMethod, AWallOfCubesWithFrictionIsSolvedInEveryStep)
 {
-    // 36 cubes, 144 contacts, 432 rows, of which the bodies can move along 216: and a weight of 1,000 on top.
+    // 36 cubes, 144 contacts and 432 rows, but only 216 degrees of freedom; then the same with a weight of 1,000 kg
+    // on top.
     for (const float top : {1.0F, 1000.0F}) {
         Cubes wall;
         std::vector<BodyId> below;
@@ -302,7 +304,8 @@ TEST(DirectMethod, AStackOfLightAndHeavyCubesIsSolvedInEveryStep)
 
 TEST(DirectMethod, ANetOfHingesAndWeldsWithFarMoreRowsThanMotionsIsSolved)
 {
-    // 36 bodies have 216 motions; 60 joints and the ground's take 336 rows. Masses 1 : 1000.
+    // 36 bodies have 216 degrees of freedom; their 60 joints and one to the ground have 336 rows. Masses are 1 and
+    // 1,000 kg.
     constexpr int side = 6;
     Scene scene;
     std::vector<BodyId> bodies;
@@ -326,7 +329,8 @@ TEST(DirectMethod, ANetOfHingesAndWeldsWithFarMoreRowsThanMotionsIsSolved)
 
 TEST(DirectMethod, ContradictoryConstraintsAreMetInTheLeastSquares)
 {
-    // A rod of 1 m and one of 2 m between the same points, 1.5 m apart: they pull the mass both ways, and it stays.
+    // A rod of 1 m and a rod of 2 m between the same two points, 1.5 m apart: they pull the mass both ways, and it
+    // stays.
     Scene scene;
     const BodyId bob = scene.add_body(box({1.5, 0, 0}));
     for (const float length : {1.0F, 2.0F})
@@ -345,7 +349,7 @@ TEST(DirectMethod, ContradictoryConstraintsAreMetInTheLeastSquares)
 
 TEST(DirectMethod, RedundantJointsShareTheirLoadAndIslandsDoNotFeelEachOther)
 {
-    // Two welds at one place carry half the weight each; a body far away has the bits that it has alone.
+    // Two welds at one place carry half the weight each. A body far away has the same bits as without them.
     const auto far_away = [](Scene& scene) {
         const BodyId bob = scene.add_body(box({50, 0, 0}));
         scene.add_joint(BallSocketDefinition{scene.ground(), bob, {49, 0, 0}, {-1, 0, 0}});
@@ -382,7 +386,7 @@ TEST(DirectMethod, AServoAtItsBoundPullsWithThatAndNoMore)
     scene.set_force(weight, {3, 0, 0}, {0, 0, 1.5F});
     Solver solver(direct(DriftCorrection::baumgarte));
     for (int step = 0; step < 30; ++step) ASSERT_LT(solver.step(scene, frame_time).direct_violation, 1e-9);
-    // The pull points against the motion, which is along the load: F = (3, -m g), less 12 of its length.
+    // The servo pulls against the motion, which is along the load: the net force is (3, -m g), shortened by 12.
     const double load = std::hypot(3, 2 * g), speed = (load - 12) / 2 * 0.5;
     EXPECT_NEAR(scene.state(weight).linear_velocity.y, -speed * 2 * g / load, 1e-5);
     EXPECT_NEAR(scene.state(weight).linear_velocity.x, speed * 3 / load, 1e-5);

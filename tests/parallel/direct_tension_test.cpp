@@ -1,5 +1,5 @@
-// Method::direct where light links bear heavy loads. Independent evidence: conservation of energy, momentum and angular
-// momentum, and a chain in angles, written here, that cannot part at all.
+// Method::direct where light links bear heavy loads. Independent evidence: conservation of energy, momentum and
+// angular momentum; and a chain in angle coordinates, written here, whose joints cannot part.
 #include <Eigen/Dense>
 #include <array>
 #include <cstdio>
@@ -65,7 +65,7 @@ TEST(DirectTension, FloatingChainsKeepMomentumAndAngularMomentum)
             gain = std::max(gain, chain.kinetic_energy() / energy - 1);
         }
         const Vec3<double> after = chain.momenta();
-        // Velocities are floats between steps: half an ulp each, of 5.5 m/s, 300 times, in either direction.
+        // Velocities are stored as floats between steps: half an ulp of 5.5 m/s, 300 times, in either direction.
         const double rounding = 300 * 2.5e-7 * (2 * load + 10);
         EXPECT_NEAR(after.x, before.x, rounding) << load;
         EXPECT_NEAR(after.y, before.y, rounding) << load;
@@ -75,7 +75,7 @@ TEST(DirectTension, FloatingChainsKeepMomentumAndAngularMomentum)
     }
 }
 
-/// The same chain as the angles of its links against the horizontal, by Lagrange's equations:
+/// The same chain in the angles of its links against the horizontal, by Lagrange's equations:
 ///   sum_k c_ik (cos(q_i - q_k) q_k'' + sin(q_i - q_k) q_k'^2) = -g cos(q_i) s_i.
 class AngleChain {
   public:
@@ -99,7 +99,7 @@ class AngleChain {
             }
         }
     }
-    /// Runge and Kutta's method of order four.
+    /// One step of fourth order Runge-Kutta.
     void step(double h)
     {
         const Vector k1 = rate, a1 = acceleration(angle, k1);
@@ -109,7 +109,7 @@ class AngleChain {
         angle += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
         rate += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
     }
-    /// The middle of the load.
+    /// The centre of the load.
     [[nodiscard]] Eigen::Vector2d load() const
     {
         Eigen::Vector2d at = Eigen::Vector2d::Zero();
@@ -155,13 +155,14 @@ TEST(DirectTension, AFallingLoadGoesTheWayOfAChainInAngles)
             double most = 0;
             for (int step = 0; step < testing::long_run(60); ++step) {
                 solver.step(scene, frame_time);
-                const int fine = 1667;  // of 1e-5 s
+                const int fine = 1667;  // substeps of 1e-5 s
                 for (int i = 0; i < fine; ++i) truth.step(static_cast<double>(frame_time) / fine);
                 const Vec3<double> at = scene.state(chain.bodies.back()).position;
                 most = std::max(most, (Eigen::Vector2d(at.x, at.y) - truth.load()).norm());
             }
             std::printf("%g kg falling for a second, %d substeps: %.3g m off\n", load, substeps, most);
-            // v += h a, x += h v is ahead by h g t / 2, and what turns loses h w^2 of its energy: both go with h.
+            // v += h a, x += h v is ahead by h g t / 2, and what turns loses h w^2 of its energy: both are
+            // proportional to h.
             EXPECT_LT(most, 0.2 / substeps);
             EXPECT_LT(most, most_before / 3);
             most_before = most;

@@ -1,5 +1,6 @@
-// The simultaneous solution in double is where the sequential methods go as their iterations grow, from the same step.
-// Independent evidence: one linear complementarity problem over the whole scene, solved by active sets on Eigen.
+// The simultaneous solution in double is the limit of the sequential methods as their iterations grow, from the same
+// step. Independent evidence: one linear complementarity problem over the whole scene, solved by active sets on
+// Eigen.
 #include <gtest/gtest.h>
 
 #include "twin.h"
@@ -44,7 +45,7 @@ void add_hinge(Twin& twin, int a, int b, Vec3<float> at_a, Vec3<float> at_b)
     twin.add_joint(HingeDefinition{twin.ids[i], twin.ids[j], {at_a, turn}, {at_b, turn}});
 }
 
-/// A static body and a level chain of links from it; the last has `last_mass` kg.
+/// A static body and a level chain of links that hangs on it; the last link has `last_mass` kg.
 Twin chain(int links, float last_mass)
 {
     Twin twin;
@@ -77,7 +78,7 @@ double distance_to_direct(const Twin& start, const SolverSettings& settings,
     return twin.difference();
 }
 
-/// Checks that the distance falls with every tenfold of iterations until it is below `bound`.
+/// Checks that each tenfold of iterations makes the distance smaller, until it is below `bound`.
 void expect_convergence(const char* name, const Twin& twin, double bound,
                         const std::vector<std::pair<std::pair<int, int>, Contact>>& touches = {})
 {
@@ -94,7 +95,8 @@ void expect_convergence(const char* name, const Twin& twin, double bound,
 
 TEST(Direct, ChainsConvergeToItAlsoWithAHeavyEnd)
 {
-    // Floats end at their rounding times the condition of J M^-1 J^T, which grows with the links and the mass ratio.
+    // Floats converge to their rounding times the condition of J M^-1 J^T, which grows with the links and the mass
+    // ratio.
     expect_convergence("chain of 6", chain(6, 1), 1e-4);
     expect_convergence("chain of 4, the last 30 times heavier", chain(4, 30), 1e-3);
 }
@@ -111,7 +113,7 @@ TEST(Direct, AStackOfBallsConvergesToIt)
         Contact contact;
         contact.key = static_cast<std::uint64_t>(i);
         contact.normal = {0, 1, 0};
-        contact.separation = i == 4 ? 0.001F : -0.0001F * static_cast<float>(i);  // one has room, and uses it
+        contact.separation = i == 4 ? 0.001F : -0.0001F * static_cast<float>(i);  // one has a gap
         contact.arm_a = i == 1 ? Vec3<float>{} : Vec3<float>{0, 0.5F, 0};
         contact.arm_b = {0, -0.5F, 0};
         touches.push_back({{i - 1, i}, contact});
@@ -121,8 +123,9 @@ TEST(Direct, AStackOfBallsConvergesToIt)
 
 TEST(Direct, ADoorOnTwoHingesAndAFourBarLinkageHaveAnAnswer)
 {
-    // Redundant rows: ten on a door that may turn about one axis; a loop of four hinges leaves one motion of
-    // 18 - 20 rows. The least norm shares the load, and the velocities meet every row.
+    // Redundant rows: ten on a door that may turn about one axis, and 20 on a loop of four hinges, whose 18 degrees
+    // of freedom leave it one motion. The solution of least norm shares the load, and the velocities satisfy every
+    // row.
     Twin door;
     BodyDefinition post;
     post.motion = BodyMotion::static_body;
@@ -137,10 +140,10 @@ TEST(Direct, ADoorOnTwoHingesAndAFourBarLinkageHaveAnAnswer)
     EXPECT_LT(swung.world.step_directly(static_cast<double>(dt), sequential(1), {}).violation, 1e-9);
     const reference::Vector6 v = swung.world.bodies[1].velocity;
     EXPECT_TRUE(v.allFinite());
-    EXPECT_NEAR(v(3), 0, 1e-9);  // it turns about z alone
+    EXPECT_NEAR(v(3), 0, 1e-9);  // it turns about z only
     EXPECT_NEAR(v(4), 0, 1e-9);
     EXPECT_GT(v(5), 0.5);
-    // Twins of one load: both hinges carry the same force along z against gravity across the door.
+    // The hinges share one load: both carry the same force along z, against gravity across the door.
     EXPECT_NEAR(swung.world.joints[0].impulses[0](2), swung.world.joints[1].impulses[0](2), 1e-6);
     expect_convergence("door on two hinges", door, 2e-4);
 

@@ -1,5 +1,5 @@
-// Limits and springs on Euler angles. Independent evidence: virtual work on the axes of three hinges, whose turns one after another
-// make the orientation that is read.
+// Limits and springs on Euler angles. Independent evidence: virtual work on the axes of three hinges in series, whose
+// rotations give the body's orientation.
 #include <Eigen/Geometry>
 
 #include "rig.h"
@@ -18,7 +18,7 @@ struct Hinges {
     {
         const Eigen::Matrix3d r =
             Eigen::Quaterniond(orientation.w, orientation.x, orientation.y, orientation.z).toRotationMatrix();
-        // R = R_x R_y R_z: the third column is that of R_x R_y, the first row that of R_y R_z.
+        // R = R_x R_y R_z: its third column is that of R_x R_y, its first row that of R_y R_z.
         angles = {std::atan2(-r(1, 2), r(2, 2)), std::asin(r(0, 2)), std::atan2(-r(0, 1), r(0, 0))};
         const Eigen::AngleAxisd x(angles.x(), Eigen::Vector3d::UnitX()),
             y(angles.y(), Eigen::Vector3d::UnitY()), z(angles.z(), Eigen::Vector3d::UnitZ());
@@ -88,7 +88,7 @@ TEST(EulerDrive, LimitsHoldEachAngleAndBearItsShareOfTheTorque)
         for (int i = 0; i < 3; ++i) {
             EXPECT_GT(hinges.angles(i), lower(i) - 2e-3);
             EXPECT_LT(hinges.angles(i), upper(i) + 2e-3);
-            // At rest each angle is at the end where the torque pushes it.
+            // At rest each angle is at the limit towards which the torque pushes it.
             const double work = hinges.axes.col(i).dot(push);
             if (std::abs(work) > 0.1) {
                 EXPECT_NEAR(hinges.angles(i), work > 0 ? upper(i) : lower(i), 2e-3) << "angle " << i;
@@ -99,7 +99,7 @@ TEST(EulerDrive, LimitsHoldEachAngleAndBearItsShareOfTheTorque)
 
 TEST(EulerDrive, AloneItIsATwist)
 {
-    // About one axis every way to count is the same.
+    // For a rotation about one axis all conventions of angles agree.
     for (int which = 0; which < 3; ++which) {
         Scene scene;
         const BodyId body = scene.add_body(box({0, 0, 0}));
@@ -140,7 +140,7 @@ TEST(EulerDrive, NearARightAngleItStaysFiniteAndGainsNoEnergy)
     const BodyId body = scene.add_body(definition);
     SixDofDefinition joint = euler_joint(scene, body);
     joint.rotation[0] = AxisSetup::limited(-0.2F, 0.2F);
-    joint.rotation[1] = AxisSetup::limited(-1.5F, 1.5F);  // 4 degrees from where x and z are one axis
+    joint.rotation[1] = AxisSetup::limited(-1.5F, 1.5F);  // 4 degrees from the pose where x and z coincide
     joint.rotation[2] = AxisSetup::limited(-0.2F, 0.2F);
     add_six_dof(scene, joint);
     Solver solver;

@@ -1,5 +1,5 @@
-// Locks solved all at once in lanes. Independent evidence: Method::direct, the sparse system of the whole scene in double,
-// whose elimination shares nothing with the tree's; conservation laws; and mass ratios that no sweep can follow.
+// All locks solved at once in lanes. Independent evidence: Method::direct, a sparse system of the whole scene in
+// double whose elimination shares nothing with the tree's; conservation laws; and mass ratios at which sweeps fail.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -51,8 +51,9 @@ struct Tree {
     std::vector<double> masses;  ///< inertia is that of testing::box
 };
 
-/// A tree of eight bodies with three branches, every joint of this type, on a static post or afloat, in mass ratios up to
-/// 100, body a now the nearer, now the farther one. Nothing is off its place yet, everything moves.
+/// A tree of eight bodies with three branches and mass ratios up to 100, on the ground or floating. Every joint has
+/// this type; body a is in turn the nearer and the farther one. At first the joints have no error, and everything
+/// moves.
 template <class Definition>
 Tree tree_of(bool floats, std::uint64_t seed)
 {
@@ -123,7 +124,8 @@ TYPED_TEST(ExactLocks, OneStepHasTheVelocitiesOfTheSimultaneousSolutionInDouble)
             Solver solver(settings), reference(direct);
             solver.step(lanes.scene, frame_time);
             reference.step(truth, frame_time);
-            // Speeds are about 2: float rounding, times a condition number of a few hundred from mass ratios of 100.
+            // Bound: float rounding of speeds of about 2, times a condition number of a few hundred from mass ratios
+            // of 100.
             EXPECT_LT(speed_difference(lanes.scene, truth, lanes.ids), 2e-4)
                 << "seed " << seed << ", floats " << floats;
         }
@@ -149,20 +151,20 @@ TYPED_TEST(ExactLocks, FloatingTreesKeepTheirMomenta)
     };
     Vec3<double> linear, angular, linear_after, angular_after;
     Solver solver(settings);
-    solver.step(tree.scene, frame_time);  // locks may take hold
+    solver.step(tree.scene, frame_time);  // removes the velocity error of the locks
     momenta(linear, angular);
     for (int step = 0; step < 60; ++step) solver.step(tree.scene, frame_time);
     momenta(linear_after, angular_after);
     const auto off = [](const Vec3<double>& u, const Vec3<double>& v) {
         return std::sqrt(dot(u - v, u - v));
     };
-    // About 25 kg at 1 m/s; 240 substeps, each rounding to 1e-7 of that; angular momentum drifts with the order of the
-    // integration besides.
+    // Bound: about 25 kg at 1 m/s, in 240 substeps that each round to 1e-7 of that. Angular momentum also drifts, by
+    // the error of the integration.
     EXPECT_LT(off(linear, linear_after), 25 * 240 * 1e-7);
     EXPECT_LT(off(angular, angular_after), 0.02 * std::sqrt(dot(angular, angular)) + 0.05);
 }
 
-/// Ten links of 1 kg and a load, straight down or level.
+/// Ten links of 1 kg and a load, hanging straight down or level.
 Scene loaded_chain(float load, bool level, ConstraintId* top = nullptr)
 {
     Scene scene;
@@ -210,7 +212,7 @@ TEST(ExactJoints, LightChainsHoldHeavyLoadsForAMinute)
 
 TEST(ExactJoints, AHangingChainBearsItsLoadInEveryJoint)
 {
-    // Statics: the topmost joint carries everything, 1,010 kg.
+    // Statics: the topmost joint carries all 1,010 kg.
     ConstraintId top;
     Scene scene = loaded_chain(1000, false, &top);
     Solver solver(exact_settings());
@@ -219,7 +221,7 @@ TEST(ExactJoints, AHangingChainBearsItsLoadInEveryJoint)
     EXPECT_NEAR(std::sqrt(dot(force, force)), 1010 * 9.81F, 1010 * 9.81F * 1e-3F);
 }
 
-/// side x side boxes at unit spacing tied to their neighbours, one corner to the world.
+/// A net of side x side boxes with unit spacing, tied to their neighbours; one corner is tied to the world.
 template <class Definition>
 Tree net(int side)
 {
@@ -243,7 +245,7 @@ Tree net(int side)
 
 TEST(ExactJoints, LoopsCloseExactly)
 {
-    // Four boxes in a ring of ball-sockets; nothing redundant.
+    // Four boxes in a ring of ball-sockets, without redundant rows.
     Tree lanes = net<BallSocketDefinition>(2);
     for (std::size_t i = 0; i < lanes.ids.size(); ++i)
         lanes.scene.set_velocity(lanes.ids[i], {0.3F, -0.2F * static_cast<float>(i), 0.5F},
@@ -270,8 +272,8 @@ TEST(ExactJoints, LoopsCloseExactly)
 
 TEST(ExactJoints, RedundantLoopsOfHingesHoldAndMove)
 {
-    // Four parallel hinges close a loop by five rows where two are needed. It still swings as one body on a hinge would
-    // not: it folds. Whatever moves out of its plane is rounding.
+    // Four parallel hinges close a loop with five rows where two are enough. The ring must still be able to fold,
+    // which one rigid body on a hinge could not. Motion out of its plane is rounding.
     Tree ring = net<HingeDefinition>(2);
     Solver solver(exact_settings());
     double worst = 0, across = 0, moved = 0;
@@ -320,8 +322,8 @@ TEST(ExactJoints, AUniversalJointOfTwoLocksIsOneNode)
 
 TEST(ExactJoints, ASwingingChainKeepsItsEnergy)
 {
-    // Ten links fall from level for ten seconds, at 16 substeps: a chaotic whip. Its energy may only be lost, and of what
-    // falls (the chain's weight over half its length) little.
+    // Ten links fall from level for ten seconds, at 16 substeps: a chaotic whip. It must not gain energy, and its
+    // loss is bounded by a share of what the fall gives (the chain's weight times half its length).
     Scene scene = loaded_chain(1, true);
     std::vector<BodyId> ids;
     scene.joints().for_each([&](const auto& store, int) {

@@ -1,4 +1,4 @@
-// A host's own threads: whatever an executor lends, a step finishes, with the same bits.
+// A host's own threads: whatever an executor does, a step finishes, and with the same bits.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -12,7 +12,7 @@
 namespace motley {
 namespace {
 
-/// Starts a thread for every worker, in no order, and may forget some of them.
+/// Starts a thread for every worker, in no fixed order, and may leave some workers out.
 class ThreadExecutor final : public Executor {
   public:
     ThreadExecutor(int concurrency, int lent) : concurrency_(concurrency), lent_(lent) {}
@@ -69,7 +69,7 @@ TEST(Executor, StagesRunEachChunkOnceAndOneAfterTheOtherHoweverSlowAThreadIs)
     for (const int lent : {0, 1, 4}) {
         ThreadExecutor host(5, lent);
         StageRunner runner(&host);
-        std::vector<int> stages_run(200, 0);  // of each chunk; stages touch the same ones, without atomics
+        std::vector<int> stages_run(200, 0);  // of each chunk; written without atomics by every stage
         runner.with_workers(false, [&] {
             for (int stage = 0; stage < 500; ++stage) {
                 const int count = stage % 200 + 1;
@@ -111,7 +111,7 @@ TEST(Executor, IsLeftAloneByWhatOneThreadDoes)
     EXPECT_EQ(host.runs, 0);
 }
 
-/// Does what a host's pool may do wrong.
+/// Makes the mistakes that a host's thread pool may make.
 class FaultyExecutor final : public Executor {
   public:
     enum class Fault {
@@ -229,7 +229,7 @@ TEST(Executor, ALoopThatThrowsIsThrownToItsCaller)
     }
 }
 
-/// Steps again while it is asked to run.
+/// An executor that starts another step while it runs one.
 class NestingExecutor final : public Executor {
   public:
     std::function<StepReport()> step;

@@ -1,5 +1,6 @@
-// What happens when memory runs out: a call is refused and has changed nothing, and the same call with memory does what it
-// would have done. Independent evidence: the same calls where memory never ran out. Every allocation fails once.
+// What happens when memory runs out: the call is refused and has changed nothing, and the same call with enough
+// memory then gives the usual result. Independent evidence: the same calls where memory never ran out. Every
+// allocation fails once.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -43,14 +44,14 @@ std::vector<Way> ways()
             {"direct", direct, 1}};
 }
 
-/// Small first, so that in a later step everything grows.
+/// The first contacts of a list. A step with few contacts comes first, so that everything grows in the next one.
 std::span<const Contact> first_of(const std::vector<Contact>& contacts, std::size_t count)
 {
     return std::span(contacts).first(std::min(count, contacts.size()));
 }
 
-/// A step with three contacts, then one with all, in which memory runs out, and two more. Returns the hash; `ran_out` tells
-/// whether an allocation failed.
+/// A step with three contacts; then a step with all contacts, in which memory runs out; then two more. Returns the
+/// hash. `ran_out` tells whether an allocation failed.
 std::uint64_t hash_after_steps(const Way& way, long successes, bool for_good, bool& ran_out)
 {
     MixedScene mixed(4);
@@ -59,7 +60,7 @@ std::uint64_t hash_after_steps(const Way& way, long successes, bool for_good, bo
     const std::vector<Contact> few(first_of(mixed.contacts(), 3).begin(),
                                    first_of(mixed.contacts(), 3).end());
     EXPECT_EQ(solver.step(mixed.scene, dt, few).status, StepStatus::done);
-    // A joint more, so that joints are laid out anew.
+    // One more joint, so that joints are laid out anew.
     mixed.scene.set_break_limit(
         mixed.scene.add_joint(DistanceDefinition{mixed.balls[0], mixed.balls[5], {}, {}, 0, 2}), {1, 1});
     std::vector<Contact> contacts = mixed.contacts();
@@ -127,7 +128,7 @@ TEST(FailedAllocation, PatchesWithoutMemoryAreRefusedAndTheNextOnesDone)
     bool ran_out = false;
     const std::uint64_t expected = hash_after(testing::never, ran_out);
     ran_out = true;
-    // One in seven: what a small scene allocates too has failed in the test before.
+    // Only every seventh allocation: those that a small scene makes as well have failed in the test above.
     for (long successes = 0; ran_out; successes += 7)
         ASSERT_EQ(hash_after(successes, ran_out), expected) << "allocation " << successes;
 }

@@ -1,5 +1,5 @@
-// Figures in lockstep: the same bits as ordinary sweeps, whatever touches, breaks or joins a copy. Independent evidence:
-// a step that measures itself sweeps everything by colour, and must end in the same bits.
+// Figures in lockstep have the same bits as ordinary sweeps, whatever touches, breaks or joins a copy. Independent
+// evidence: a step that measures itself sweeps everything by colour, and must end in the same bits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ Figure puppet()
     cone.frame_a.rotation = cone.frame_b.rotation = testing::axis_along(1);
     cone.max_angle = 0.3F;
     figure.add_joint(cone);
-    // The chest is body b: its frame is turned round in the tree.
+    // The chest is body b, so that the tree has to reverse this joint.
     HingeDefinition shoulder{arm, chest};
     shoulder.frame_a.position = {-0.3F, 0, 0};
     shoulder.frame_b.position = {0.3F, 0, 0.1F};
@@ -58,7 +58,7 @@ Figure puppet()
 constexpr std::size_t puppet_bodies = 5;
 constexpr std::int64_t puppet_joints = 7;
 
-/// Copies that turn and move each in its own way.
+/// Copies of the puppet, each with its own velocity.
 std::vector<BodyId> add_puppets(Scene& scene, int copies)
 {
     std::vector<Placing> places;
@@ -92,7 +92,7 @@ std::vector<SolverSettings> every_way()
     exact.exact_joints = true;
     SolverSettings impulse = soft;
     impulse.method = Method::sequential_impulse;
-    impulse.drift_correction = DriftCorrection::baumgarte;  // figures that project are swept by colour
+    impulse.drift_correction = DriftCorrection::baumgarte;  // figures with projection are swept by colour
     impulse.iterations = 6;
     impulse.substeps = 2;
     return {soft, iterated, exact, impulse};
@@ -174,7 +174,7 @@ TEST(Figures, ACopyThatTouchesBreaksOrLeavesKeepsTheBitsOfOrdinarySweeps)
                 });
             if (step == 70)  // copy 5 loses its hand
                 in_both([&](Scene& scene) { scene.remove_body(ids[5 * puppet_bodies + 4]); });
-            if (step == 90)  // a lock of copy 6 becomes a spring; two copies go, one comes
+            if (step == 90)  // a lock of copy 6 becomes a spring; two copies are removed, one is added
                 in_both([&](Scene& scene) {
                     for (std::size_t i = 0; i < puppet_bodies; ++i) {
                         scene.remove_body(ids[30 * puppet_bodies + i]);
@@ -190,7 +190,7 @@ TEST(Figures, ACopyThatTouchesBreaksOrLeavesKeepsTheBitsOfOrdinarySweeps)
             in_lockstep.push_back(report.joints_in_lockstep);
         }
         if (settings.exact_joints) continue;
-        // 40 copies: 16 + 16 + 8 in lockstep; a touched block is not; then one block is short of copies.
+        // 40 copies: 16 + 16 + 8 are in lockstep; a touched block is not; at the end one block has too few copies.
         EXPECT_EQ(in_lockstep[10], 40 * puppet_joints);
         EXPECT_EQ(in_lockstep[30], 24 * puppet_joints);
         EXPECT_EQ(in_lockstep[45], 40 * puppet_joints);
@@ -199,9 +199,8 @@ TEST(Figures, ACopyThatTouchesBreaksOrLeavesKeepsTheBitsOfOrdinarySweeps)
     }
 }
 
-/// Gears count turns from where bodies were when the step began to where they are when it ends.
-/// Joints that are taken away and put back, one a figure and several a step: the stores then hold the joints of all figures in
-/// another order, but the figures are what they were.
+/// Joints are removed and added again, one a figure and several in each step. The stores then hold the joints of all
+/// figures in another order, but the figures are the same.
 TEST(Figures, ACopyWhoseJointsAreReplacedStaysInLockstep)
 {
     constexpr int copies = 32, bodies = 6;
@@ -223,7 +222,7 @@ TEST(Figures, ACopyWhoseJointsAreReplacedStaysInLockstep)
     solver.step(scene, frame_time);  // gives the joints their colours
     std::uint32_t random = 1;
     for (int step = 0; step < 50; ++step) {
-        // Several at once: their slots come back in another order too.
+        // Several at once, so that their slots are reused in another order too.
         std::vector<std::size_t> replaced;
         for (int k = 0; k < 5; ++k) {
             random = random * 1664525 + 1013904223;
@@ -242,6 +241,7 @@ TEST(Figures, ACopyWhoseJointsAreReplacedStaysInLockstep)
     }
 }
 
+/// Gears count turns from the poses at the beginning of a step to those at its end.
 TEST(Figures, CopiesWithGearsKeepTheBitsOfOrdinarySweeps)
 {
     for (const SolverSettings& settings : every_way()) {

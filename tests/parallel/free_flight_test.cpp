@@ -1,5 +1,5 @@
-// Where what nothing pushes flies under constant forces. Independent evidence: x = x_0 + v_0 t + a t^2 / 2, of bodies and of the
-// centres of mass of what joints tie together.
+// Flight under constant forces without contact. Independent evidence: x = x_0 + v_0 t + a t^2 / 2, for bodies and for
+// the centres of mass of bodies that joints connect.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -46,7 +46,7 @@ Solver solver_of(const Case& of, bool exact_joints = false)
     return Solver(settings);
 }
 
-/// Steps for two seconds; returns how long that was.
+/// Steps for about two seconds. Returns the exact time.
 double fly(Scene& scene, Solver solver, float dt)
 {
     const auto steps = static_cast<int>(2 / dt + 0.5F);
@@ -54,8 +54,9 @@ double fly(Scene& scene, Solver solver, float dt)
     return steps * static_cast<double>(dt);
 }
 
-/// What floats round, m: of velocities up to 16 m/s half a unit in the last place a substep, which is 4.8e-7 m/s and much the same
-/// substep after substep, felt for half of the two seconds; and as much of displacements.
+/// Rounding of floats, m. Velocities up to 16 m/s are off by half a unit in the last place a substep, 4.8e-7 m/s,
+/// with much the same sign in every substep; on average this acts for half of the two seconds. Displacements add as
+/// much.
 double rounding_of(const Case& of)
 {
     const double substeps = 2 / static_cast<double>(of.dt) * of.substeps;
@@ -68,7 +69,7 @@ TEST_P(FreeFlight, OfBodiesIsExactWhateverTheStep)
 {
     const Vec3<float> force{3, 1, -2}, velocity{1, 4, 0.5F};
     for (const BodyModel model : {BodyModel::particle, BodyModel::planar, BodyModel::rigid}) {
-        // Seventeen: sixteen go in line, one by itself.
+        // Seventeen bodies: sixteen are in one block of lanes, one is alone.
         Scene scene;
         std::vector<BodyId> bodies;
         for (int i = 0; i < 17; ++i) {
@@ -100,7 +101,7 @@ TEST_P(FreeFlight, OfBodiesIsExactWhateverTheStep)
     }
 }
 
-/// A chain that tumbles, thrown; its first body is pushed aside all the while.
+/// A chain is thrown and tumbles; a constant force pushes its first body sideways.
 TEST_P(FreeFlight, OfWhatJointsTieTogetherIsExactInTheMiddle)
 {
     for (const bool exact : {false, true}) {
@@ -134,12 +135,12 @@ TEST_P(FreeFlight, OfWhatJointsTieTogetherIsExactInTheMiddle)
         const Vector truth =
             1 / mass * (start + seconds * momentum) +
             0.5 * seconds * seconds * (1 / mass * convert<double>(force) + convert<double>(gravity));
-        // Impulses of joints cancel but for what their bodies round.
+        // The impulses of joints cancel, up to the rounding of their bodies' velocities.
         EXPECT_LT(length(middle - truth), 4 * rounding_of(GetParam())) << "exact " << exact;
     }
 }
 
-/// Slack ropes and limits push nothing: it flies until the rope is taut, and then not through it.
+/// A slack rope exerts no force: the ball flies freely until the rope is taut, and then not beyond it.
 TEST_P(FreeFlight, EndsWhereTheRopeDoes)
 {
     Scene scene;

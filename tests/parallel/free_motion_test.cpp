@@ -1,5 +1,5 @@
-// Free motion. Independent evidence: conservation of angular momentum; Euler's equations of a free body, and Newton's and Euler's of
-// a figure with the forces in its joints, by integrators of the test's own (Runge and Kutta's fourth order).
+// Free motion. Independent evidence: conservation of angular momentum; Euler's equations of a free body; and the
+// Newton-Euler equations of a figure with the forces in its joints, integrated here by fourth order Runge-Kutta.
 #include <Eigen/Geometry>
 #include <array>
 #include <vector>
@@ -13,7 +13,7 @@ using Vector = Vec3<double>;
 using testing::angular_momentum;
 using testing::length;
 
-/// A chain of boxes that turn against each other.
+/// A chain of boxes that turn relative to each other.
 struct Figure {
     Scene scene;
     std::vector<BodyId> bodies;
@@ -38,7 +38,7 @@ struct Figure {
             joint.local_anchor_b = {-0.2F, 0, 0};
             scene.add_joint(joint);
         }
-        // The whole turns; and its ends are kicked, which the joints pass on.
+        // The whole figure turns about z, and each body also spins about the line of the chain.
         for (int i = 0; i < count; ++i) {
             const double x = 0.4 * i;
             scene.set_velocity(bodies[static_cast<std::size_t>(i)], {1, static_cast<float>(2 * x), 0.5F},
@@ -51,7 +51,7 @@ struct Figure {
         for (const BodyId body : bodies) sum = sum + scene.state(body).position;
         return 1.0 / static_cast<double>(bodies.size()) * sum;
     }
-    /// About the centre of mass.
+    /// Angular momentum about the centre of mass.
     [[nodiscard]] Vector spin_about_centre() const
     {
         const Vector middle = centre();
@@ -62,7 +62,7 @@ struct Figure {
     }
 };
 
-/// Spin in the body's frame and orientation after a time, of a body of these principal moments.
+/// The spin, in the body's frame, and the orientation after a time of a body with these principal moments.
 struct Tumbling {
     Vector inertia, spin;
     Quat<double> turned{0, 0, 0, 1};
@@ -95,7 +95,8 @@ struct Tumbling {
     }
 };
 
-/// Radians between a body after 2 s and the truth; and what it lost of angular momentum and energy, as shares.
+/// The angle between a body after 2 s and the true orientation, rad, and the shares of angular momentum and energy
+/// that it lost.
 struct Lost {
     double angle, angular_momentum, energy;
 };
@@ -134,7 +135,7 @@ TEST(FreeTumbling, KeepsItsAngularMomentumAndTurnsToSecondOrder)
                         substeps, lost.angle, lost.angular_momentum, lost.energy);
             EXPECT_LT(lost.angular_momentum, 1e-5);
             EXPECT_LT(lost.energy, 0.02 / (substeps * substeps));
-            // Rounding of float makes 5e-5 rad in so many substeps.
+            // Rounding of floats adds 5e-5 rad in so many substeps.
             if (substeps > 1) {
                 EXPECT_LT(lost.angle, before / 3.5 + (method == Method::direct ? 0 : 5e-5));
             }
@@ -157,14 +158,14 @@ TEST(FreeFigure, KeepsItsAngularMomentum)
             for (int i = 0; i < 60; ++i) solver.step(figure.scene, 1.0F / 60);
             const double lost = length(figure.spin_about_centre() - start) / length(start);
             std::printf("exact %d, %d relaxations: %.2g of L\n", exact, relaxations, lost);
-            // What relaxes by sweeps pushes at arms from before the bodies moved: 2.2e-4 where the aim is 1e-4.
+            // Relaxation by sweeps uses lever arms from before the bodies moved: 2.2e-4 is lost; the goal was 1e-4.
             EXPECT_LT(lost, !exact && relaxations > 0 ? 5e-4 : 1e-6) << exact << relaxations;
         }
     }
 }
 
-/// The same figure by the forces in its joints: those under which anchors that are together stay together, from the accelerations
-/// of both (Newton and Euler); and Runge and Kutta's fourth order in steps of 0.25 ms.
+/// The same figure, computed from the forces in its joints: those that keep coincident anchors together, given the
+/// accelerations of both bodies (Newton and Euler). Integrated by fourth order Runge-Kutta in steps of 0.25 ms.
 class FigureByForces {
   public:
     explicit FigureByForces(const Figure& figure)
@@ -212,7 +213,7 @@ class FigureByForces {
         }
         return x;
     }
-    /// u -> lever x u as a matrix.
+    /// The matrix of u -> lever x u.
     static Matrix3 crossed(const Vector3& lever)
     {
         Matrix3 m;
@@ -235,7 +236,7 @@ class FigureByForces {
             gyration[i] = -(inverse[i] * x[i].spin.cross(momentum));
             lever[i] = turn * anchor;
         }
-        // Acceleration of body i at its far end and at its near end, without forces and for forces there.
+        // The acceleration of body i at its end on `side`: without forces, and in response to forces at an end.
         const auto alone = [&](std::size_t i, double side) -> Vector3 {
             const Vector3 r = side * lever[i];
             return gyration[i].cross(r) + x[i].spin.cross(x[i].spin.cross(r));
@@ -244,7 +245,8 @@ class FigureByForces {
             return Matrix3::Identity() / Figure::mass -
                    crossed(to * lever[i]) * inverse[i] * crossed(from * lever[i]);
         };
-        // Joint i pulls body i by f_i at its far end and body i + 1 by -f_i: a chain of blocks, eliminated from its beginning.
+        // Joint i pulls body i by f_i at its far end and body i + 1 by -f_i: a block tridiagonal system, eliminated
+        // from its first block on.
         std::vector<Matrix3> diagonal(count - 1);
         std::vector<Vector3> force(count - 1);
         for (std::size_t i = 0; i + 1 < count; ++i) {
@@ -278,13 +280,13 @@ class FigureByForces {
     Bodies bodies_;
 };
 
-/// Radians rms between the bodies of a figure after a second in flight and the truth.
+/// The rms angle in rad between the bodies of a figure after a second of flight and their true orientations.
 double after_a_flight(bool exact, int substeps)
 {
     Figure figure;
     SolverSettings settings;
     settings.exact_joints = exact;
-    // The kicks are passed on in no time: what flies holds together.
+    // A first, very short step removes what velocity error the joints have before the flight.
     settings.substeps = 1;
     Solver(settings).step(figure.scene, 1e-6F);
     FigureByForces truth(figure);
@@ -311,7 +313,7 @@ TEST(FreeFigure, TurnsAsTheForcesInItsJointsSay)
             if (substeps == 4) {
                 EXPECT_LT(angle, exact ? 1e-3 : 0.02);
             }
-            // Exact joints are of second order, but for what floats round; sweeps leave an error to the next substep.
+            // Exact joints are of second order, up to the rounding of floats; sweeps are of lower order.
             if (substeps > 1) {
                 EXPECT_LT(angle, exact ? before / 3.5 + 2e-5 : before / 1.4);
             }

@@ -1,7 +1,8 @@
-// Coulomb's law where the bodies answer one direction more than another: friction at its bound points against the slip.
-// Independent evidence: the law itself. The slip that is left is computed here in double from the velocities that a step
-// leaves, the friction is what the step reports, and neither is compared with another solver. The comparison with
-// core/reference (reference_comparison_test.cpp) shares the formula of a sweep with the lanes, and is no evidence for it.
+// Coulomb's law where bodies respond differently in different directions: friction at its bound must be opposite to
+// the slip. Independent evidence: the law itself. The remaining slip is computed here in double from the velocities
+// after a step, the friction is what the step reports, and neither is compared with another solver. The comparison
+// with core/reference (reference_comparison_test.cpp) is no evidence here, because the reference uses the same
+// formula in a sweep as the lanes.
 #include "box_heap.h"
 
 namespace motley {
@@ -16,7 +17,7 @@ using testing::plain_sweeps;
 using testing::Vector;
 using testing::velocity_at;
 
-/// A rod of 1 m and 1 kg that slides on its lower end, `tilt` rad from upright, neither along its tilt nor across it.
+/// A rod of 1 m and 1 kg that slides on its lower end, `tilt` rad from upright, in a direction oblique to its tilt.
 struct SlidingRod {
     Scene scene;
     BodyId rod{};
@@ -35,13 +36,14 @@ struct SlidingRod {
         body.angular_velocity = spin;
         rod = scene.add_body(body);
     }
-    /// Across the floor, after a step.
+    /// Slip of the lower end across the floor, after a step.
     [[nodiscard]] Vector slip() const { return across(velocity_at(scene.state(rod), arm), {0, 1, 0}); }
 };
 
-// Below this friction is against the slip, in degrees. A step in float leaves some 1e-5.
+// The largest angle between friction and the direction opposite to the slip, degrees. A step in float is off by about
+// 1e-5.
 constexpr double most_degrees = 0.05;
-/// s: so short that no row turns, nor a spin by the turn of its body.
+/// s: so short that rows do not turn, and spins do not change with the turn of their body.
 constexpr float instant = 1e-4F;
 
 class SlidingRodAtATilt : public ::testing::TestWithParam<double> {};
@@ -95,7 +97,7 @@ TEST_P(SlidingRodAtATilt, IsBrakedAgainstItsSlipByAManifold)
 
 TEST_P(SlidingRodAtATilt, IsBrakedAgainstItsSlipItsSpinAndItsRollByAManifold)
 {
-    // Friction, torsion and rolling friction all at their bounds.
+    // Friction, torsion and rolling friction are all at their bounds.
     SlidingRod rod(GetParam(), {3, 6, 2});
     ManifoldDefinition contact = end_of(rod);
     contact.torsional_radius = 0.005F;
@@ -117,7 +119,7 @@ TEST_P(SlidingRodAtATilt, IsBrakedAgainstItsSlipItsSpinAndItsRollByAManifold)
 
 TEST(Servo, WithoutStrengthEnoughPullsAgainstTheVelocityThatIsLeft)
 {
-    // A motor that is to stop a point off the centre of a tilted rod, and cannot.
+    // A motor that should stop a point off the centre of a tilted rod, and is too weak.
     SlidingRod rod(0.6, {1, -2, 0.5F});
     PointServoDefinition servo{rod.scene.ground(), rod.rod, {}, {0, -0.5F, 0}};
     servo.hertz = 0;
@@ -135,7 +137,8 @@ TEST(Servo, WithoutStrengthEnoughPullsAgainstTheVelocityThatIsLeft)
 
 TEST(Servo, WithoutStrengthEnoughTurnsAgainstTheSpinThatIsLeft)
 {
-    // Frames apart by a radian, so that rows and torques are not the same.
+    // Frames with the same orientation and frames a radian apart, for which rows and torques have different
+    // directions.
     for (const double apart : {0.0, 1.0}) {
         SlidingRod rod(0.6, {3, 2, -1});
         AngularServoDefinition servo{rod.scene.ground(), rod.rod};
@@ -155,7 +158,8 @@ TEST(Servo, WithoutStrengthEnoughTurnsAgainstTheSpinThatIsLeft)
     }
 }
 
-/// Residuals over the fastest free slip, after so many sweeps, in a step so short that no box turns.
+/// The residual after so many sweeps, as a share of the fastest slip without contacts, in a step so short that no box
+/// turns.
 double share_left(float ratio, int iterations, Method method = Method::sequential_impulse)
 {
     HeapOfBoxes heap(ratio);
@@ -174,7 +178,7 @@ TEST(HeapOfBoxes, ComesToCoulombsLawAsSweepsGrow)
     EXPECT_LT(share_left(1, 100), 1e-2);
     EXPECT_LT(share_left(1, 1000), 1e-3);
     EXPECT_LT(share_left(1, 10000), 1e-5);
-    // And so does the solution of all at once, which no sweep has touched.
+    // The direct method, which does not sweep, satisfies the law as well.
     EXPECT_LT(share_left(1, 1, Method::direct), 1e-5);
 }
 

@@ -1,4 +1,5 @@
-// Some thousand hosts of tests/fuzz by a seeded generator: what the fuzzer does, in every build, in bounded time.
+// Some thousand hosts of tests/fuzz with bytes from a seeded generator: what the fuzzer does, in every build and in
+// bounded time.
 #include "fuzz/hostile_host.h"
 
 #include <gtest/gtest.h>

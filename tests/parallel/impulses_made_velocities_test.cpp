@@ -1,6 +1,6 @@
-// The impulses that a step reports are those that made its velocities, however many sweeps there were. Independent evidence:
-// Newton's laws. Velocities are built anew in double from what bodies had, and the forces and torques that are reported of their
-// contacts and joints, by masses and inertias that are numbers.
+// The impulses that a step reports are those that made its velocities, however many sweeps there were. Independent
+// evidence: Newton's laws. Velocities after the step are computed in double from those before it and the reported
+// forces and torques of contacts and joints, with known masses and inertias.
 #include "box_heap.h"
 
 namespace motley {
@@ -9,11 +9,11 @@ namespace {
 using testing::length;
 using testing::Vector;
 
-/// A time so short that nothing moves: arms are what they were.
+/// A time so short that nothing moves, so that lever arms are those before the step.
 constexpr float instant = 1e-7F;
 
-/// The largest difference between velocities as Newton's laws have them and as they are, of points `radius` from the centres
-/// of the bodies, over the fastest of these.
+/// The largest difference between the velocities by Newton's laws and the actual ones, of points `radius` from the
+/// centres of the bodies, and the largest of these velocities.
 struct Difference {
     double radius;
     double largest = 0, fastest = 0;
@@ -28,7 +28,7 @@ struct Difference {
     [[nodiscard]] double relative() const { return largest / fastest; }
 };
 
-/// A net of cubes with velocities of their own, each tied to its neighbours.
+/// A net of cubes with different velocities, each tied to its neighbours.
 struct Net {
     static constexpr int side = 4;
     static constexpr double pitch = 0.5;
@@ -36,7 +36,7 @@ struct Net {
     std::vector<BodyId> bodies;
     std::vector<BodyState> before;
     std::vector<double> masses;
-    /// Of a unit mass: the same about every axis, so that nothing precesses.
+    /// Of a unit mass: the same about every axis, so that there is no gyroscopic torque.
     static constexpr double inertia = 0.04;
 
     Net()
@@ -56,7 +56,7 @@ struct Net {
             before.push_back(scene.state(bodies.back()));
         }
     }
-    /// Calls tie(a, b, arm from a, arm from b) for neighbours along x and along y; a of the first ones is -1, the ground.
+    /// Calls tie(a, b, arm from a, arm from b) for neighbours along x and y. The ground is a = -1.
     template <class Tie>
     void for_each_pair(const Tie& tie) const
     {
@@ -70,7 +70,7 @@ struct Net {
     }
 
     std::vector<Vector> push = std::vector<Vector>(side * side), turn = push;
-    /// An impulse on b at its arm and a turn, and the opposite on a at the same point.
+    /// Notes an impulse on b at its arm and an angular impulse, and the opposites on a at the same point.
     void note(int a, int b, const Vec3<float>& arm_a, const Vec3<float>& arm_b, const Vector& impulse,
               const Vector& torque)
     {
@@ -80,7 +80,7 @@ struct Net {
         push[at(a)] = push[at(a)] - impulse;
         turn[at(a)] = turn[at(a)] - cross(convert<double>(arm_a), impulse) - torque;
     }
-    /// The largest difference between velocities and what the impulses make of those before.
+    /// The largest difference between the velocities and those that the impulses give from the velocities before.
     [[nodiscard]] double difference() const
     {
         Difference difference{pitch / 2};
@@ -104,8 +104,8 @@ SolverSettings sweeps(int iterations)
     return settings;
 }
 
-// Velocities in float, each made of a dozen impulses; with many sweeps they are made anew of impulses from time to time. Seen: hinges
-// 1.04e-6, all else below 1e-6.
+// Velocities are floats, each changed by a dozen impulses; with many sweeps they are now and then computed anew from
+// the impulses. Measured: hinges 1.04e-6, everything else below 1e-6.
 constexpr double most_relative = 1.2e-6;
 
 template <class Definition>
@@ -192,12 +192,12 @@ TEST(ImpulsesOfManifolds, MadeTheVelocities)
     }
 }
 
-/// The largest difference, over the fastest speed of a contact, of the velocities of a heap after a step and what its impulses
-/// make of those before.
+/// The largest difference between the velocities of a heap after a step and those that its impulses give from the
+/// velocities before, over the largest velocity.
 double difference_in_heap(float ratio, int iterations)
 {
     testing::HeapOfBoxes heap(ratio);
-    // Without spin nothing precesses, whatever its inertia.
+    // Without spin there is no gyroscopic torque, whatever the inertia.
     for (const BodyId box : heap.boxes)
         heap.scene.set_velocity(box, heap.scene.state(box).linear_velocity, {});
     const testing::HeapOfBoxes start = heap;

@@ -1,6 +1,6 @@
-// Contacts and joints tell what they did over the whole step. Independent evidence: Newton's second law. What changes a body's
-// momentum, less its weight and the host's force, is the sum of what its contacts and joints say; nothing here knows a
-// constraint's formula.
+// Contacts and joints report what they did over the whole step. Independent evidence: Newton's second law. The change
+// of a body's momentum, without that by its weight and the host's force, is the sum of what its contacts and joints
+// report. No formula of a constraint is used here.
 #include <cstdio>
 
 #include "joint_scene.h"
@@ -43,7 +43,7 @@ SolverSettings direct(int substeps)
     settings.drift_correction = DriftCorrection::projection;
     return settings;
 }
-/// Blocks that are told apart, some of which end earlier than others.
+/// Settings with a tolerance, so that some blocks end earlier than others.
 SolverSettings tolerant(int substeps)
 {
     SolverSettings settings = soft(substeps, 30);
@@ -51,7 +51,7 @@ SolverSettings tolerant(int substeps)
     return settings;
 }
 
-/// What the bodies of a scene got in a step, by slot, beside what changed their momentum.
+/// The reported impulses on the bodies of a scene in a step, by slot, and the change of each body's momentum.
 class Ledger {
   public:
     Ledger(const Scene& scene, std::span<const BodyId> bodies) : scene_(scene)
@@ -80,7 +80,7 @@ class Ledger {
             note(contacts[i].body_a, -push);
         }
     }
-    /// Of pulleys and racks what b gets alone is told.
+    /// For pulleys and racks only the impulse on b is reported.
     void note_joints()
     {
         scene_.joints().for_each([&](const auto& store, int) {
@@ -99,7 +99,8 @@ class Ledger {
             }
         });
     }
-    /// The largest difference between m (v1 - v0 - g dt) and what was noted, over m |v| and all that was noted.
+    /// The largest difference between m (v1 - v0 - g dt) and the noted impulses, over m |v| and the sum of the noted
+    /// impulses' sizes.
     [[nodiscard]] double difference() const
     {
         double most = 0;
@@ -132,7 +133,7 @@ class Ledger {
     std::vector<Noted> by_slot_;
 };
 
-// Velocities are floats that change a hundred times in a step.
+// Bound: velocities are floats that change a hundred times in a step.
 constexpr double rounding = 1e-5;
 
 struct Case {
@@ -183,7 +184,8 @@ TEST_P(ImpulsesOfAStep, OfEveryJointChangeTheMomentumOfItsBodies)
 {
     testing::JointScene joints;
     Solver solver(GetParam().settings);
-    // Joints begin 2 cm off, which is mended at speeds that come and go within a substep: their rounding stays.
+    // Joints begin 2 cm off. Correcting that makes high speeds that come and go within a substep and leave rounding
+    // errors, so these steps are not counted.
     testing::run(joints.scene, solver, 0.1);
     const int steps = GetParam().settings.method == Method::direct ? 2 : 12;
     double most = 0;
@@ -216,14 +218,14 @@ TEST_P(ImpulsesOfAStep, OfContactsAndJointsTogetherChangeMomenta)
     }
     std::printf("%-26s %.2g, by the last substep %.2g\n", GetParam().name, most, of_last_substep);
     EXPECT_LT(most, rounding);
-    // The measure sees the difference.
+    // The measure must be able to tell the two apart.
     if (GetParam().settings.substeps > 1) {
         EXPECT_GT(of_last_substep, 0.05);
     }
 }
 
-/// A mobile: a tree of all locks with loops, defined now from the nearer, now from the farther body, hung on the world, with a
-/// motor, a limit and a spring that stay beside the tree.
+/// A mobile that hangs on the world: a tree of all types of locks with loops, whose body a is in turn the nearer and
+/// the farther one, with a motor, a limit and a spring that are not part of the tree.
 struct Mobile {
     Scene scene;
     std::vector<BodyId> bodies;
@@ -336,7 +338,7 @@ TEST(ImpulsesOfAStep, OfACrowdInPatches)
     }
 }
 
-/// In bulk, beside sums over what each contact says.
+/// Loads read in bulk against sums over what each contact reports.
 TEST(ImpulsesOfAStep, AreReadInBulk)
 {
     testing::MixedScene mixed;
@@ -375,7 +377,8 @@ TEST(ImpulsesOfAStep, AreReadInBulk)
     EXPECT_THROW(mixed.scene.read_loads({bodies.data(), 1}, mixed.contacts(), loads), InvalidInput);
 }
 
-/// A rope that catches a ball bears m v in the step that catches it: its break limit is of that mean force.
+/// A rope that catches a ball bears m v in the step that catches it. Its break limit applies to the mean force of
+/// that step.
 TEST(ImpulsesOfAStep, AreWhatBreakLimitsAreOf)
 {
     for (const int substeps : {1, 4, 16}) {

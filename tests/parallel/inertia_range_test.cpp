@@ -1,5 +1,5 @@
-// Bodies of every inertia that the door lets in. Independent evidence: equations of motion are linear in masses and moments,
-// so that what moves does not depend on how large all of them are together; and bounds that hold for every body.
+// Bodies of every inertia that a scene accepts. Independent evidence: equations of motion are linear in masses and
+// moments of inertia, so that scaling all of them changes no motion; and bounds that hold for every body.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ Sym3<float> tensor(float scale)
 
 TEST(InertiaRange, FreeBodiesTumbleAlike)
 {
-    // No torque: I w' + w x I w = 0, whatever I is multiplied by.
+    // No torque: I w' + w x I w = 0, which any factor of I leaves unchanged.
     const auto tumble = [](float scale) {
         Scene scene;
         BodyDefinition body;
@@ -33,10 +33,10 @@ TEST(InertiaRange, FreeBodiesTumbleAlike)
     const BodyState usual = tumble(1);
     const Vec3<float>& w = usual.angular_velocity;
     ASSERT_GT(std::abs(w.x - 1) + std::abs(w.y - 5) + std::abs(w.z - 2), 0.5) << "it does tumble";
-    // Moments of 1e-20 and 1e20 stand in the tensor: its least is 1, its most 2.
+    // Moments are 1 to 2 times the scale; a scene accepts moments from 1e-20 to 1e20.
     for (const float scale : {1.001e-20F, 5e-20F, 1e-13F, 1e-6F, 1e6F, 1.1e10F, 1e13F, 4.9e19F}) {
         const BodyState state = tumble(scale);
-        // Rounding of the tensors, 1e-7, grows linearly in a free motion: 120 steps of four substeps.
+        // Rounding of the tensors, 1e-7, grows linearly in a free motion of 120 steps with four substeps.
         EXPECT_NEAR(state.angular_velocity.x, w.x, 2e-3) << scale;
         EXPECT_NEAR(state.angular_velocity.y, w.y, 2e-3) << scale;
         EXPECT_NEAR(state.angular_velocity.z, w.z, 2e-3) << scale;
@@ -45,7 +45,7 @@ TEST(InertiaRange, FreeBodiesTumbleAlike)
     }
 }
 
-/// Three links that fall from level, as heavy as `scale` says, by one way to solve.
+/// Three links of mass `scale` that fall from level.
 std::vector<Vec3<double>> chain_after_a_second(float scale, const SolverSettings& settings)
 {
     Scene scene;
@@ -84,7 +84,7 @@ TEST(InertiaRange, ChainsFallAlikeHoweverHeavyTheyAreByEveryWayToSolve)
         for (const float scale : {1e-10F, 1e-7F, 1e5F, 9e9F}) {
             const std::vector<Vec3<double>> at = chain_after_a_second(scale, settings);
             for (std::size_t i = 0; i < at.size(); ++i) {
-                // A chain that falls amplifies rounding: a millimetre of the three metres it has fallen.
+                // A falling chain amplifies rounding. Bound: a millimetre of the three metres that it has fallen.
                 EXPECT_NEAR(at[i].x, usual[i].x, 1e-3) << scale << ", link " << i;
                 EXPECT_NEAR(at[i].y, usual[i].y, 1e-3) << scale << ", link " << i;
             }
@@ -94,7 +94,7 @@ TEST(InertiaRange, ChainsFallAlikeHoweverHeavyTheyAreByEveryWayToSolve)
 
 TEST(InertiaRange, JointsHoldBodiesWithHardlyAnyOrAnyAmountOfInertia)
 {
-    // A kilogram hangs by an arm of 10 cm: it neither sinks nor is contained, and weighs what it weighs.
+    // A kilogram hangs on an arm of 10 cm: it neither sinks nor is contained, and its joint reports its weight.
     for (const BodyModel model : {BodyModel::planar, BodyModel::rigid}) {
         for (const float moment : {1e-20F, 1e-16F, 1e-6F, 1e10F, 1e20F}) {
             Scene scene;

@@ -31,9 +31,10 @@ TEST(Hinge, TurnsUnderATorqueAsItsInertiaAboutTheAxisSays)
     const JointReport report = scene.joint_report(hinge);
     EXPECT_LT(report.error, 5e-4F);
     EXPECT_LT(report.angle_error, 1e-4F);
-    // The hinge pulls the centre along its circle: m r omega^2 inwards, m r alpha along.
+    // The hinge pulls the centre along its circle: m r omega^2 inwards, m r alpha along it.
     const Vec3<float> f = report.force;
-    // A report is of four substeps, each one or two behind: on average 2 (1.5 + 2) h of 1 s in omega^2.
+    // The report averages four substeps, which are behind by one to two substeps: 2 (1.5 + 2) h of 1 s in omega^2 on
+    // average.
     EXPECT_NEAR(std::sqrt(dot(f, f)), std::hypot(2 * 0.5 * 9, 2 * 0.5 * 3), 9.5 * 2 * 3.5 / 240);
 }
 
@@ -60,8 +61,7 @@ TEST(Slider, SlidesDownAnInclineWithoutFriction)
 
 TEST(Fixed, TwoBodiesFlyAsOne)
 {
-    // A welded pair in free flight: the common centre moves straight on, and the pose of one in the frame of the other
-    // stays.
+    // A welded pair in free flight: the common centre of mass moves in a straight line, and the relative pose stays.
     Scene scene;
     BodyDefinition left = box({-0.5, 0, 0}, 1), right = box({0.5, 0, 0}, 3);
     left.linear_velocity = {1, 2, 0};
@@ -144,7 +144,7 @@ TEST(RotationLock, ABodyUnderATorqueFallsAndDoesNotTurn)
 
 TEST(ParallelAxes, ABodySpinsUpAboutTheAxisAndNotAcrossIt)
 {
-    // alpha = tau / I about x; the rest of the torque is the joint's.
+    // alpha = tau / I about x; the joint bears the rest of the torque.
     Scene scene;
     const BodyId body = scene.add_body(box({0, 0, 0}));
     const ConstraintId joint = scene.add_joint(ParallelAxesDefinition{scene.ground(), body, {}, {}});
@@ -187,7 +187,7 @@ TEST(SlideDrive, AMotorBelowTheWeightStallsAndOneAboveItLifts)
 
 TEST(TwistDrive, ASpringSwingsWithItsFrequency)
 {
-    // Undamped, period 1/f; implicit softness damps and slows by O(f h), so the substeps are many.
+    // Undamped, period 1/f. The implicit spring damps and slows by O(f h), so the test uses many substeps.
     Scene scene;
     const BodyId wheel = scene.add_body(box({0, 0, 0}));
     scene.add_joint(HingeDefinition{scene.ground(), wheel, {{}, axis_along(2)}, {{}, axis_along(2)}});
@@ -216,7 +216,7 @@ TEST(TwistDrive, AHingedBarRestsAtItsLimitAndReportsWhichOne)
     const BodyState state = scene.state(bar);
     EXPECT_NEAR(std::atan2(state.position.y, state.position.x), -0.7, 2e-3);
     EXPECT_EQ(scene.joint_report(drive).state, JointState::lower);
-    // The limit holds the weight's moment about the hinge.
+    // The limit bears the moment of the weight about the hinge.
     EXPECT_NEAR(scene.joint_report(drive).torque.z, 2 * 9.81 * 0.5 * std::cos(0.7), 0.05);
 }
 
@@ -240,7 +240,7 @@ TEST(SwingLimit, APendulumStaysInItsConeAndHangsAtItsEdge)
     EXPECT_NEAR(scene.joint_report(cone).torque.z, 2 * 9.81 * std::cos(0.4), 0.2);
 }
 
-/// A box tied to the ground by `tie`, thrown, after a second.
+/// A box that `tie` joins to the ground is thrown; the hash after a second.
 template <class Tie>
 std::uint64_t thrown(const Tie& tie)
 {
@@ -295,7 +295,8 @@ TEST(SixDof, BecomesTheVeryJointThatItIs)
 
 TEST(SixDof, LimitsEachPositionWithinItsBox)
 {
-    // Loose in a box of half sizes 0.1, 0.2, 0.3, shaken: no position leaves it by more than its softness.
+    // Free inside a box of half sizes 0.1, 0.2, 0.3, and shaken: no position exceeds its limit by more than the
+    // softness of the limits.
     Scene scene;
     const BodyId body = scene.add_body(box({0, 0, 0}));
     SixDofDefinition six;
@@ -324,7 +325,8 @@ TEST(SixDof, LimitsEachPositionWithinItsBox)
 
 TEST(SixDof, AUniversalJointTurnsAboutTwoAxesAndCarriesATorqueAboutTheThird)
 {
-    // Position and rotation about z locked: y of the body stays across x of the ground, whatever turns it.
+    // Position and rotation about z are locked: y of the body stays perpendicular to x of the ground, whatever torque
+    // acts.
     Scene scene;
     const BodyId body = scene.add_body(box({0, 0, 0}));
     SixDofDefinition six;
@@ -348,7 +350,7 @@ TEST(SixDof, AUniversalJointTurnsAboutTwoAxesAndCarriesATorqueAboutTheThird)
 
 TEST(SixDof, ALockedTwistStaysWhileTheSwingIsLoose)
 {
-    // A constant-velocity joint: swings in its cone and does not twist.
+    // A constant-velocity joint: it swings within its cone and does not twist.
     Scene scene;
     const BodyId body = scene.add_body(box({0, 0, 0}));
     SixDofDefinition six;
@@ -370,10 +372,10 @@ TEST(SixDof, ALockedTwistStaysWhileTheSwingIsLoose)
 
 TEST(SixDof, EveryCombinationOfLocksHoldsWhatItLocksAndLeavesTheRest)
 {
-    // 64 combinations, pushed and turned along all six coordinates at once for a tenth of a second: what is locked stays,
-    // what is free goes as far as F t^2 / 2 m and tau t^2 / 2 I say. A position that is locked turns with nothing, so
-    // free ones move along the axes of the ground. Rotations are small: what a lock of one of them holds differs from the
-    // measure here by half the product of the other two, 1.3e-3.
+    // 64 combinations, each with a force and a torque along all six coordinates at once for a tenth of a second.
+    // Locked coordinates stay; free ones move by F t^2 / 2 m and tau t^2 / 2 I. A locked position makes the free ones
+    // move along the axes of the ground. Rotations are small: a locked one differs from the angle measured here by
+    // half the product of the other two, 1.3e-3.
     for (int locks = 0; locks < 63; ++locks) {
         Scene scene;
         BodyDefinition definition = box({0, 0, 0}, 2);
@@ -395,7 +397,7 @@ TEST(SixDof, EveryCombinationOfLocksHoldsWhatItLocksAndLeavesTheRest)
                                  2 * s.orientation.x, 2 * s.orientation.y, 2 * s.orientation.z};
         for (int i = 0; i < 6; ++i) {
             const bool is_free = (locks >> i & 1) != 0;
-            // 10 m/s2 and 10 rad/s2 for 0.1 s: 0.05, and as much again in 1/16 for the order of integration.
+            // 10 m/s2 and 10 rad/s2 for 0.1 s give 0.05, and the order of integration adds up to 1/16 of that.
             EXPECT_NEAR(moved[i], is_free ? 0.05 : 0, is_free ? 0.005 : 2e-3)
                 << "locks " << locks << ", " << i;
         }
@@ -437,7 +439,7 @@ TEST(SixDof, WhatItRefusesLeavesNothingBehind)
     six.rotation[0] = AxisSetup::limited(1, -1);
     EXPECT_THROW(add_six_dof(scene, six), InvalidInput);
     six.rotation[0] = AxisSetup::free();
-    six.max_swing = 1;  // of a hinge
+    six.max_swing = 1;  // a hinge has no swing
     EXPECT_THROW(add_six_dof(scene, six), InvalidInput);
     six.max_swing = -1;
     EXPECT_THROW(add_six_dof(scene, six), InvalidInput);

@@ -1,5 +1,5 @@
-// A solver keeps from step to step how it has laid a scene out. Whatever changes in between, it must go on as a solver does that
-// has never seen the scene, which is the independent evidence: what persists is in the scene.
+// A solver keeps its layout of a scene from step to step. Whatever changes in between, it must give the results of a
+// solver that has never seen the scene, which is the independent evidence: all persistent state is in the scene.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr float dt = 1.0F / 60;
 
-/// Chains of three, enough for blocks of figures, and bodies that nothing holds.
+/// Chains of three links, enough of them for blocks of figures, and bodies without joints.
 struct Chains {
     static constexpr int count = 40, light = 7;
     Scene scene;
@@ -23,7 +23,7 @@ struct Chains {
             BodyId above = scene.ground();
             Vec3<float> anchor{2.0F * static_cast<float>(chain), 0, 0};
             for (int link = 0; link < 3; ++link) {
-                // So light that a force which is a number makes an acceleration that is none.
+                // So light that a finite force gives an acceleration that is not finite.
                 const float mass = links.size() == light ? 1e-6F : 2;
                 const BodyId body =
                     scene.add_body({.position = {2.0 * chain + 0.5 + link, 0, 0}, .mass = mass});

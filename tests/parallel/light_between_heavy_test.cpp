@@ -1,4 +1,5 @@
-// A light body between heavy ones, afloat. Independent evidence: conservation of momentum and of angular momentum.
+// A light body between heavy ones, floating freely. Independent evidence: conservation of momentum and angular
+// momentum.
 #include <array>
 
 #include "rig.h"
@@ -9,7 +10,7 @@ namespace {
 using Vector = Vec3<double>;
 using testing::length;
 
-/// 5 kg, hinge, m, hinge, 5 kg.
+/// Three bodies joined by two hinges: 5 kg, m, 5 kg.
 struct Links {
     Scene scene;
     std::array<BodyId, 3> bodies;
@@ -61,7 +62,7 @@ TEST(LightBetweenHeavy, MomentumIsKept)
             settings.substeps = substeps;
             Solver solver(settings);
             const Vector p = links.momentum();
-            // The joints share what they are given in no time.
+            // A first, very short step makes the velocities satisfy the joints.
             solver.step(links.scene, 1e-6F);
             const Vector l = links.angular_momentum();
             StepReport report;
@@ -83,7 +84,8 @@ TEST(LightBetweenHeavy, MomentumIsKept)
 
 TEST(LightBetweenHeavy, IsSolvedExactlyWhereTheWorldHoldsTheFigure)
 {
-    // Nothing is said where momentum goes into the world: light links may bear what they like.
+    // Figures held by the world are never refused: their momentum is not conserved anyway, so light links may bear
+    // any load.
     Links links(5e-6);
     BallSocketDefinition hook;
     hook.body_a = links.scene.ground();

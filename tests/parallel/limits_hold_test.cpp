@@ -1,6 +1,6 @@
-// Limits, contacts and what else has one side hold any load, and let go gently what starts beyond them. Independent
-// evidence: the static deflection F / (m w^2) of the spring that a soft constraint is, which is also what a lock gives way; and
-// what push_out_speed promises of speeds.
+// Limits, contacts and other inequalities hold any load, and gently release what starts beyond them. Independent
+// evidence: the static deflection F / (m w^2) of a soft constraint's spring, which is also the deflection of a lock;
+// and the speed that push_out_speed promises.
 #include <functional>
 #include <string>
 #include <vector>
@@ -15,13 +15,13 @@ using testing::frame_time;
 constexpr float mass = 0.5F, inertia = 0.005F;  // kg and kg m2: a hand
 constexpr double pi = 3.14159265358979;
 
-/// A body that a load presses against its bound, along x or about x.
+/// A body that a load presses against its limit, along x or about x.
 struct Pressed {
     Scene scene;
     BodyId body{};
     bool turns = false;
     bool is_contact = false;
-    /// How far the body is beyond its bound, m or rad; 0 within it.
+    /// How far the body is beyond its limit, m or rad; 0 within it.
     std::function<double(const Pressed&)> beyond;
 
     [[nodiscard]] double inertia_along() const { return static_cast<double>(turns ? inertia : mass); }
@@ -31,7 +31,7 @@ struct Pressed {
         scene.set_force(body, turns ? Vec3<float>{} : Vec3<float>{f, 0, 0},
                         turns ? Vec3<float>{f, 0, 0} : Vec3<float>{});
     }
-    /// A host's narrow phase for a wall whose face is at x = 0.
+    /// The host's narrow phase for a wall whose face is at x = 0.
     [[nodiscard]] std::vector<Contact> contacts() const
     {
         if (!is_contact) return {};
@@ -68,7 +68,7 @@ double angle(const Pressed& hand)
     return 2 * std::atan2(q.w < 0 ? -q.x : q.x, std::abs(q.w));
 }
 
-// Each starts `start` beyond its bound, m or rad.
+// Each of these scenes starts `start` beyond its limit, m or rad.
 
 Pressed slide_limit(double start)
 {
@@ -101,7 +101,7 @@ Pressed twist_limit(double start)
 }
 Pressed swing_limit(double start)
 {
-    // The limited axis is z, which a turn about x swings; at 0.5 rad it is at its bound.
+    // The limited axis is z, which a rotation about x swings; at 0.5 rad it is at its limit.
     Pressed hand = with_hand(0, 0.5 + start);
     hand.turns = true;
     SwingLimitDefinition limit{.body_a = hand.scene.ground(), .body_b = hand.body, .max_angle = 0.5F};
@@ -122,7 +122,7 @@ Pressed rope(double start)
 }
 Pressed pulley(double start)
 {
-    // Its other end is the ground, a metre from its wheel.
+    // The rope's other end is on the ground, a metre from its wheel.
     Pressed hand = with_hand(2 + start, 0);
     PulleyDefinition over{hand.scene.ground(), hand.body};
     over.point_a = {0, 1, 0};
@@ -189,7 +189,7 @@ std::vector<Way> every_way()
     return ways;
 }
 
-/// How far beyond its bound a hand is after two seconds of a load, from its bound on.
+/// How far beyond its limit a hand is after two seconds of a load, if it starts at the limit.
 double deflection(const Bound& bound, const SolverSettings& settings, double load)
 {
     Pressed hand = bound.make(0);
@@ -201,8 +201,8 @@ double deflection(const Bound& bound, const SolverSettings& settings, double loa
 
 TEST(Limits, GiveWayAsALockDoesUnderLoadsAMillionTimesApart)
 {
-    // Static: F / (m w^2), w of the joints' or a static contact's 60 Hz, which is also the most that a substep of 1/240 s can
-    // follow. The largest load turns a hand by 0.28 rad, and moves it by 0.28 m.
+    // Static deflection F / (m w^2), with w of the 60 Hz of joints and of static contacts, which is also the largest
+    // frequency that a substep of 1/240 s allows. The largest load turns a hand by 0.28 rad, and moves it by 0.28 m.
     const double w = 2 * pi * 60;
     for (const Way& way : every_way()) {
         if (way.settings.method != Method::soft_step) continue;
@@ -212,7 +212,7 @@ TEST(Limits, GiveWayAsALockDoesUnderLoadsAMillionTimesApart)
             for (double share = 2.8e-7; share < 0.5; share *= 10) {
                 const double load = share * inertia_along * w * w,
                              got = deflection(bound, way.settings, load);
-                // Float positions of the size of a metre.
+                // Bound: 2 %, and the rounding of float positions of about a metre.
                 EXPECT_NEAR(got, share, 0.02 * share + 2e-7) << way.name << ", " << bound.name;
                 EXPECT_GT(got, last) << way.name << ", " << bound.name;
                 last = got;
@@ -228,7 +228,7 @@ TEST(Limits, OfRigidSweepsGiveNoWayUnderLoadsAMillionTimesApart)
         for (const Bound& bound : every_bound()) {
             for (double load = 0.02; load < 5e4; load *= 10) {
                 const bool turns = bound.make(0).turns;
-                // What penetration_slop leaves alone, and rounding.
+                // Bound: penetration_slop, which is not corrected, and rounding.
                 EXPECT_NEAR(deflection(bound, way.settings, turns ? load / 100 : load), 0, 6e-4)
                     << way.name << ", " << bound.name << ", load " << load;
             }
@@ -260,8 +260,8 @@ TEST(Limits, LetGoOfWhatStartsARadianOrAMetreBeyondNoFasterThanPushedOut)
 
 TEST(Limits, OfAChainOfHingesThatStartARadianBeyondMakeNoMoreEnergyThanTheirSpeed)
 {
-    // Five links in a row, each joint a radian beyond its limit: opening at 3 rad/s each, the tip turns at most at 15 rad/s
-    // and moves at most at 3 x (1 + 3 + 5 + 7 + 9) / 2 links of 0.4 m.
+    // Five links in a row; each joint starts a radian beyond its limit and is pushed out at 3 rad/s at most. So the
+    // tip turns at most at 15 rad/s and moves at most at 3 x (1 + 3 + 5 + 7 + 9) / 2 links of 0.4 m.
     for (const Way& way : every_way()) {
         Scene scene;
         std::vector<BodyId> links;

@@ -1,5 +1,5 @@
-// Manifolds: boxes and balls on planes, against closed forms. The narrow phase is a few lines here, run before every step,
-// as a host's would be.
+// Manifolds: boxes and balls on planes, against closed forms. The narrow phase is a few lines here, which run before
+// every step, as a host's would.
 #include <functional>
 #include <limits>
 
@@ -20,14 +20,14 @@ struct Plane {
     [[nodiscard]] Vec3<double> downhill() const { return {-std::cos(angle), -std::sin(angle), 0}; }
 };
 
-/// A body of 2 kg that touches the plane with the points of `points_of`.
+/// A body of 2 kg that touches the plane with the points that `points_of` gives.
 struct Rest {
     Scene scene;
     BodyId body{};
     ConstraintId joint{};
     ManifoldDefinition contact{};
     Plane plane{};
-    /// The points of the body, in its frame, that may touch.
+    /// The points of the body, in its frame, that may touch the plane.
     std::function<std::vector<Vec3<float>>(const Rest&)> points_of;
 
     void update()
@@ -99,7 +99,8 @@ Rest ball_on_plane()
 
 TEST(Manifold, ABoxOnASlopeOfTwentyDegreesDoesNotCreep)
 {
-    // tan 20 degrees is 0.36: friction of 0.5 holds for ever. A minute; the first second settles the softness.
+    // tan 20 degrees is 0.36, so friction of 0.5 holds. The test runs for a minute, after one second in which the
+    // softness settles.
     Rest rest = box_on(20 * 3.14159265 / 180);
     rest.contact.friction = 0.5F;
     Solver solver(with_gravity({0, -9.81F, 0}));
@@ -157,7 +158,7 @@ TEST(Manifold, ABoxBouncesToTheSquareOfItsRestitution)
         touched = touched || state.linear_velocity.y > 0;
         if (touched) highest = std::max(highest, state.position.y - 0.25);
     }
-    // The impact comes at some time in a step of 1/60 s, which at 4.4 m/s is worth 0.07 m of fall.
+    // The impact is at an unknown time within a step of 1/60 s, which at 4.4 m/s is worth 0.07 m of fall.
     EXPECT_NEAR(highest, 0.25, 0.03);
     const Vec3<float> w = rest.scene.state(rest.body).angular_velocity;
     EXPECT_LT(std::sqrt(dot(w, w)), 1e-3F);
@@ -212,7 +213,7 @@ TEST(Manifold, AConveyorBeltBringsABoxToItsSpeed)
 {
     Rest rest = box_on(0);
     rest.contact.friction = 0.3F;
-    rest.contact.surface_velocity = {1.5F, 0.7F, 0};  // what runs along the normal is not read
+    rest.contact.surface_velocity = {1.5F, 0.7F, 0};  // the part along the normal is not used
     Solver solver(with_gravity({0, -9.81F, 0}));
     rest.run(solver, 0.25);
     EXPECT_NEAR(rest.scene.state(rest.body).linear_velocity.x, 0.3 * g * 0.25, 0.02);

@@ -1,6 +1,6 @@
-// The report of a step's residual, and the tolerance that ends an island's sweeps. Independent evidence: residuals of
-// particles by hand from their velocities; the kinetic energy that solving one joint exactly takes away, which is half
-// of r^T K^-1 r whatever the joint; equal bits with the measuring on and off.
+// The reported residual of a step, and the tolerance that ends an island's sweeps. Independent evidence: residuals of
+// particles, computed by hand from their velocities; the kinetic energy that solving one joint exactly removes, which
+// is half of r^T K^-1 r for any joint; and equal bits with measuring on and off.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -14,7 +14,7 @@ namespace {
 using testing::box;
 using testing::frame_time;
 
-/// One sweep of rigid constraints, no gravity, no correction of positions: what is left is J v and nothing else.
+/// One sweep of rigid constraints, without gravity or correction of positions: the residual is J v alone.
 SolverSettings one_plain_sweep()
 {
     SolverSettings settings;
@@ -54,12 +54,12 @@ TEST(Measures, ResidualOfParticlesIsTheirRelativeVelocity)
     EXPECT_NEAR(report.measures.residual_max, largest, 1e-5 * largest);
 }
 
-/// Two joints in a row on bodies with levers and uneven inertia: the sweep solves the later one last, so all that is
-/// left is the first one's.
+/// Two joints in a row on bodies with lever arms and uneven inertia. The sweep solves the second joint last, so that
+/// the whole residual is the first one's.
 template <class Definition>
 void expect_residual_is_the_energy_that_solving_takes(BodyModel model)
 {
-    // Times so short that nobody moves.
+    // A time so short that nothing moves.
     constexpr float instant = 1e-6F;
     const auto make = [&](bool with_second, std::vector<BodyId>& ids) {
         Scene scene;
@@ -100,7 +100,7 @@ void expect_residual_is_the_energy_that_solving_takes(BodyModel model)
     solver.step(alone, instant);
     const double taken = 2 * (before - alone.errors().kinetic_energy);
     ASSERT_GT(taken, 1e-3);
-    // The difference of two energies: a thousand times the rounding of one.
+    // Bound: a difference of two energies, with a thousand times the rounding of one.
     EXPECT_NEAR(report.measures.residual_norm * report.measures.residual_norm, taken,
                 1e-4 * taken + 1e-6 * before);
 }
@@ -120,7 +120,7 @@ TEST(Measures, ResidualIsTheEnergyThatSolvingTakesFromPlanarBodies)
 
 TEST(Measures, ResidualOfContactsVanishesAsIterationsGrow)
 {
-    // Falling balls, friction, a floor: inequalities and cones.
+    // Falling balls, friction and a floor: inequalities and cones.
     double last = 0;
     for (const int iterations : {1, 10, 100, 1000, 10000}) {
         testing::MixedScene mixed;
@@ -142,7 +142,7 @@ TEST(Measures, ResidualOfContactsVanishesAsIterationsGrow)
         }
         last = report.measures.residual_norm;
     }
-    // Rounding of speeds of some m/s.
+    // Bound: rounding of speeds of some m/s.
     EXPECT_LT(last, 1e-4);
 }
 
@@ -166,7 +166,7 @@ TEST(Measures, EnergyMomentumAndPenetrationAreOfTheStep)
     EXPECT_NEAR(report.measures.penetration_rms, 0.01, 1e-8);
 }
 
-/// Hashes after every step, and the largest number of islands.
+/// Hashes of two scenes after every step.
 std::vector<std::uint64_t> run(const SolverSettings& settings, const SolverOptions& options)
 {
     testing::MixedScene mixed;
@@ -231,7 +231,7 @@ TEST(Tolerance, KeepsTheBitsOfEveryInstructionSetAndThreadCount)
     }
 }
 
-/// A chain that whips, and, apart from it, pairs that hang still.
+/// A chain that whips, and unconnected to it pairs of a body and the ground that hang still.
 struct WhipAndPairs {
     Scene scene;
     explicit WhipAndPairs(int pairs)
@@ -266,7 +266,7 @@ TEST(Tolerance, EndsSweepsWhenEveryIslandIsSolved)
         EXPECT_EQ(report.islands, 4);
         EXPECT_EQ(report.islands_above_tolerance, 0);
         EXPECT_LT(report.sweeps, 2000);
-        // What is left afterwards is of the order of what the last sweep changed.
+        // The final residual is of the order of the last sweep's changes.
         EXPECT_LT(report.measures.residual_max, 2e-3);
     }
     settings.iterations = 2;
@@ -276,7 +276,7 @@ TEST(Tolerance, EndsSweepsWhenEveryIslandIsSolved)
     EXPECT_EQ(cut_short.sweeps, 3);
 }
 
-/// Where the pairs beside a whip are, to the bit.
+/// Positions and velocities of the pairs, for comparison bit for bit.
 std::vector<double> pair_positions(const Scene& scene, int pairs)
 {
     std::vector<double> values;
@@ -287,7 +287,7 @@ std::vector<double> pair_positions(const Scene& scene, int pairs)
     return values;
 }
 
-/// In one step without a warm start: what a whip and 32 pairs are after so many iterations.
+/// A whip and 32 pairs after one step of so many iterations without a warm start.
 WhipAndPairs whip_after(int iterations, float tolerance, StepReport& report)
 {
     SolverSettings settings = one_plain_sweep();
@@ -303,8 +303,9 @@ WhipAndPairs whip_after(int iterations, float tolerance, StepReport& report)
 
 TEST(Tolerance, AnIslandStopsOnItsOwn)
 {
-    // A pair is solved by one sweep, and the second finds nothing to do. The chain wants hundreds. All joints to the ground
-    // have one colour: of the 33, the first sixteen share a block with the chain's and are swept on with it.
+    // One sweep solves a pair, and the second finds nothing to do; the chain needs hundreds. All joints to the ground
+    // have one colour, and the first sixteen of these 33 share a block with the chain's joint: they are swept as
+    // often as the chain.
     StepReport tolerant_report, plain_report;
     const WhipAndPairs tolerant = whip_after(500, 1e-4F, tolerant_report),
                        plain = whip_after(2, 0, plain_report);
@@ -313,7 +314,7 @@ TEST(Tolerance, AnIslandStopsOnItsOwn)
     EXPECT_TRUE(std::equal(left.begin() + 15 * 3, left.end(), right.begin() + 15 * 3));
 }
 
-/// The residual of the chain's joints after one step, each joint asking for so many sweeps.
+/// The residual of the chain's joints after one step, with the iterations that `ask` requests.
 double residual_when_asked(const std::function<void(Scene&, const std::vector<ConstraintId>&, BodyId)>& ask,
                            StepReport& report)
 {
@@ -344,7 +345,7 @@ TEST(Iterations, OfAnIslandAreAsManyAsItsBodyAsksFor)
         [](Scene& s, const auto&, BodyId body) { s.set_island_iterations(body, 60); }, report);
     EXPECT_EQ(report.iterations, 60);
     EXPECT_LT(asked, plain / 10);
-    // Fewer than everybody gets is no fewer; and 0 takes the wish back.
+    // Fewer iterations than everybody gets change nothing; 0 withdraws the request.
     EXPECT_EQ(residual_when_asked(
                   [](Scene& s, const auto&, BodyId body) { s.set_island_iterations(body, 2); }, report),
               plain);
@@ -382,7 +383,7 @@ TEST(Iterations, OfOneIslandLeaveTheOthersBitsAlone)
         return pair_positions(whip.scene, 32);
     };
     const auto asked = pairs_when(true), plain = pairs_when(false);
-    // As above: the first fifteen pairs share a block with the chain's first joint.
+    // As above, the first fifteen pairs share a block with the chain's first joint.
     EXPECT_TRUE(std::equal(asked.begin() + 15 * 3, asked.end(), plain.begin() + 15 * 3));
     EXPECT_FALSE(asked.empty());
 }
@@ -409,7 +410,7 @@ TEST(Iterations, RemovedBodiesAndJointsTakeTheirWishesWithThem)
 
 TEST(Measures, WhatIsNotANumberIsNotSolved)
 {
-    // A force drives a light body past the range of floats within the step.
+    // A force drives a light body beyond the range of floats within the step.
     for (const BodyModel model : {BodyModel::particle, BodyModel::planar, BodyModel::rigid}) {
         Scene scene;
         BodyDefinition body;

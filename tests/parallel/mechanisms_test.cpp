@@ -14,7 +14,7 @@ constexpr double g = 9.81;
 
 TEST(PointServo, HoldsAWeightWhereItsSpringBalancesIt)
 {
-    // A spring of frequency f on the body's own mass gives way by g / (2 pi f)^2.
+    // A spring of frequency f on the body's own mass deflects by g / (2 pi f)^2.
     Scene scene;
     const BodyId weight = scene.add_body(box({0, 0, 0}));
     PointServoDefinition mouse{scene.ground(), weight};
@@ -27,7 +27,7 @@ TEST(PointServo, HoldsAWeightWhereItsSpringBalancesIt)
     EXPECT_NEAR(scene.joint_report(servo).force.y, 2 * g, 1e-3 * 2 * g);
     EXPECT_NEAR(scene.joint_report(servo).error, sag, 1e-3 * sag);
 
-    // The mouse moves on, and the weight follows; what the servo remembers stays.
+    // The mouse moves on and the weight follows. The servo keeps its stored impulses when it is changed.
     mouse.local_anchor_a = {1, 0.5F, 0};
     scene.set_joint(servo, mouse);
     run(scene, solver, 5);
@@ -37,7 +37,7 @@ TEST(PointServo, HoldsAWeightWhereItsSpringBalancesIt)
 
 TEST(PointServo, ABoundBelowTheWeightLetsItFallAndSlowsIt)
 {
-    // a = g - F / m, whatever the stiffness and also for a motor that wants rest.
+    // a = g - F / m, whatever the stiffness; also for a motor whose target is rest.
     for (const float hertz : {0.0F, 8.0F}) {
         Scene scene;
         BodyDefinition ball = box({0, 0, 0});
@@ -49,14 +49,14 @@ TEST(PointServo, ABoundBelowTheWeightLetsItFallAndSlowsIt)
         scene.add_joint(band);
         Solver solver(with_gravity({0, -9.81F, 0}));
         run(scene, solver, 1);
-        // The band needs a moment to be stretched to its bound: at 8 Hz, 5 N is 1 mm, fallen in 20 ms.
+        // The band must first be stretched to its bound: at 8 Hz, 5 N are 1 mm, which takes 20 ms of fall.
         EXPECT_NEAR(scene.state(weight).linear_velocity.y, -(g - 2.5), hertz > 0 ? 0.06 : 1e-3);
     }
 }
 
 TEST(PointServo, WithoutStiffnessIsDryFrictionOnAFloorSeenFromAbove)
 {
-    // Stops after v m / F and stays.
+    // It stops after v m / F and stays at rest.
     Scene scene;
     BodyDefinition disc = box({0, 0, 0});
     disc.model = BodyModel::planar;
@@ -77,8 +77,8 @@ TEST(PointServo, WithoutStiffnessIsDryFrictionOnAFloorSeenFromAbove)
 
 TEST(AngularServo, GivesWayToATorqueAsItsStiffnessSaysAndNoFurtherThanItsBound)
 {
-    // About z alone C = 2 sin(theta / 2) and G = cos(theta / 2), so tau = I (2 pi f)^2 2 tan(theta / 2); above the bound
-    // alpha = (tau - max) / I.
+    // For a rotation about z alone C = 2 sin(theta / 2) and G = cos(theta / 2), so tau = I (2 pi f)^2 2 tan(theta /
+    // 2). Above the bound alpha = (tau - max) / I.
     const double inertia = 0.25 * 2;
     Scene scene;
     const BodyId wheel = scene.add_body(box({0, 0, 0}));
@@ -120,7 +120,7 @@ TEST(AngularServo, HoldsAnOrientationInThreeDimensionsAndFollowsATargetVelocity)
     EXPECT_NEAR(scene.state(top).angular_velocity.x, 0, 1e-3);
 }
 
-/// A wheel on a hinge about z at a place.
+/// A wheel on a hinge about z at x.
 BodyId add_wheel(Scene& scene, double x, float mass)
 {
     const BodyId wheel = scene.add_body(box({x, 0, 0}, mass));
@@ -143,13 +143,13 @@ TEST(Gear, SpeedsUpAsBothInertiasSayAndNeverLosesAToothOverManyTurns)
     const double alpha = 3 / (1 + 2.5 * 2.5 * 0.25);
     EXPECT_NEAR(scene.state(a).angular_velocity.z, alpha, 2e-3 * alpha);
     EXPECT_NEAR(scene.state(b).angular_velocity.z, ratio * alpha, 2e-3 * 2.5 * alpha);
-    // What turns b is what b's inertia takes.
+    // The reported torque is what turns b's inertia.
     EXPECT_NEAR(scene.joint_report(gear).torque.z, 0.25 * ratio * alpha, 0.01);
 
     scene.set_force(a, {}, {});
     double turned_a = 0, turned_b = 0;
     for (int step = 0; step < 60 * 60; ++step) {
-        // Turns counted from the poses, step by step: below half a turn each.
+        // Turns are counted from the poses step by step; each step turns less than half a turn.
         const auto angle = [&](BodyId body) {
             const Quat<double> q = scene.state(body).orientation;
             return 2 * std::atan2(q.z, q.w);
@@ -166,7 +166,7 @@ TEST(Gear, SpeedsUpAsBothInertiasSayAndNeverLosesAToothOverManyTurns)
 
 TEST(RackAndPinion, MovesAsTheInertiaOfBothSays)
 {
-    // v = r omega, (m + I / r^2) a = F, and where the rack is says how far the pinion has turned.
+    // v = r omega, (m + I / r^2) a = F, and the position of the rack gives the pinion's turns.
     Scene scene;
     const BodyId pinion = add_wheel(scene, 0, 2), rack = scene.add_body(box({0, -0.4, 0}, 3));
     scene.add_joint(SliderDefinition{scene.ground(), rack, {{0, -0.4F, 0}}, {}});
@@ -224,7 +224,7 @@ TEST(Screw, ANutRunsDownAsMassAndInertiaSay)
 
 TEST(Screw, AThousandTurnsMoveItAThousandPitches)
 {
-    // Held by what is counted: the slide beside turns counted from the poses.
+    // The slide against the turns counted from the poses.
     const float pitch = -0.02F;
     Scene scene;
     const BodyId bolt = scene.add_body({.motion = BodyMotion::static_body});
@@ -264,7 +264,8 @@ TEST(Pulley, TwoWeightsFallAsAtwoodsMachine)
 
 TEST(Pulley, ABlockAndTackleBalancesTheRatioOfWeightsAndASlackRopeHoldsNothing)
 {
-    // ratio 3: three lengths of rope carry b, so 6 kg balance 2; a rope with room leaves both falling.
+    // Ratio 3: three lengths of rope carry b, so that 6 kg balance 2 kg. With a rope that is too long both fall
+    // freely.
     for (const float length : {5 + 3 * 5.0F, 25.0F}) {
         Scene scene;
         BodyDefinition light = box({-1, 0, 0}, 2), heavy = box({1, 0, 0}, 6);
@@ -284,7 +285,7 @@ TEST(Pulley, ABlockAndTackleBalancesTheRatioOfWeightsAndASlackRopeHoldsNothing)
 
 TEST(Pulley, HoldsTwoEqualWeightsStillByEveryMethod)
 {
-    // Its wheels are the world's: bodies that it joins keep no momentum among themselves.
+    // The wheels are fixed to the world, so the bodies do not conserve momentum among themselves.
     for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
         Scene scene;
         const BodyId a = scene.add_body(box({0, -1, 0})), b = scene.add_body(box({2, -1, 0}));
@@ -299,7 +300,7 @@ TEST(Pulley, HoldsTwoEqualWeightsStillByEveryMethod)
 
 TEST(Distance, ASpringBetweenStopsRestsOnTheOneThatItsLoadReaches)
 {
-    // Standing on a spring that carries half the weight: the stop carries the rest.
+    // A weight stands on a spring that carries half of it; the limit carries the other half.
     Scene scene;
     const BodyId weight = scene.add_body(box({0, 1, 0}));
     DistanceDefinition strut{scene.ground(), weight};
@@ -320,7 +321,8 @@ TEST(Distance, ASpringBetweenStopsRestsOnTheOneThatItsLoadReaches)
 
 TEST(BreakLimit, TellsTheHostOnceTheLoadIsAboveItAndLetsItDecide)
 {
-    // A weight of 2 g N hangs from a ball-socket; what breaks at 15 N is told in every step until the host removes it.
+    // A weight of 2 g N hangs on a ball-socket with a break limit of 15 N: every step reports it until the host
+    // removes it.
     Scene scene;
     const BodyId weight = scene.add_body(box({0, 0, 0}));
     const ConstraintId joint = scene.add_joint(BallSocketDefinition{scene.ground(), weight, {}, {}});
@@ -336,7 +338,7 @@ TEST(BreakLimit, TellsTheHostOnceTheLoadIsAboveItAndLetsItDecide)
     ASSERT_EQ(scene.break_events().size(), 1U);
     EXPECT_EQ(scene.break_events()[0].joint, joint);
     EXPECT_NEAR(scene.break_events()[0].force, 2 * g, 0.05);
-    EXPECT_LT(scene.state(weight).position.y, 1e-3);  // it holds on
+    EXPECT_LT(scene.state(weight).position.y, 1e-3);  // it still holds
     scene.remove_joint(scene.break_events()[0].joint);
     run(scene, solver, 1);
     EXPECT_TRUE(scene.break_events().empty());
@@ -345,7 +347,7 @@ TEST(BreakLimit, TellsTheHostOnceTheLoadIsAboveItAndLetsItDecide)
 
 TEST(BreakLimit, AHingeTellsOfItsTorque)
 {
-    // An arm held level by a weld bears its weight's moment.
+    // An arm that a weld holds level bears the moment of its weight.
     Scene scene;
     const BodyId arm = scene.add_body(box({0.5, 0, 0}));
     const ConstraintId weld = scene.add_joint(FixedDefinition{scene.ground(), arm, {}, {{-0.5F, 0, 0}}});
@@ -359,7 +361,7 @@ TEST(BreakLimit, AHingeTellsOfItsTorque)
     EXPECT_TRUE(scene.break_events().empty());
 }
 
-/// A wheel of 1 kg on a rail in the world; y up.
+/// A wheel of 1 kg with suspension on the world, y up.
 WheelDefinition wheel_on_ground(Scene& scene)
 {
     WheelDefinition wheel;
@@ -371,7 +373,7 @@ WheelDefinition wheel_on_ground(Scene& scene)
 
 TEST(Wheel, ItsSuspensionGivesWayByItsFrequencyAndItsMotorSpinsItUp)
 {
-    // Sag g / (2 pi f)^2; alpha = tau / I about the axle, until the speed is reached.
+    // Sag g / (2 pi f)^2; alpha = tau / I about the axle, until the target speed is reached.
     Scene scene;
     WheelDefinition definition = wheel_on_ground(scene);
     definition.spring_hertz = 2;

@@ -1,5 +1,5 @@
-// A crowd that is swept in patches: the same bits whoever sweeps them, and the results of the same contacts swept by colours
-// alone, which is the independent evidence.
+// A crowd that is swept in patches has the same bits for any threads and instruction sets, and the results of the
+// same contacts swept by colours alone, which is the independent evidence.
 #include <gtest/gtest.h>
 
 #include "lattice_crowd.h"
@@ -12,7 +12,7 @@ using testing::LatticeCrowd;
 
 constexpr float dt = 1.0F / 60;
 
-/// Bodies that no contact touches, with joints and without, and joints within the crowd.
+/// Adds bodies that no contact touches, with and without joints, and joints within the crowd.
 void add_others(LatticeCrowd& crowd)
 {
     BodyDefinition lone;
@@ -39,7 +39,7 @@ std::vector<std::uint64_t> run(const SolverSettings& settings, const SolverOptio
     Solver solver(settings, options);
     std::vector<std::uint64_t> hashes;
     for (int step = 0; step < 4; ++step) {
-        // In the last step some people touch nobody any more.
+        // In the last step some people no longer touch anybody.
         if (step == 3) crowd.pairs.resize(Patches::from_contacts + 1000);
         const StepReport report = solver.step(crowd.scene, dt, crowd.contacts());
         EXPECT_EQ(report.status, StepStatus::done) << report.error;
@@ -89,7 +89,8 @@ TEST(PatchesOfACrowd, DoNotDependOnWhereBodiesLie)
     }
 }
 
-/// Clusters of 32 contacts, 128 of which fill a patch: each must move like the first of a scene of one, by the same bits.
+/// Clusters of 32 contacts, of which 128 fill a patch. Each cluster must move, bit for bit, like a single cluster in
+/// a scene of its own.
 TEST(PatchesOfACrowd, GiveWhatColoursGive)
 {
     constexpr int side = 5, contacts_a_cluster = 32;
@@ -156,7 +157,7 @@ TEST(PatchesOfACrowd, GiveWhatColoursGive)
     }
 }
 
-/// Conservation: nothing outside pushes, so the momentum of all stays.
+/// There is no external force, so the total momentum stays.
 TEST(PatchesOfACrowd, KeepMomentum)
 {
     LatticeCrowd crowd(0);
@@ -167,7 +168,7 @@ TEST(PatchesOfACrowd, KeepMomentum)
         const StepReport report = solver.step(crowd.scene, dt, crowd.contacts());
         ASSERT_EQ(report.status, StepStatus::done) << report.error;
         const auto &before = report.measures.before, &after = report.measures.after;
-        // 20,736 bodies of 80 kg at about 1 m/s: rounding of float, at random.
+        // Bound: 20,736 bodies of 80 kg at about 1 m/s, with random rounding of floats.
         EXPECT_NEAR(after.momentum[0], before.momentum[0], 1.0);
         EXPECT_NEAR(after.momentum[1], before.momentum[1], 1.0);
     }

@@ -1,5 +1,5 @@
-// What a step must do whatever the solver believes: analytic motions and conservation laws, by every method.
-// Independent evidence: closed forms, stated at each test.
+// What every method must get right: motions with known solutions, and conservation laws. Independent evidence: closed
+// forms, stated at each test.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +41,7 @@ BodyDefinition ball(BodyModel model, Vec3<double> position, float mass = 1, floa
     return body;
 }
 
-/// Contact of a ball with the static plane y = 0, told through the ground at the origin.
+/// The contact of a ball with the static plane y = 0, which belongs to the ground at the origin.
 Contact on_floor(const Scene& scene, BodyId body, double radius, std::uint64_t key = 1)
 {
     const Vec3<double> p = scene.state(body).position;
@@ -90,8 +90,8 @@ TEST(Pendulum, PeriodMatchesClosedFormWithinOnePercent)
 
 TEST(Spring, FrequencyAndDecayMatchClosedForm)
 {
-    // x'' + 2 zeta w x' + w^2 x = 0: zero crossings every pi / (w sqrt(1 - zeta^2)), peaks falling by
-    // exp(-zeta w t). Implicit softness adds damping of order w h, so h is small.
+    // x'' + 2 zeta w x' + w^2 x = 0: zero crossings every pi / (w sqrt(1 - zeta^2)), peaks that fall by exp(-zeta w
+    // t). The implicit spring adds damping of order w h, so h is small.
     Scene scene;
     const float hertz = 1, zeta = 0.05F;
     const BodyId bob = scene.add_body(ball(BodyModel::particle, {1.2, 0, 0}, 3));
@@ -130,7 +130,7 @@ TEST(Spring, FrequencyAndDecayMatchClosedForm)
 
 TEST(Friction, ABoxOnASlopeOfTwentyDegreesStaysForAMinute)
 {
-    // tan 20 = 0.36 < mu = 0.5: it must not creep. Gravity is tilted instead of the ground.
+    // tan 20 degrees = 0.36 < mu = 0.5: it must not creep. Gravity is tilted instead of the ground.
     Scene scene;
     const double hx = 0.5, hy = 0.25, hz = 0.5;
     BodyDefinition box;
@@ -205,7 +205,7 @@ TEST(Contact, AStandingBallIsHeldByItsWeight)
             EXPECT_EQ(report.state, JointState::active);
             EXPECT_LT(report.error, 1e-3F);
             EXPECT_THROW((void)scene.contact_report({&contact, 1}, 1), InvalidInput);
-            // At rest soft contacts sag by about g / omega^2; speculative ones leave rounding.
+            // At rest soft contacts sag by about g / omega^2; contacts with a gap have only rounding errors.
             EXPECT_NEAR(scene.state(body).position.y, 0.5, 1e-3);
             EXPECT_NEAR(scene.state(body).linear_velocity.y, 0, 1e-3);
         }
@@ -214,7 +214,7 @@ TEST(Contact, AStandingBallIsHeldByItsWeight)
 
 TEST(Contact, SagsLessTheShorterTheSubstep)
 {
-    // Closed form: a rigid floor is not entered at all. By default nothing but the substep makes a contact soft.
+    // Closed form: nothing penetrates a rigid floor. By default only the length of a substep makes a contact soft.
     double before = 0;
     for (const int substeps : {1, 4, 16, 64}) {
         Scene scene;
@@ -255,7 +255,7 @@ TEST(Contact, HeadOnImpactLeavesWithRestitution)
 
 TEST(Contact, ABallThatBouncesKeepsItsEnergy)
 {
-    // Energy: a ball that falls at v rises at e v, whatever pulls it down, and wherever in a step it lands.
+    // Energy: a ball that falls at v rises at e v, whatever accelerates it, and at whatever time in a step it lands.
     for (const BodyModel model : {BodyModel::particle, BodyModel::planar, BodyModel::rigid}) {
         for (const bool by_gravity : {true, false}) {
             for (const float e : {1.0F, 0.9F}) {
@@ -278,7 +278,7 @@ TEST(Contact, ABallThatBouncesKeepsItsEnergy)
                     if (!fell && falls) {
                         ++bounces;
                         expected *= static_cast<double>(e);
-                        // As it would be at the floor.
+                        // The speed converted to that at the floor's height.
                         EXPECT_NEAR(std::sqrt(speed * speed + 20 * (state.position.y - 0.5)), expected,
                                     1e-3 * expected)
                             << "bounce " << bounces << ", e = " << e;
@@ -310,14 +310,14 @@ TEST(Friction, ASlidingBlockStopsWhereItsEnergyIsSpent)
     const BodyState end = scene.state(body);
     const double stop = 5.0 / (2 * 0.3 * 10);
     EXPECT_NEAR(std::hypot(end.position.x, end.position.z), stop, 0.01 * stop);
-    EXPECT_NEAR(end.position.x / end.position.z, 2, 0.01);  // a circular cone does not bend the path
+    EXPECT_NEAR(end.position.x / end.position.z, 2, 0.01);  // friction does not bend the path
     EXPECT_NEAR(std::hypot(end.linear_velocity.x, end.linear_velocity.z), 0, 1e-3);
 }
 
 TEST(Friction, ARollingBallKeepsFiveSeventhsOfItsSpeed)
 {
-    // A ball set sliding without spin ends rolling at 5/7 of its speed, whatever mu: angular momentum about the
-    // point of contact. A disc in the plane, I = 2/5 m r^2 as here, likewise.
+    // A ball that slides without spin ends rolling at 5/7 of its speed, whatever mu: angular momentum about the point
+    // of contact is conserved. The same holds for a planar disc, which here also has I = 2/5 m r^2.
     for (const BodyModel model : {BodyModel::planar, BodyModel::rigid}) {
         Scene scene;
         BodyDefinition definition = ball(model, {0, 0.5, 0});
@@ -387,16 +387,17 @@ TEST(Conservation, JointsChangeNeitherMomentumNorAngularMomentumByMoreThanRoundi
         for (int step = 0; step < 60; ++step) solver.step(scene, 1.0F / 60);
         const Momentum after = momentum_of(scene, bodies, definitions);
         const Vec3<double> dp = after.linear - before.linear, dl = after.angular - before.angular;
-        // Every impulse is paired to the bit; what is left is float rounding of velocities near 1.
+        // Bodies get exactly opposite impulses; the rest is float rounding of velocities of about 1.
         EXPECT_LT(std::sqrt(dot(dp, dp)), 2e-4);
-        // The pair's points differ by the joint's error and positions move within a substep: first order in h.
+        // The two anchors of a joint differ by its error, and positions move within a substep: first order in h.
         EXPECT_LT(std::sqrt(dot(dl, dl)), 0.05 * std::sqrt(dot(before.angular, before.angular)));
     }
 }
 
 TEST(Conservation, ATumblingBodyNeverGainsEnergy)
 {
-    // Dzhanibekov: spin about the intermediate axis flips for ever; the turn, which carries angular momentum, must not add energy.
+    // Dzhanibekov effect: a spin about the intermediate axis keeps flipping. The rotation update, which keeps angular
+    // momentum, must not add energy.
     Scene scene;
     BodyDefinition body = ball(BodyModel::rigid, {});
     body.inertia = {1, 0, 0, 2, 0, 2.9F};
@@ -414,7 +415,7 @@ TEST(Conservation, ATumblingBodyNeverGainsEnergy)
 
 TEST(Chain, APushedRowCarriesEachDriveToTheWall)
 {
-    // Exact law: of n discs each driven by F into a wall, contact k from the back carries k F.
+    // Exact law: when each of n discs is pushed by F towards a wall, contact k from the back carries k F.
     constexpr int n = 30;
     constexpr double radius = 0.2;
     Scene scene;
@@ -456,7 +457,7 @@ TEST(Chain, APushedRowCarriesEachDriveToTheWall)
 
 TEST(Joint, HoldsTenKilometresFromTheOriginAsItDoesAtTheOrigin)
 {
-    // Only differences reach the lanes, so distance from the origin costs nothing but the rounding of doubles.
+    // Lanes only see differences of positions, so that distance from the origin costs only the rounding of doubles.
     double error[2];
     for (const int far : {0, 1}) {
         Scene scene;
@@ -498,7 +499,7 @@ TEST(Hub, AThousandRopesOnOneBodyAreSolvedInAFewColours)
 
 TEST(Containment, ABodyThatOverflowsIsFrozenNamedAndLeavesOthersAlone)
 {
-    // Two islands; in one a force drives a body past the range of floats.
+    // Two islands; in one of them a force drives a body beyond the range of floats.
     const auto build = [](bool hostile, std::vector<BodyId>& ids) {
         Scene scene;
         for (int i = 0; i < 4; ++i) ids.push_back(scene.add_body(ball(BodyModel::rigid, {3.0 * i, 0, 0})));
@@ -544,7 +545,7 @@ TEST(Step, OfZeroSecondsChangesNothing)
 
 TEST(Step, BodiesAndJointsComeAndGoWithoutDisturbingTheRest)
 {
-    // A row of falling pairs; some are removed and added in every step, the first pair never. It must fall as if alone.
+    // A row of falling pairs. Each step removes and adds some, but never the first pair, which must fall as if alone.
     Scene scene, alone;
     const auto pair = [](Scene& s, double x) {
         const BodyId a = s.add_body(ball(BodyModel::rigid, {x, 0, 0})),

@@ -1,12 +1,12 @@
-// Promise 2b: the lanes agree with the textbook in double. Every constraint, over the type list, for every pair of body
+// Promise 2b: the lanes agree with the textbook in double. Every constraint in the type list, for every pair of body
 // kinds that makes sense, in random scenes of one constraint, step after step; and a chain, solved in the same order.
-// Independent evidence: core/reference, which shares no row with the lanes, and whose own rows are checked against
-// finite differences of their C here too; and conservation laws. What a sweep does where a bound holds an impulse back is the
-// same formula in both: evidence for the direction of friction is in friction_direction_test.cpp.
+// Independent evidence: core/reference, which shares no row with the lanes and whose rows are also checked here
+// against finite differences of their C; and conservation laws. Where a bound limits an impulse both use the same
+// formula in a sweep: the evidence for the direction of friction is in friction_direction_test.cpp.
 //
-// Bound: a step in float rounds each of about 200 operations on numbers near `size` once, so it leaves the double
-// step by at most about 200 x 6e-8 of it, amplified by the condition of K (below 30 here) where masses are inverted;
-// errors of successive steps add up, and motions do not amplify them within the steps below.
+// Bound: a step in float rounds each of about 200 operations on numbers of about `size` once, so it differs from the
+// double step by at most about 200 x 6e-8 of that, amplified by the condition of K (below 30 here) where masses are
+// inverted. Errors of successive steps add up; motions do not amplify them within the steps below.
 #include <gtest/gtest.h>
 
 #include "joint_cases.h"
@@ -42,8 +42,8 @@ BodyDefinition body_of(int kind, testing::Random& random)
     return body;
 }
 
-/// With a planar body a static or kinematic one makes a pair of the plane: what happens across it is not seen, so
-/// nothing does.
+/// A planar body and a static or kinematic one are solved in the plane. Motion of the latter out of the plane would
+/// be ignored, so it has none.
 void stay_in_plane(BodyDefinition& body, int kind)
 {
     if (kind < 3) return;
@@ -147,7 +147,7 @@ constexpr bool locks_point<FrameJointDefinition<LinearLock::point, angular>> = t
 
 TYPED_TEST(EveryJoint, JTimesVIsTheDerivativeOfC)
 {
-    // Central differences along the bodies' own motion: they leave epsilon^2 and 1e-16 / epsilon.
+    // Central differences along the bodies' own motion, which have errors of epsilon^2 and 1e-16 / epsilon.
     constexpr double epsilon = 1e-6;
     for_every_case<TypeParam>(
         [](const Twin& twin, const TypeParam& joint, const SolverSettings&, const std::string& name) {
@@ -163,17 +163,17 @@ TYPED_TEST(EveryJoint, JTimesVIsTheDerivativeOfC)
             Eigen::Matrix<double, 12, 1> velocity;
             velocity << a.velocity, b.velocity;
             for (std::size_t i = 0; i < now.size(); ++i) {
-                // Both ends of a range lie on one row: next to the middle the nearer one may change.
+                // Both ends of a range use one row, for the nearer end, which may change at the middle of the range.
                 if (before[i].side != after[i].side) continue;
                 Eigen::VectorXd difference = (after[i].error - before[i].error) / (2 * epsilon);
-                // Both impulses of a locked point act in the middle between the anchors: its rows are seen by who turns with
-                // the mean of both spins.
+                // The impulses of a locked point act midway between the anchors: its rows give the derivative of C in
+                // a frame that turns with the mean of both spins.
                 if constexpr (locks_point<TypeParam>) {
                     const Eigen::Vector3d spin = (a.velocity.tail<3>() + b.velocity.tail<3>()) / 2;
                     difference.topRows(3) -= spin.cross(Eigen::Vector3d(now[i].error.topRows(3)));
                 }
                 const Eigen::VectorXd analytic = now[i].side * (now[i].jacobian * velocity);
-                // A motor has no C, and no end is at infinity.
+                // A motor has no C, and an infinite limit has no error.
                 if (now[i].kind == reference::Block::Kind::motor || !now[i].error.allFinite()) continue;
                 EXPECT_LT((difference - analytic).norm(), 1e-6 * (1 + analytic.norm()))
                     << name << ", block " << i;
@@ -206,10 +206,11 @@ Motion motion_of(const Twin& twin)
 
 TYPED_TEST(EveryJoint, KeepsMomentaAndNeverAddsEnergyInFreeFlight)
 {
-    // Two tumbling bodies, no force from outside, two seconds. Conservation laws: linear momentum to float rounding, 960
-    // substeps of relative 6e-8 and a few operations each. Angular momentum: the impulses keep it, the integration of
-    // turning bodies is of first order in h, so it may drift by a few h of itself. Energy: implicit softness and
-    // gyroscopic terms only ever take some out; what the first steps bring in is the error that the cases start with.
+    // Two tumbling bodies, no external force, two seconds. Linear momentum is conserved to float rounding: 960
+    // substeps of relative 6e-8 and a few operations each. The impulses also conserve angular momentum, but the
+    // integration of turning bodies is of first order in h, so it may drift by a few times h of itself. Implicit
+    // softness and gyroscopic terms only ever remove energy; the first steps may add some, from the initial errors of
+    // the cases.
     using Cases = testing::JointCases<TypeParam>;
     int regular_cases = 0;
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -261,8 +262,8 @@ TEST(AgainstReference, ContactsAgreeForEveryPairAndMethod)
     for (const Touches touches : {Touches{0, 0}, {0.4F, 0}, {0, 0.5F}, {0.4F, 0.5F}}) {
         for_every_pair([touches](Twin& twin, testing::Random& random, const SolverSettings& settings,
                                  const std::string& name, int a, int b) {
-            // The pair approaches along n; the geometry is replayed from the reference's positions, so that both see
-            // the same list. Balls of radius 0.3 around each centre.
+            // The pair approaches along n. The contacts are computed from the reference's positions, so that both
+            // solvers get the same list. Each body is a ball of radius 0.3.
             Solver solver(settings);
             Vec3<double> start = twin.scene.state(twin.ids[0]).position;
             start.x += 0.59;
@@ -322,7 +323,7 @@ TEST(AgainstReference, AChainAgreesWhenSolvedInTheOrderOfItsColours)
         }
         std::vector<reference::Joint> joints;
         joints.swap(twin.world.joints);
-        // First fit along a chain gives colours 0, 1, 0, 1, ...
+        // First fit along a chain gives the colours 0, 1, 0, 1, ...
         for (const std::size_t first : {0, 1}) {
             for (std::size_t i = first; i < joints.size(); i += 2) twin.world.joints.push_back(joints[i]);
         }

@@ -1,6 +1,6 @@
-// Promise 1: equal input and settings give equal bits, whatever the instruction set, the number of threads and
-// the compiler. Independent evidence: the scalar path is the lane maths on float; the golden hashes tie the builds
-// of g++ and clang to each other.
+// Promise 1: equal input and settings give equal bits for every instruction set, number of threads and compiler.
+// Independent evidence: the scalar path is the same maths on float; golden hashes tie the builds of g++ and clang to
+// each other.
 #include <gtest/gtest.h>
 
 #include "joint_scene.h"
@@ -75,7 +75,7 @@ TEST(SameBits, ThreadCountDoesNotChangeAnyStep)
     }
 }
 
-/// As run(), of every frame joint between every pair.
+/// Like run(), for every type of joint between every pair of body kinds.
 std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const SolverOptions& options)
 {
     testing::JointScene joints;
@@ -138,7 +138,7 @@ TEST(SameBits, ACopiedSceneGoesOnLikeTheOriginal)
     }
 }
 
-/// A net wide enough that its colours have many chunks, so that threads really share a colour.
+/// A net wide enough that its colours have many chunks, so that several threads work on one colour.
 Scene net(int side)
 {
     Scene scene;
@@ -165,7 +165,7 @@ Scene net(int side)
     return scene;
 }
 
-/// Renumbered now and then, also when bodies have gone and left gaps.
+/// Bodies are renumbered now and then, also after some have been removed and left gaps.
 TEST(SameBits, RenumberedBodiesGoOnLikeTheOthers)
 {
     SolverSettings exact;

@@ -1,4 +1,4 @@
-// Scenes in files. Independent evidence: the scene that was never in a file.
+// Scenes in files. Independent evidence: the same scene without a file in between.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -19,7 +19,7 @@ using testing::MixedScene;
 
 constexpr float dt = 1.0F / 60;
 
-/// A file of this test alone, gone at its end.
+/// A file for this test only, which the destructor removes.
 class File {
   public:
     File() : path_(::testing::TempDir() + "motley-" + name_of_test() + "-" + std::to_string(::getpid())) {}
@@ -46,7 +46,7 @@ SolverSettings settings_of(Method method)
     return settings;
 }
 
-/// Contacts with friction and restitution, joints, hubs; bodies and joints have come and gone, and one is contained.
+/// Steps a scene with contacts with friction and restitution, joints and hubs, in which bodies are removed and added.
 void live_through(MixedScene& mixed, Solver& solver)
 {
     for (int step = 0; step < 40; ++step) {
@@ -77,7 +77,7 @@ TEST(Snapshot, GoesOnWithTheSameBitsByEveryMethod)
         EXPECT_EQ(back.scene.body_count(), mixed.scene.body_count());
         Solver other(settings_of(method), {.threads = 2, .alone_below = 0});
         for (int step = 0; step < 60; ++step) {
-            if (step == 5) {  // new rows and handles are the same ones
+            if (step == 5) {  // both scenes give the same new handle
                 for (MixedScene* scene : {&mixed, &back}) {
                     BodyDefinition ball;
                     ball.position = {1, 9, 0};
@@ -188,7 +188,7 @@ TEST(Snapshot, RefusesWhatIsNotWhole)
     }
     file.write(good + "x");
     EXPECT_NE(refusal(file).find("has grown"), std::string::npos);
-    // Any bit of any field, one in some hundred bytes of them.
+    // Flips one bit in every 97th byte.
     for (std::size_t at = 32; at < good.size(); at += 97) {
         other = good;
         other[at] = static_cast<char>(other[at] ^ (1 << at % 8));
@@ -201,7 +201,7 @@ TEST(Snapshot, RefusesWhatIsNotWhole)
 
 TEST(Snapshot, RefusesNonsenseWithAGoodChecksum)
 {
-    // Whoever forges a file gets a refusal or a scene that can be lived with, never a crash.
+    // A forged file is refused or gives a scene that can be stepped and changed; it never crashes.
     const File file;
     int refused = 0, tried = 0;
     const std::string good = testing::seed_file(file.path(), false);
@@ -222,7 +222,7 @@ TEST(Snapshot, RefusesNonsenseWithAGoodChecksum)
     EXPECT_LT(refused, tried) << "a velocity more or less is a scene still";
 }
 
-/// The file with `what`, which is in it once, changed to `instead`, and made whole.
+/// The file with `what`, which occurs once in it, replaced by `instead`, and with a valid checksum.
 template <class T>
 std::string with_changed(const std::string& file, const T& what, const T& instead)
 {
@@ -270,7 +270,7 @@ TEST(Snapshot, RefusesWhatTheSceneWouldHaveRefused)
     EXPECT_NE(refusal_of(definition.inertia, Sym3<float>{0.5F, 0, 0, 0.5F, 0, 7}).find("triangle inequality"),
               std::string::npos)
         << refusal(file);
-    // One over the masses of both bodies, in line by their handles.
+    // The inverse masses of both bodies, which are contiguous in the order of their handles.
     const std::array<float, 2> masses{1 / 0.75F, 1 / 0.75F}, negative{1 / 0.75F, -1 / 0.75F};
     EXPECT_NE(refusal_of(masses, negative).find("a mass that no body has"), std::string::npos)
         << refusal(file);
@@ -285,7 +285,7 @@ TEST(Snapshot, RefusesSettingsThatAreNeitherTrueNorFalse)
     const std::string good = file.read();
     save_problem(problem, file.path());
     ASSERT_NO_THROW(load_problem(file.path()));
-    // Where the settings lie is where the files differ.
+    // The first difference between the files shows where the settings are.
     const std::string other = file.read();
     std::size_t at = testing::snapshot_header;
     while (good[at] == other[at]) ++at;

@@ -1,4 +1,4 @@
-// The solver's own door: what it refuses, leaves out, and tells. Independent evidence: the same steps without what is bad.
+// What a solver refuses, leaves out and reports. Independent evidence: the same steps without the bad input.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -67,7 +67,7 @@ TEST(Solver, TellsOfABudgetThatItHasMissed)
     }
 }
 
-/// Contacts that cannot be taken, each for a reason of its own.
+/// Contacts that cannot be taken in, each for another reason.
 std::vector<Contact> bad_contacts(const MixedScene& mixed, BodyId dead)
 {
     Contact good;

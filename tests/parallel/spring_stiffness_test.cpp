@@ -1,4 +1,4 @@
-// Springs and dampers in N m/rad and N m s/rad, and rotors. Independent evidence: closed forms.
+// Springs and dampers in N m/rad and N m s/rad, and armatures (rotors). Independent evidence: closed forms.
 #include <numbers>
 
 #include "swing.h"
@@ -12,7 +12,7 @@ using testing::frame_time;
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// About z through both centres: a hinge, and what drives it.
+/// Adds a hinge about z through both centres, and this drive on it.
 ConstraintId hang_on(Scene& scene, BodyId a, BodyId b, TwistDriveDefinition drive)
 {
     const JointFrame about_z{{}, axis_along(2)};
@@ -49,7 +49,7 @@ TEST(SpringStiffness, SwingsWithTheRootOfStiffnessOverInertia)
 {
     Scene scene;
     const BodyId wheel = scene.add_body(box({0, 0, 0}));
-    const float inertia = 0.5F, k = 4 * pi * pi * inertia;  // once a second
+    const float inertia = 0.5F, k = 4 * pi * pi * inertia;  // one swing a second
     hang_on(scene, scene.ground(), wheel, {.spring_stiffness = k, .spring_target = 0.5F});
     SolverSettings settings;
     settings.substeps = 32;
@@ -59,8 +59,9 @@ TEST(SpringStiffness, SwingsWithTheRootOfStiffnessOverInertia)
 
 TEST(SpringStiffness, SpringsInSeriesThroughALightBodyAddUp)
 {
-    // A frequency would be that of the light body, and as good as no spring between the others.
-    // Sweeps converge slowly through a body that is far lighter than what its springs hold; the direct method does not sweep.
+    // A frequency would be relative to the light body's inertia, and practically no spring for its neighbours. Sweeps
+    // converge slowly through a body that is far lighter than those that its springs hold; the direct method does not
+    // sweep.
     for (const float light : {1e-6F, 1e-3F, 1.0F}) {
         Scene scene;
         const BodyId between = scene.add_body(box({0, 0, 0}, light)), wheel = scene.add_body(box({0, 0, 0}));
@@ -121,7 +122,7 @@ TEST(SpringStiffness, OfASlideBearsAWeightByItsStiffness)
 
 TEST(SpringStiffness, NoStiffnessIsTooMuchForASubstep)
 {
-    // Far stiffer than a substep can follow it is a lock, and no energy comes of it.
+    // A spring far stiffer than a substep can follow acts as a lock and adds no energy.
     Scene scene;
     BodyDefinition definition = box({0, 0, 0});
     definition.angular_velocity = {0, 0, 1};
@@ -152,7 +153,7 @@ TEST(SpringStiffness, IsOneOfASixDofJointsCoordinates)
     EXPECT_NEAR(angle_of(scene.state(wheel)), 6.0 / 40, 1e-3);
 }
 
-// ---- armature ---------------------------------------------------------------------------------------------------------
+// ---- armature ----------------------------------------------------------------------------------------------------
 
 TEST(Armature, AddsToTheInertiaThatATorqueMoves)
 {
@@ -174,7 +175,7 @@ TEST(Armature, AddsToTheInertiaThatATorqueMoves)
 
 TEST(Armature, OfALightLinkIsAllThatASpringSwings)
 {
-    // Once a second, by the rotor all but alone: the link has a thousandth of its inertia.
+    // One swing a second, from the rotor's inertia almost alone: the link has a thousandth of it.
     Scene scene;
     const BodyId link = scene.add_body(box({0, 0, 0}, 2e-3F));
     const float rotor = 0.5F;
@@ -188,7 +189,7 @@ TEST(Armature, OfALightLinkIsAllThatASpringSwings)
 
 TEST(Armature, OfTwoFloatingWheelsKeepsTheirAngularMomentumAndTheRotors)
 {
-    // The rotor goes with the difference of their speeds: a torque on one moves both, by the equations
+    // The rotor turns with the difference of the two speeds, so that a torque on one body moves both:
     //   (I_1 + r) w_1' - r w_2' = 0,   -r w_1' + (I_2 + r) w_2' = T.
     for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
         Scene scene;
@@ -217,7 +218,7 @@ TEST(Armature, ReportsWhatItTakesFromTheBodies)
     scene.set_force(wheel, {}, {0, 0, 4});
     Solver solver;
     testing::run(scene, solver, 1);
-    // 4 N m on 2 kg m2: 1.5 of them are the rotor's.
+    // 4 N m on 2 kg m2 in all, of which the rotor has 1.5.
     EXPECT_NEAR(scene.joint_report(drive).torque.z, -1.5 * 2, 3e-3);
 }
 

@@ -1,5 +1,5 @@
-// Light links that bear heavy loads, swept. Independent evidence: conservation of energy and momenta, and the give of a
-// soft joint, T / (m w^2).
+// Light links that bear heavy loads, solved by sweeps. Independent evidence: conservation of energy and momenta, and
+// the deflection T / (m w^2) of a soft joint.
 #include <cstdio>
 #include <numbers>
 
@@ -28,7 +28,7 @@ std::vector<Way> default_ways()
 
 struct Swing {
     double separation = 0;
-    double gain = 0;  ///< of energy, as a share of what the fall can give
+    double gain = 0;  ///< of energy, as a share of what the fall can release
     std::int64_t in_lockstep = 0;
 };
 
@@ -51,8 +51,9 @@ Swing swing(Scene& scene, const std::vector<LoadedChain>& chains, const SolverSe
     return swing;
 }
 
-/// What a default joint gives way by, T / (m w^2), m: w of 60 Hz, and an effective mass of 0.5 kg between two links of 1 kg. A load
-/// that has swung down from level pulls with three times its weight; one that is let go unstretched overshoots to twice its weight.
+/// The deflection T / (m w^2) of a default joint, m: w of 60 Hz, and an effective mass of 0.5 kg between two links of
+/// 1 kg. A load that has swung down from level pulls with three times its weight; one that starts unstretched
+/// overshoots to twice its weight.
 double give(ChainStart start, double load)
 {
     const double w = 2 * std::numbers::pi * 60,
@@ -113,7 +114,7 @@ TEST(Tension, NorDoThoseOfHingesOfThePlaneOrInLockstep)
 
 TEST(Tension, PlanarBodiesHaveTheirOwnInertiaAgainWhenAStepIsDone)
 {
-    // Closed form: what is cut loose turns by h torque / I and no slower.
+    // Closed form: a body that is cut loose gains h torque / I, no less.
     Scene scene;
     LoadedChain chain(scene, BodyModel::planar);
     chain.hang(ChainStart::hanging, 1e4);

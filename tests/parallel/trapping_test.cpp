@@ -1,5 +1,5 @@
-// No kernel divides by zero or makes a not-a-number out of finite scenes, in padding lanes neither: a host that unmasks
-// floating-point exceptions can step. Independent evidence: the processor's own flags.
+// No kernel divides by zero or makes a not-a-number out of a finite scene, not even in padding lanes: a host that
+// unmasks floating-point exceptions can step. Independent evidence: the processor's own flags.
 #include <gtest/gtest.h>
 
 #include <cfenv>
@@ -44,7 +44,7 @@ std::vector<Way> ways()
             {"projection", projected}};
 }
 
-/// What a step raised.
+/// The floating-point flags that a step raised.
 template <class Step>
 int flags_of(const Step& step)
 {
@@ -95,7 +95,7 @@ TEST_P(Trapping, NothingIsRaisedByFiguresInLockstep)
 {
     for (const Way& way : ways()) {
         Scene scene;
-        // Twenty-one chains of six: a full block and a padded one.
+        // Twenty-one chains of six links: a full block and a padded one.
         for (int chain = 0; chain < 21; ++chain) {
             BodyId before = scene.ground();
             for (int i = 0; i < 6; ++i) {
@@ -118,7 +118,7 @@ TEST_P(Trapping, NothingIsRaisedByFiguresInLockstep)
 
 TEST(Environment, OfTheHostIsLeftAsFound)
 {
-    // Of <cfenv>, and of x86 whatever the control bits of MXCSR say: flushing of denormals, masks, rounding.
+    // The rounding mode by <cfenv>, and on x86 all control bits of MXCSR: flushing of denormals, masks, rounding.
     const auto control = [] {
 #ifdef __x86_64__
         return __builtin_ia32_stmxcsr() & 0xffc0U;
@@ -146,13 +146,14 @@ TEST(Environment, OfTheHostIsLeftAsFound)
     std::fesetround(FE_TONEAREST);
 #ifdef __x86_64__
     const unsigned usual = __builtin_ia32_stmxcsr();
-    __builtin_ia32_ldmxcsr(usual | 0x8040U);  // denormals are nothing, read and written
+    __builtin_ia32_ldmxcsr(usual | 0x8040U);  // denormals are read and written as zero
     steps_leave_it();
     __builtin_ia32_ldmxcsr(usual);
 #endif
 }
 
-/// Sixty steps of every kind of contact and joint, the host rounding as it likes meanwhile.
+/// The hash after sixty steps of every kind of contact and joint, each called in a rounding mode that the host has
+/// set.
 std::uint64_t hash_with_rounding(int rounding, const Way& way, const SolverOptions& options)
 {
     MixedScene mixed;
@@ -186,7 +187,7 @@ TEST(Environment, OfAStepTakesDenormalsForNothing)
         for (const int threads : {1, 2}) {
             Scene scene;
             std::vector<BodyId> bodies;
-            // More than one thread's share of rows.
+            // More rows than one thread's share.
             for (int i = 0; i < 10000; ++i) {
                 BodyDefinition body;
                 body.position = {2.0 * i, 0, 0};

@@ -1,5 +1,5 @@
-// What the lanes do where textbooks of this theory set their traps; the printed forms are in tests/core/traps_test.cpp.
-// Independent evidence: closed forms and conservation.
+// What the lanes do at the traps of textbooks; tests/core/traps_test.cpp has the printed forms. Independent evidence:
+// closed forms and conservation.
 #include "rig.h"
 
 namespace motley {
@@ -33,7 +33,7 @@ TEST(Trap1InLanes, ASatisfiedJointStillHoldsAWeight)
 
 TEST(Trap2InLanes, ASliderFarOutAlongItsRailKeepsAngularMomentum)
 {
-    // The lever of a ends where b is: with r_a alone, a metre out, every push would twist the pair.
+    // The lever arm of a ends where b is: with r_a alone, every impulse a metre away would turn the pair.
     Scene scene;
     BodyDefinition left = box({0, 0, 0}), right = box({1.5, 0, 0});
     left.angular_velocity = {0, 0, 0.5F};
@@ -119,7 +119,7 @@ TEST(Trap5InLanes, AWeldHalfATurnOffStaysBounded)
             const Vec3<float> w = scene.state(id).angular_velocity;
             fastest = std::max(fastest, std::sqrt(dot(w, w)));
         }
-        // At most the whole error in about a substep of 1/240 s.
+        // At most the whole error within about one substep of 1/240 s.
         EXPECT_LT(fastest, 3.1416F * 240) << short_of_pi;
     }
 }
@@ -133,7 +133,7 @@ TEST(Trap6InLanes, ABodyLeavesItsLimitWithTheSpeedItHas)
     scene.add_joint(stop);
     scene.set_force(body, {-10, 0, 0}, {});
     Solver solver;
-    run(scene, solver, 0.5);  // pressed on the stop, its impulse cached
+    run(scene, solver, 0.5);  // pressed on the limit, its impulse cached
     scene.set_force(body, {}, {});
     run(scene, solver, 0.1);
     scene.set_velocity(body, {2, 0, 0}, {});
@@ -169,7 +169,7 @@ TEST(Trap8InLanes, ProjectionKeepsTheCommonCentreAndClosesTheWholeGapToAStaticBo
             EXPECT_NEAR(centre, 10, 1e-5);
         }
         EXPECT_LT(std::abs(scene.state(light).linear_velocity.x),
-                  1e-6F);  // positions moved, no energy pumped
+                  1e-6F);  // positions moved, no energy added
     }
 }
 
@@ -200,7 +200,7 @@ TEST(Trap10InLanes, OneSweepSatisfiesAJointWhateverItsLever)
         solver.step(scene, 1e-6F);
         const BodyState s = scene.state(id);
         const Vec3<float> v = s.linear_velocity + cross(s.angular_velocity, anchor);
-        // What K^-1 in float leaves of 4 m/s: its condition is that of m r^2 / I.
+        // What K^-1 in float leaves of 4 m/s; the condition number is that of m r^2 / I.
         const float condition = 1 + 2 * lever * lever / 0.2F;
         EXPECT_LT(std::sqrt(dot(v, v)), 1e-6F * 4 * condition) << "lever " << lever;
     }

@@ -1,4 +1,4 @@
-// The lanes of blocks one by one, for tests of what is in them.
+// Visits the lanes of blocks one by one, for tests of what is in them.
 #pragma once
 
 #include <rapidcheck.h>
@@ -7,8 +7,8 @@
 
 namespace motley::testing {
 
-/// Calls visit(chunk, block, lane) for every lane with a constraint. All others must be on the null rows, which nothing
-/// may write.
+/// Calls visit(chunk, block, lane) for every lane with a constraint. All other lanes must refer to the null rows, to
+/// which nothing may write.
 template <class Visit>
 void for_each_lane(const SweepLists& sweeps, const Visit& visit)
 {

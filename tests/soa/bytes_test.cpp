@@ -1,4 +1,4 @@
-// The bytes a lane in bench/README.md are what the kernels stream.
+// The bytes a lane in the table of bench/README.md are those that the kernels stream.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -15,7 +15,7 @@ namespace {
 int bytes(const KernelTable& table, int type, BodyKind kind)
 {
     const ConstraintKernels& kernels = table.constraints[class_of(type, kind, kind)];
-    return 4 * (kernels.swept_floats + kernels.impulse_floats + 2);  // two body indices
+    return 4 * (kernels.swept_floats + kernels.impulse_floats + 2);  // 2: the body indices
 }
 
 TEST(Readme, BytesALaneAreWhatTheKernelsStream)
@@ -33,7 +33,7 @@ TEST(Readme, BytesALaneAreWhatTheKernelsStream)
             cells.push_back(cell.substr(1, cell.size() > 1 ? cell.size() - 2 : 0));
         if (cells.size() > 1) bytes_cells[cells[0]] = cells[1];
     }
-    // The table's rows by their beginnings, in the order of the list of types.
+    // The beginnings of the table's rows, in the order of the list of types.
     const char* const rows[] = {"contact, smooth",
                                 "contact with friction",
                                 "contact that bounces",

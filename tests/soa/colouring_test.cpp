@@ -1,4 +1,4 @@
-// Colouring and blocks, as properties over random graphs: RapidCheck tries to break them.
+// Properties of colourings and blocks of random graphs, which RapidCheck generates.
 #include "colouring.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ struct Bodies {
 
 using Edges = std::vector<std::pair<int, int>>;
 
-/// Pairs of different bodies of which one can move.
+/// Keeps pairs of different bodies of which at least one can move.
 Edges usable(const std::vector<std::pair<unsigned, unsigned>>& raw)
 {
     Edges edges;
@@ -92,7 +92,7 @@ RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice,
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const BodyRow a = bodies.rows[static_cast<std::size_t>(edges[i].first)],
                       b = bodies.rows[static_cast<std::size_t>(edges[i].second)];
-        // Every third goes straight to the overflow, as of a hub.
+        // Every third goes straight to the overflow, as constraints of a hub do.
         const std::uint8_t colour = i % 3 == 0 ? overflow_colour : masks.take_first(a, b);
         placements.push_back({a, b, static_cast<std::int32_t>(i), 0, colour});
     }
@@ -100,7 +100,7 @@ RC_GTEST_PROP(Blocks, HoldEveryConstraintInOneLaneAndNoMovingBodyTwice,
     set.begin(placements, false);
     for (std::int64_t chunk = 0; chunk < set.chunk_count(); ++chunk) set.count(chunk);
     set.open(kernels, false);
-    for (std::int64_t chunk = set.chunk_count(); chunk-- > 0;) set.fill(chunk);  // any order will do
+    for (std::int64_t chunk = set.chunk_count(); chunk-- > 0;) set.fill(chunk);  // any order is allowed
     SweepLists sweeps;
     TransferList transfers;
     set.cut(kernels, false, sweeps, transfers);

@@ -1,4 +1,5 @@
-// Contacts found again from step to step, against a std::map that is told the same: RapidCheck makes the lists.
+// Contacts found again from step to step, against a std::map that is updated in the same way. RapidCheck generates
+// the lists.
 #include "motley/core/contact_cache.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,8 @@ namespace {
 
 using Keys = std::vector<std::uint64_t>;
 
-/// What an intake does with a list of keys: which of the last list each one was, or nothing when they are refused.
+/// Takes in a list of keys as a step does. Returns the index of each contact in the list before, or nothing if keys
+/// are refused.
 std::optional<std::vector<std::uint32_t>> take(ContactCache& cache, const Keys& keys, Executor& executor)
 {
     std::vector<std::uint32_t> before(keys.size());
@@ -46,13 +48,13 @@ std::optional<std::vector<std::uint32_t>> take(ContactCache& cache, const Keys& 
     return before;
 }
 
-/// Takes a list in, and sees to it that every contact found its past and no other.
+/// Takes lists in and checks that every contact finds itself in the list before, and only itself.
 struct Checked {
     ContactCache cache;
     std::map<std::uint64_t, std::uint32_t> last;
     Solver threads{{}, {.threads = 2}};
 
-    /// False where something is wrong.
+    /// Returns false if anything is wrong.
     bool take_in(const Keys& keys)
     {
         const bool unique = std::set<std::uint64_t>(keys.begin(), keys.end()).size() == keys.size();
@@ -75,13 +77,13 @@ RC_GTEST_PROP(ContactCache, FindsWhatTheLastAcceptedListHad,
     Checked checked;
     for (const auto& list : lists) {
         Keys keys;
-        // Few different keys, so that they come back, and some that share the low half.
+        // Few different keys, so that keys recur; some of them share their low half.
         for (const std::uint8_t key : list) keys.push_back(key % 64 + (std::uint64_t{key} >> 6 << 33));
         RC_ASSERT(checked.take_in(keys));
     }
 }
 
-/// Keys of two lists that crowd into few buckets, against a std::map of the first that came.
+/// Keys of two lists that fall into few buckets, against a std::map of the first entry with each key.
 RC_GTEST_PROP(KeyTable, HasEachKeyOnce, (const std::vector<std::pair<bool, std::uint8_t>>& entries))
 {
     using List = KeyTable::List;
@@ -115,11 +117,11 @@ TEST(ContactCache, ListsMayShrinkAndGrowByAnyAmount)
         Keys keys(count);
         std::iota(keys.begin(), keys.end(), next);
         ASSERT_TRUE(checked.take_in(keys));
-        next += count / 2;  // half of them come back
+        next += count / 2;  // half of the keys recur
     }
 }
 
-/// Lists of several parts, each of which is the last one after something that a host may do to it.
+/// Lists large enough for several parts. Each is the list before, changed in a way in which a host may change it.
 TEST(ContactCache, OrderIsAHintOnly)
 {
     Checked checked;
@@ -155,7 +157,7 @@ TEST(ContactCache, OrderIsAHintOnly)
     EXPECT_TRUE(with([] {}));
 }
 
-/// A key that comes twice, wherever: both where the last list had it, one of them, new both, in one part or in two.
+/// A repeated key is detected whether the last list had it or it is new, and in one part of the list or in two.
 TEST(ContactCache, AKeyThatComesTwiceIsFoundOut)
 {
     std::mt19937 random(12345);

@@ -1,5 +1,5 @@
-// Figures found in random heaps of joints, and the trees planted in random figures. Independent evidence: what must hold of
-// any elimination order, counted over the result.
+// Figures found in random sets of joints, and trees built for random figures. Independent evidence: properties that
+// every elimination order must have, counted over the result.
 #include "figures.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using testing::Random;
 
-/// A figure of up to ten bodies, some fixed, with up to fourteen joints of no to six locked rows.
+/// A figure of up to ten bodies, some of them fixed, with up to fourteen joints that lock none to six rows.
 FigureShape random_shape(Random& random)
 {
     FigureShape shape;
@@ -125,7 +125,7 @@ TEST(FigureTree, NumbersOfNodesDoNotOverlap)
     }
 }
 
-/// Joints between random bodies of a few components, coloured as they come.
+/// Joints between random bodies of a few components, coloured in their order.
 std::vector<Figures::Candidate> random_heap(Random& random, std::uint32_t rows)
 {
     const int ball = contact_type_count;  // the first joint type: a ball-socket
@@ -147,7 +147,7 @@ std::vector<Figures::Candidate> random_heap(Random& random, std::uint32_t rows)
     for (std::uint32_t first = 1; first + 3 < rows; first += 3) {
         add(ground, {BodyKind::rigid, first});
         add({BodyKind::rigid, first}, {BodyKind::rigid, first + 1});
-        // Most are alike; some have a third body, or a loop.
+        // Most components are alike; some have no third body, and some have a loop.
         const int kind = random.below(6);
         if (kind > 0) add({BodyKind::rigid, first + 1}, {BodyKind::rigid, first + 2});
         if (kind == 1) add({BodyKind::rigid, first + 2}, {BodyKind::rigid, first});
@@ -164,7 +164,7 @@ TEST(Figures, EveryJointIsPlacedOnceAndEveryLaneIsItsOwnCopys)
         const std::vector<Figures::Candidate> joints = random_heap(random, rows);
         BodyStore bodies;
         bodies.rows(BodyKind::rigid).slot.assign(rows, 0);
-        bodies.rows(BodyKind::fixed).slot.assign(2, 0);  // nobody's row, and the ground
+        bodies.rows(BodyKind::fixed).slot.assign(2, 0);  // the null row and the ground
         for (const bool exact : {false, true}) {
             Figures figures;
             std::vector<Placement> placed;
@@ -190,7 +190,7 @@ TEST(Figures, EveryJointIsPlacedOnceAndEveryLaneIsItsOwnCopys)
                     }
                 }
             }
-            // Figures first, in whole blocks.
+            // Figures come first, in whole blocks.
             std::size_t lanes = 0;
             for (const FigureBlock& block : figures.blocks())
                 lanes += block.shape->joints.size() * block_lanes;

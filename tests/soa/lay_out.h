@@ -1,4 +1,4 @@
-// A step up to the blocks, on one thread.
+// The part of a step that lays contacts and joints out in blocks, on one thread.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Patches of a large crowd: what makes it safe to sweep one on a thread of its own, counted over the blocks that were made.
+// Patches of a large crowd: the properties that make it safe to sweep each on a thread of its own, counted over the
+// blocks.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -12,7 +13,7 @@ namespace {
 
 using testing::LatticeCrowd;
 
-/// A moving body as blocks name it: kind and offset.
+/// A moving body as blocks refer to it: kind and offset.
 using Mover = std::pair<BodyKind, std::int32_t>;
 
 template <class Visit>
@@ -23,7 +24,7 @@ void for_each_mover(const SweepChunk& chunk, std::int32_t block, int lane, const
     if (chunk.kind_b != BodyKind::fixed) visit(Mover{chunk.kind_b, bodies.b[lane]});
 }
 
-/// Calls visit(block, lane) for every lane of a chunk; those without a constraint must be on the null rows.
+/// Calls visit(block, lane) for every lane of a chunk with a constraint; all others must refer to the null rows.
 template <class Visit>
 void for_each_lane(const SweepChunk& chunk, const Visit& visit)
 {
@@ -44,7 +45,7 @@ struct Counts {
     std::size_t inside = 0, across = 0;
 };
 
-/// Every body that a contact touches and that can move is listed by one patch, which is that of the contacts inside it.
+/// Exactly one patch lists each body that can move and that a contact touches: the patch with the contacts inside it.
 void check_bodies(const Layout& layout, const Scene& scene, const std::map<Mover, std::size_t>& patch_of)
 {
     const Patches& patches = layout.intake.patches;
@@ -73,7 +74,8 @@ void check_bodies(const Layout& layout, const Scene& scene, const std::map<Mover
     }
 }
 
-/// Every contact in one lane; no moving body twice in a chunk, which is of one colour, nor in two patches.
+/// Every contact is in one lane. No moving body is in a chunk, which has one colour, twice, and none is in two
+/// patches.
 Counts check(const Layout& layout, const Scene& scene, std::size_t contacts)
 {
     Counts counts;
@@ -117,7 +119,7 @@ TEST(Patches, HoldMostContactsOfAListInSpaceAndShareNoMovingBody)
 {
     LatticeCrowd crowd;
     Layout layout(kernel_table(Isa::scalar));
-    // Coloured anew, then with the colours of the step before.
+    // The first step colours all contacts, the second keeps the colours of the first.
     for (int step = 0; step < 2; ++step) {
         testing::lay_out(layout, crowd.scene, crowd.contacts());
         const Counts counts = check(layout, crowd.scene, crowd.pairs.size());
@@ -164,7 +166,7 @@ TEST(Patches, AreNotMadeOfSmallListsNorLeftOverFromLargeOnes)
     EXPECT_EQ(check(layout, crowd.scene, crowd.pairs.size()).across, crowd.pairs.size());
 }
 
-/// Claims carry the number of their list, which begins again after some thousands.
+/// Claims store the number of their list, which wraps around after some thousands of lists.
 TEST(Patches, StayTheSameWhenListsAreCountedAnew)
 {
     LatticeCrowd crowd;

@@ -1,5 +1,5 @@
-// The plan of a step for every method: these texts are what a reader of the README and of plan.h is told. That a runner does
-// what a plan says is for the tests of same bits and of physics.
+// The plan of a step for every method, in the text that the README and plan.h show. The tests of same bits and of
+// physics check that a step does what its plan says.
 #include "plan.h"
 
 #include <gtest/gtest.h>

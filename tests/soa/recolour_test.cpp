@@ -1,5 +1,5 @@
-// Colours and blocks of a scene that changes from step to step: RapidCheck says who comes, goes and touches whom. What must
-// hold of any colouring is counted over what the layout kept and what it made anew.
+// Colours and blocks of a scene that changes from step to step: RapidCheck decides what is added, removed and
+// touched. Checks the properties of every valid colouring, over what the layout has kept and what it has made anew.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace motley {
 namespace {
 
-/// No two constraints of one colour share a body that can move; returns how many constraints there are.
+/// Checks that no two constraints of one colour share a body that can move. Returns the number of constraints.
 std::size_t check_colours(const Layout& layout)
 {
     std::set<std::pair<int, std::uint64_t>> taken;  // colour, and kind and row of a body
@@ -34,7 +34,7 @@ std::size_t check_colours(const Layout& layout)
     return seen.size();
 }
 
-/// Lanes of blocks: each constraint in one.
+/// Checks that each constraint is in one lane of the blocks. Returns the number of constraints.
 std::size_t check_blocks(const Layout& layout)
 {
     std::set<std::pair<int, std::int32_t>> seen;
@@ -75,7 +75,7 @@ RC_GTEST_PROP(Recolouring, IsValidWhateverCameAndWentSinceTheLastStep,
                     scene.remove_body(a);
                     std::erase(bodies, a);
                     std::erase_if(joints, [&](ConstraintId joint) { return !scene.is_alive(joint); });
-                    // Nor is anybody in contact with what is gone.
+                    // Contacts of the removed body are removed too.
                     std::erase_if(contacts, [&](const Contact& contact) {
                         return contact.body_a == a || contact.body_b == a;
                     });
@@ -91,7 +91,7 @@ RC_GTEST_PROP(Recolouring, IsValidWhateverCameAndWentSinceTheLastStep,
                     joints.erase(joints.begin() + static_cast<std::ptrdiff_t>(what / 8 % joints.size()));
                     break;
                 default:
-                    // The key is of the pair, so that it comes again in later steps.
+                    // The key depends on the pair alone, so that it recurs in later steps.
                     if (a == b || !moves || !keys.insert(std::uint64_t{a.slot} << 32 | b.slot).second) break;
                     Contact contact;
                     contact.body_a = a;

@@ -1,8 +1,8 @@
-// A toy type of joint, as a stranger would add one: two centres stay at one height, y_a = y_b.
+// A toy type of joint, added as from outside the library: two centres stay at one height, y_a = y_b.
 //
 //   C = y_b - y_a,   J = [-e_y, 0, e_y, 0]
 //
-// One file, and one name in the list of types: tests/CMakeLists.txt puts it there, in a copy of the list.
+// It takes one file, and one name in the list of types: tests/toy/CMakeLists.txt puts that into a copy of the list.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct LevelRodDefinition {
     float offset = 0;  ///< m: how far b is above a, finite
 };
 
-/// Its formulas in double, for Method::direct and for whoever compares: level_rod_model.cpp.
+/// Its formulas in double, for Method::direct and for comparisons: level_rod_model.cpp.
 namespace reference {
 class JointModel;
 }

@@ -1,5 +1,5 @@
-// A type of joint that the library does not know, added by one file and one name in the list: everything that follows
-// from the list follows for it too.
+// A type of joint that the library does not know, added by one file and one name in the list. Everything that is
+// generated from the list must work for it too.
 #include <gtest/gtest.h>
 
 #include "level_rod.h"
@@ -17,7 +17,8 @@ BodyId add_body(Scene& scene, BodyModel model, double x, double y)
 
 TEST(AToyJoint, HoldsAnyPairOfBodiesAndReports)
 {
-    // A balance in free fall but for a push on one side: both rise with a = F / (m_a + m_b), and each end feels half.
+    // A balance in free fall with a force on one side: both bodies accelerate by a = F / (m_a + m_b), and each gets
+    // half the force.
     for (const BodyModel model_a : {BodyModel::particle, BodyModel::planar, BodyModel::rigid}) {
         for (const BodyModel model_b : {BodyModel::particle, BodyModel::planar, BodyModel::rigid}) {
             Scene scene;
@@ -46,7 +47,7 @@ TEST(AToyJoint, HoldsAnyPairOfBodiesAndReports)
 
 TEST(AToyJoint, HoldsTheWholeListWithIt)
 {
-    // One more than the library's own: the list is a copy, and the other types are still there.
+    // The list is a copy with one more type than the library's; the other types must still be there.
     Scene scene;
     const BodyId a = add_body(scene, BodyModel::rigid, 0, 0), b = add_body(scene, BodyModel::rigid, 1, 0);
     scene.add_joint(LevelRodDefinition{a, b});

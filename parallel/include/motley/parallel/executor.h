@@ -9,12 +9,13 @@ namespace motley {
 class Executor {
   public:
     virtual ~Executor() = default;
-    /// Threads that may run a job at once, the caller counted; 1 to 1024, constant.
+    /// Threads that may run a job at once, including the caller; 1 to 1024, constant.
     [[nodiscard]] virtual int concurrency() const = 0;
-    /// Calls job(0) on the calling thread, and may call job(1) ... job(workers - 1) each once on other
-    /// threads at any time meanwhile, or not at all: the step finishes with whoever comes. Returns when every
-    /// call that began has returned and no further one will begin. `job` never throws when a step calls. When run throws
-    /// before it has called job(0), the step is refused; afterwards the step is done, and its report tells what was thrown.
+    /// Calls job(0) on the calling thread, and may call job(1) ... job(workers - 1) each once on other threads at any
+    /// time meanwhile, or not at all: the step finishes with any number of them. Returns when every call that began
+    /// has returned and no further one will begin. A `job` of a step never throws. When run throws before it has
+    /// called job(0), the step is refused; when it throws afterwards, the step is done, and its report tells what was
+    /// thrown.
     virtual void run(int workers, const std::function<void(int worker)>& job) = 0;
 };
 

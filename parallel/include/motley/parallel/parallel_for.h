@@ -10,16 +10,16 @@
 
 namespace motley {
 
-/// Calls body(begin, end) for consecutive chunks of at most `grain` elements that cover [0, count), on
-/// whichever thread comes; returns when all are done. The chunks do not depend on the number of threads. The caller
-/// starts at the front and the others at the back, so that of two loops in a row over the same data each thread finds
-/// about the same part in its cache. When a call throws, chunks that nobody has begun are left out, and what was thrown
-/// first is thrown here once all threads are back.
+/// Calls body(begin, end) for consecutive chunks of at most `grain` elements that cover [0, count), on the executor's
+/// threads; returns when all are done. The chunks do not depend on the number of threads. The caller starts at the
+/// front and the others at the back, so that of two loops in a row over the same data each thread finds about the
+/// same part in its cache. When a call throws, chunks that have not begun are left out, and what was thrown first is
+/// thrown here once all threads are done.
 template <class Body>
 void parallel_for(Executor& executor, std::int64_t count, std::int64_t grain, const Body& body)
 {
     const auto chunks = static_cast<std::uint32_t>((count + grain - 1) / grain);
-    // The chunks that nobody has claimed: the first in the low half, one past the last in the high half.
+    // The chunks that no thread has claimed: the first in the low half, one past the last in the high half.
     std::atomic<std::uint64_t> left{std::uint64_t{chunks} << 32};
     std::atomic<bool> failed{false};
     std::exception_ptr failure;
@@ -36,7 +36,7 @@ void parallel_for(Executor& executor, std::int64_t count, std::int64_t grain, co
             seen = left.load();
         }
     };
-    // Nothing leaves a call: another's threads need not know what to do with it.
+    // No exception leaves a call: the executor's threads need not be able to handle it.
     const auto work = [&](int worker) noexcept {
         try {
             work_until_done(worker);
@@ -49,7 +49,7 @@ void parallel_for(Executor& executor, std::int64_t count, std::int64_t grain, co
     } else {
         // A reference: std::function need not allocate for it.
         executor.run(executor.concurrency(), std::ref(work));
-        work(0);  // what an executor that called nobody has left
+        work(0);  // runs what is left if the executor made no call
     }
     if (failure) std::rethrow_exception(failure);
 }

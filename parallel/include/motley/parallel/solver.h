@@ -1,4 +1,4 @@
-// The solver: takes a scene from one step to the next.
+// The solver: advances a scene by one step.
 #pragma once
 
 #include <cstddef>
@@ -18,31 +18,32 @@ namespace motley {
 /// What a solver runs on. None of it changes a bit of the result.
 struct SolverOptions {
     int threads = 1;  ///< >= 1; 1 starts no thread at all; ignored when `executor` is set
-    /// Steps of fewer contacts (a joint counts as four, two bodies as one) run on the caller alone: they are done before
-    /// another thread has come.
+    /// Steps of fewer contacts (a joint counts as four, two bodies as one) run on the calling thread alone: they are
+    /// done before another thread could begin.
     std::size_t alone_below = 8192;
     /// Default: what the environment variable MOTLEY_ISA names, else the widest this machine has.
     std::optional<Isa> isa{};
     Executor* executor = nullptr;  ///< the host's own threads; not owned, must outlive the solver
 };
 
-/// Steps scenes. Holds buffers and threads but no state that decides a result: two solvers step copies of a
-/// scene to the same bits. One solver steps one scene at a time: a step of a solver or a scene that is in one is refused.
-/// A solver that has been moved from steps nothing: step() is refused, everything else throws InvalidInput.
+/// Steps scenes. Holds buffers and threads but no state that decides a result: two solvers step copies of a scene to
+/// the same bits. One solver steps one scene at a time: step() is refused while the solver or the scene is in another
+/// step. A solver that has been moved from steps nothing: step() is refused, everything else throws InvalidInput.
 class Solver {
   public:
-    /// Throws InvalidInput for settings or options out of range, for an executor whose concurrency is, and for an instruction
-    /// set not available here, be it asked for by `options` or, where they leave it open, by MOTLEY_ISA: whoever forces one
-    /// would measure another unawares.
+    /// Throws InvalidInput for settings or options out of range, for an executor whose concurrency is out of range,
+    /// and for an instruction set that is not available here, whether `options` asks for it or, where they leave it
+    /// open, MOTLEY_ISA does: with a silent fallback, a host that forces one would measure another without noticing.
     explicit Solver(const SolverSettings& settings = {}, const SolverOptions& options = {});
     ~Solver();
     Solver(Solver&&) noexcept;
     Solver& operator=(Solver&&) noexcept;
 
-    /// Moves the scene on by `dt` seconds (0 to 1; 0 changes nothing), with the contacts of this step. The
-    /// list is read during the call only; best in about the order of the step before, and large ones with neighbours in
-    /// space near each other. Never throws: bad input, a lack of memory and an executor that fails give
-    /// StepStatus::refused, a message, and an untouched scene. Allocates nothing once the scene has stopped growing.
+    /// Advances the scene by `dt` seconds (0 to 1; 0 changes nothing), with the contacts of this step. The list is
+    /// read during the call only. A step is fastest if the list is in about the order of the step before and, if
+    /// long, has neighbours in space near each other. Never throws: bad input, a lack of memory and an executor that
+    /// fails give StepStatus::refused, a message, and an untouched scene. Allocates nothing once the scene has
+    /// stopped growing.
     StepReport step(Scene& scene, float dt, std::span<const Contact> contacts = {}) noexcept;
 
     [[nodiscard]] const SolverSettings& settings() const;
