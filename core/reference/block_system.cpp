@@ -40,7 +40,7 @@ void BlockSystem::lay_out(int nodes, int first_waiting, const std::vector<std::p
         order_.push_back(pivot);
         const std::vector<int> left = std::move(neighbours[static_cast<std::size_t>(pivot)]);
         for (const int node : left) beside_[static_cast<std::size_t>(pivot)].push_back({node, blocks++});
-        // What is left of its neighbours now hangs together.
+        // Elimination connects its remaining neighbours with each other.
         for (const int node : left) {
             std::vector<int>& mine = neighbours[static_cast<std::size_t>(node)];
             candidates.erase(candidate(node));

@@ -7,18 +7,19 @@
 
 namespace motley::reference {
 
-/// LU of a matrix whose blocks lie symmetrically, its nodes eliminated in the order of least degree (Tinney and Walker
-/// 1967). Pivots are chosen inside of a diagonal block, not among blocks.
+/// LU factorisation of a matrix with a symmetric pattern of blocks. Nodes are eliminated in the order of minimum degree
+/// (Tinney and Walker 1967). Pivots are chosen within a diagonal block, not among blocks.
 class BlockSystem {
   public:
     using Block = Eigen::Matrix<double, 6, 6>;
 
-    /// Lays out the blocks: the diagonal, those of the pairs and what elimination fills in. Pairs may repeat. The nodes from
-    /// `first_waiting` on have a diagonal that may be singular until one of their neighbours is eliminated, and wait for that.
+    /// Lays out the blocks: the diagonal, those of the pairs, and those that elimination fills in. Pairs may repeat.
+    /// The diagonal blocks of nodes from `first_waiting` on may be singular until a neighbour is eliminated, so these
+    /// nodes are not eliminated before that.
     void lay_out(int nodes, int first_waiting, const std::vector<std::pair<int, int>>& pairs);
     /// Makes the matrix the identity.
     void reset();
-    /// The block of row `a` and column `b`; one of the layout, before factor().
+    /// The block of row `a` and column `b`, which must be in the layout. To be written before factor().
     Block& at(int a, int b);
     /// False where a diagonal block has become singular.
     bool factor();
@@ -26,7 +27,8 @@ class BlockSystem {
     void solve(Eigen::VectorXd& x) const;
 
   private:
-    /// Two blocks beside the diagonal: in `lower_` the one of the column of the node eliminated first, in `upper_` that of its row.
+    /// The two blocks of a pair: in `lower_` the one in the column of the node that is eliminated first, in `upper_`
+    /// the one in its row.
     struct Beside {
         int node;  ///< the one eliminated later
         int block;

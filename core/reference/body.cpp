@@ -1,4 +1,4 @@
-// Bodies of the reference, moved.
+// Bodies of the reference and their motion.
 #include "motley/reference/body.h"
 
 namespace motley::reference {
@@ -76,7 +76,7 @@ void Body::accelerate(const Eigen::Vector3d& gravity, double h)
 void Body::move_on(double seconds)
 {
     if (motion == BodyMotion::static_body) return;
-    // What turns by more than a radian keeps its speed, and with it its energy.
+    // A body that turns by a radian or more keeps its angular velocity, and with it its energy.
     if (motion == BodyMotion::kinematic_body || model != BodyModel::rigid ||
         seconds * velocity.tail<3>().norm() >= 1) {
         advance(velocity, seconds);

@@ -1,16 +1,19 @@
 // A semismooth Newton method on the natural map (Alart and Curnier 1991), each step of it a proximal point step.
 //
-// Within a group the linearised map says E delta_lambda + F J delta_y = -map. With y = J^T lambda that makes a system of
-// six rows a body. Contacts, of which there are many between two bodies and more than these can move along, are
-// eliminated from it: delta_lambda = s - D J delta_y leaves (I + J^T D J) delta_y = J^T s. Joints stay in it with rows of
-// their own, for D is large where a row is to be met, and next to a large D the mass of a light body in a chain is lost.
+// Within a group the linearised map is E delta_lambda + F J delta_y = -map. With y = J^T lambda this makes a system of
+// six rows for each body. Contacts, which may have more rows between two bodies than these have degrees of freedom, are
+// eliminated from it: delta_lambda = s - D J delta_y, with D = E^-1 F and s = -E^-1 map, leaves
+// (I + J^T D J) delta_y = J^T s. Joints stay in it with rows of their own, because D is large where a row holds as an
+// equation, and added to a large D the mass of a light body in a chain would be lost in rounding. With the rows J_c of
+// contacts and J_j of joints the system is
 //
 //   [ I + J_c^T D J_c   -J_j^T ] [ delta_y        ]   [ J_c^T s ]
 //   [ F J_j              E     ] [ delta_lambda_j ] = [ -map_j  ]
 //
-// Where a row is to be met E is epsilon: that is regular also where rows are redundant, and because each step starts from
-// the impulses of the one before, epsilon slows it by epsilon / (sigma + epsilon) and leaves no error (the proximal
-// point method, Rockafellar 1976).
+// Where a row holds as an equation, E is epsilon. This makes the system regular also where rows are redundant. Because
+// each step starts from the impulses of the one before, epsilon leaves no error: a step only leaves
+// epsilon / (sigma + epsilon) of it in a direction whose response is sigma (the proximal point method, Rockafellar
+// 1976).
 #include "complementarity.h"
 
 #include <algorithm>
@@ -28,15 +31,16 @@ using Eigen::VectorXd;
 using Column = RowGroup::Rows<1>;
 using Square = RowGroup::Square;
 
-/// Share of a row's own K that is added to it. Smaller converges faster and rounds worse: equations alone are well
-/// posed, between contacts it is better to pull less hard at rows that all but contradict each other.
+/// epsilon: the share of a row's own K that is added to it. A smaller one converges faster but rounds worse. Equations
+/// alone are well posed; among contacts, rows may nearly contradict each other, and a larger epsilon keeps their
+/// impulses smaller.
 constexpr double epsilon_of_equations = 1e-8, epsilon_of_contacts = 1e-7;
-/// Where the natural map cannot fall much further for the rounding of doubles.
+/// A violation below which the rounding of doubles hardly lets the natural map decrease any more.
 constexpr double enough = 1e-13;
-/// Where it is not worth the while any more.
+/// A violation below which further attempts are not worth their time.
 constexpr double rounding = 0.01 * solved_to;
 
-/// The groups of one part, with its bodies counted anew.
+/// The groups of one part, with its bodies numbered from 0.
 class Part {
   public:
     Part(std::vector<RowGroup*> groups, const std::vector<int>& place, int bodies)
@@ -82,12 +86,12 @@ class Part {
 
   private:
     static constexpr double unbounded = std::numeric_limits<double>::infinity();
-    /// What a row of the natural map is at.
+    /// Which piece of the natural map a row is on: between its bounds, at one of them, or on the edge of its cone.
     enum class Where : std::uint8_t { inside, low, high, slides };
     struct Unit {
         RowGroup* group;
         std::array<int, RowGroup::most_bodies> bodies{-1, -1, -1};
-        int node = -1;                      ///< of the rows of a joint
+        int node = -1;                      ///< of a joint that stays in the system
         Column offset{}, share{}, scale{};  ///< scale: 1 / K_ii; 0 of a row that cannot move
         Column w{}, map{}, step{}, start{}, best{};
         Square e{}, f{}, law{};  ///< law: D
@@ -99,7 +103,7 @@ class Part {
     };
     std::vector<Unit> units_;
     int bodies_, nodes_;     ///< nodes: bodies, then joints
-    bool is_linear_ = true;  ///< equations alone
+    bool is_linear_ = true;  ///< only equations
     double epsilon_ = 0, least_ = unbounded;
     BlockSystem system_;
     VectorXd move_;
@@ -119,7 +123,7 @@ class Part {
             for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
                 if (unit.bodies[side] >= 0) unit.scale += group.jacobian[side].rowwise().squaredNorm();
             }
-            // Of the K that epsilon is a share of: not what a common spin adds, which has next to no inertia.
+            // epsilon is a share of K without the part of a common spin, which is huge because its inertia is tiny.
             unit.share = unit.scale;
             if (unit.bodies[2] >= 0) unit.share -= group.jacobian[2].rowwise().squaredNorm();
             unit.share = (unit.scale.array() > 0).select(unit.share.cwiseQuotient(unit.scale), 1);
@@ -173,7 +177,8 @@ class Part {
         return cone.bound * lambda.segment(cone.first_normal, cone.normal_count).cwiseMax(0).sum();
     }
 
-    /// The natural map lambda - P(lambda - scale w), zero at the solution, of the impulses as they are.
+    /// Computes the natural map lambda - P(lambda - scale w) of the present impulses, with P the projection to bounds
+    /// and cones. It is zero at the solution.
     Look look()
     {
         Look all{0, 0};
@@ -303,7 +308,7 @@ class Part {
             }
         }
     }
-    /// Newton's step of every group, by the factors there are.
+    /// Newton's step of every group, from the present factors.
     bool find_step()
     {
         move_.setZero(6 * static_cast<Index>(nodes_));
@@ -326,7 +331,8 @@ class Part {
         }
         return true;
     }
-    /// Takes as much of the step as makes the map smaller, and returns how much that is. 0 leaves the impulses where they were.
+    /// Takes the largest share of the step, of 1, 1/2, 1/4, ..., that decreases the map, and returns it. Returns 0,
+    /// with the impulses as they were, if none does.
     double descend(Look& now)
     {
         for (Unit& unit : units_) unit.start = unit.group->lambda;
@@ -344,8 +350,8 @@ class Part {
         now = look();
         return 0;
     }
-    /// What no impulse can change of rows that are to be met, as the step that was not taken tells it: they are then met in
-    /// the least squares.
+    /// Takes from the equations the part that no impulse can meet, which is found from the step that was not taken: the
+    /// rest is their solution in the least squares sense.
     void give_up_contradictions()
     {
         for (Unit& unit : units_) {
@@ -355,7 +361,7 @@ class Part {
             }
         }
     }
-    /// Whether the step, taken in full, would leave more than half of the map: rows contradict each other.
+    /// Whether even the full step would leave more than half of the map: then rows contradict each other.
     [[nodiscard]] bool contradicts(const Look& now) const
     {
         double left = 0;
@@ -372,8 +378,8 @@ class Part {
     {
         keep_best(look());
         newton(is_linear_ ? 40 : 15);
-        // Stuck at a kink of the map that is no solution: full steps lead away from it, rows that are all but redundant
-        // pull until one of their bounds gives, and sweeps come to another face of the cones.
+        // The descent may be stuck at a kink of the map that is no solution. Full steps lead away from it: the impulses
+        // of nearly redundant rows grow until one reaches its bound. Sweeps lead to another face of the cones.
         for (int attempt = 0; attempt < 4 && !is_linear_ && least_ > rounding; ++attempt) {
             go_back_to_best();
             walk(15, attempt % 2 == 0 ? 1e-6 : 1e-3);
@@ -384,8 +390,8 @@ class Part {
             newton(25);
         }
     }
-    /// Newton steps as long as they make the map smaller, at most `rounds`. Where one does not, a larger epsilon turns it
-    /// towards the single rows (Levenberg and Marquardt).
+    /// At most `rounds` Newton steps, as long as they decrease the map. Where one does not, a larger epsilon turns it
+    /// towards solving each row by itself (Levenberg and Marquardt).
     void newton(int rounds)
     {
         Look now = look();
@@ -412,7 +418,7 @@ class Part {
                                       : std::max(least_epsilon, epsilon_ * 1e-2);
         }
     }
-    /// Full steps of the proximal point method, whatever the map does meanwhile.
+    /// Full steps of the proximal point method, also where they increase the map.
     void walk(int rounds, double epsilon)
     {
         epsilon_ = epsilon;
@@ -482,7 +488,7 @@ class Part {
     }
 };
 
-/// Which part each body belongs to: the least body of those that groups tie together.
+/// The part of each body, named by the least index of the bodies that groups connect it with.
 std::vector<int> parts_of(const Problem& problem)
 {
     std::vector<int> leader(static_cast<std::size_t>(problem.bodies));
@@ -523,7 +529,7 @@ Solution solve(Problem& problem)
     for (RowGroup& group : problem.groups) {
         const int body = *std::max_element(group.bodies.begin(), group.bodies.end());
         if (body < 0) {
-            group.lambda.setZero();  // between bodies that nothing moves
+            group.lambda.setZero();  // between bodies that cannot move
         } else {
             groups[static_cast<std::size_t>(part_of[static_cast<std::size_t>(body)])].push_back(&group);
         }

@@ -1,4 +1,4 @@
-// The rows of the textbook.
+// Constraint functions and their Jacobians, as in textbooks.
 #include "motley/reference/constraints.h"
 
 namespace motley::reference {
@@ -114,8 +114,9 @@ Eigen::Vector3d euler_angles(const Eigen::Matrix3d& r)
             std::atan2(-r(0, 1), r(0, 0))};
 }
 
-/// The angular velocity of b in a is E (x', y', z')^T, E the axes of the three hinges that such a rotation is. These are the
-/// rows of E^-1, over what the velocities are in the world.
+/// The angular velocity of b relative to a is E (x', y', z')^T, where the columns of E are the axes of a chain of three
+/// hinges that makes this rotation and x', y', z' the rates of its angles. This is the row of E^-1 of an angle, over
+/// angular velocities in the world frame.
 Eigen::RowVector3d euler_row(const Eigen::Matrix3d& rotation_a, const Eigen::Matrix3d& rotation_b,
                              EulerAngle angle)
 {
@@ -207,7 +208,7 @@ Eigen::MatrixXd effective_mass(const Jacobian& jacobian, const Body& a, const Bo
 {
     const Eigen::Matrix<double, 12, 12> inverse_mass = pair_inverse_mass(a, b);
     const Eigen::MatrixXd k = jacobian * inverse_mass * jacobian.transpose();
-    // Rows across everything that the pair can do: nothing but rounding, and nothing to invert.
+    // Rows along which the pair cannot move: K is only rounding, and must not be inverted.
     if (k.diagonal().maxCoeff() < 1e-12 * inverse_mass.diagonal().maxCoeff())
         return Eigen::MatrixXd::Zero(k.rows(), k.cols());
     return k.completeOrthogonalDecomposition().pseudoInverse();

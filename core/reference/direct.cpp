@@ -2,8 +2,9 @@
 //
 //   w = (J M^-1 J^T + Gamma) lambda + J v + bias
 //
-// Gamma is what softness comes to: delta = -ms K^-1 (J v + bias) - is lambda rests where
-// J v + bias + (is / ms) K lambda = 0.
+// K = J M^-1 J^T. Gamma stands for softness: a sweep with mass_scale m_s and impulse_scale i_s changes lambda by
+// -m_s K^-1 (J v + bias) - i_s lambda, which converges where J v + bias + (i_s / m_s) K lambda = 0. So Gamma is
+// (i_s / m_s) K.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -78,7 +79,7 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
     struct Placed {
         std::size_t group;
         Index first;
-        Eigen::MatrixXd to_rows;  ///< what turns the impulse of the problem into that of the block's rows
+        Eigen::MatrixXd to_rows;  ///< maps the impulse in the problem to that of the block's rows
     };
     std::vector<Placed> placed;
     placed.reserve(blocks.size());
@@ -87,7 +88,8 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
         const Block& block = row.block;
         const Index count = block.jacobian.rows();
         const int a = row.joint->a, b = row.joint->b;
-        // Rows of a joint are a group of their own each, unless contacts of the joint bound others of it.
+        // Each block is a group of its own, unless contacts of the joint bound other blocks: then the joint is one
+        // group.
         const bool by_contacts = block.most_per_contact >= 0;
         Placed at{0, 0, {}};
         if (row.joint_contacts > 0 && row.index > 0) {
@@ -121,7 +123,7 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
             low = high = 0;
         }
         assembly.fill(at.group, at.first, jacobian, speed(a, b, jacobian) + bias, low, high, guess);
-        // Softness is a share of K with the rotor, the problem's K is without.
+        // The softness is a share of K with the rotor, but the K of the problem is without it.
         const double without = block.armature > 0 ? 1 + block.armature / mass_of(*row.joint, block)(0, 0) : 1;
         assembly.soften(at.group, at.first, count, row.soft.impulse_scale / row.soft.mass_scale / without);
         RowGroup& group = assembly.group(at.group);
@@ -136,7 +138,7 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
         }
         placed.push_back(std::move(at));
     }
-    // A rotor is a row that wants the speed that it had, as soft as its inertia is small.
+    // A rotor is a soft row towards the speed that it had; its softness is 1 over its inertia.
     std::vector<std::pair<std::size_t, const BlockRow*>> rotors;
     for (const BlockRow& row : blocks) {
         if (row.index > 0 || row.block.armature == 0) continue;
@@ -194,7 +196,7 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
     return {solution.violation, solution.unsolved};
 }
 
-/// The norm of C over all locks and broken limits.
+/// The norm of C over all locks and exceeded limits.
 double World::position_error() const
 {
     double squares = 0;
@@ -208,7 +210,7 @@ double World::position_error() const
     return std::sqrt(squares);
 }
 
-/// One Newton step on all positions at once: locks, limits that are broken, contacts deeper than the slop.
+/// One Newton step on all positions at once: locks, exceeded limits, contacts deeper than the slop.
 void World::project_directly(const std::vector<ContactRow>& contacts, const SolverSettings& settings)
 {
     Assembly assembly(bodies);

@@ -1,4 +1,4 @@
-// Rows between bodies as a complementarity problem, as they come.
+// Builds a complementarity problem from rows between bodies.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace motley::reference {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-/// S of a body, with S S^T = M^-1: over y = S^-1 v every body's mass is 1.
+/// The scaling S of a body, with S S^T = M^-1: for scaled velocities y = S^-1 v every body's mass is 1.
 struct Scale {
     Eigen::Vector3d linear = Eigen::Vector3d::Zero();
     Eigen::Matrix3d angular = Eigen::Matrix3d::Zero();
@@ -22,7 +22,7 @@ struct Scale {
     {
         const Matrix6 inverse_mass = body.inverse_mass();
         linear = inverse_mass.diagonal().head<3>().cwiseSqrt();
-        // Cholesky, with nothing where the body does not turn.
+        // The Cholesky factor of I^-1, with zeros where the body does not turn.
         for (Eigen::Index i = 0; i < 3; ++i) {
             for (Eigen::Index k = 0; k <= i; ++k) {
                 const double rest =
@@ -45,7 +45,7 @@ class Assembly {
         problem_.bodies = static_cast<int>(bodies.size());
     }
 
-    /// Opens a group for `rows` rows between two bodies, which are at zero until they are filled. Returns where it is.
+    /// Adds a group of `rows` rows between two bodies, which are zero until they are filled. Returns its index.
     std::size_t open(int a, int b, Eigen::Index rows)
     {
         RowGroup& group = problem_.groups.emplace_back();
@@ -58,7 +58,8 @@ class Assembly {
             column->setZero(rows);
         return problem_.groups.size() - 1;
     }
-    /// Fills rows of a group, each within [low, high]; w is `offset` without any impulse.
+    /// Fills rows of a group from `first` on: their impulses are within [low, high], and w is `offset` without any
+    /// impulse.
     void fill(std::size_t at, Eigen::Index first, const Jacobian& rows, const Eigen::VectorXd& offset,
               double low, double high, const Eigen::VectorXd& guess)
     {
@@ -91,7 +92,7 @@ class Assembly {
     }
     [[nodiscard]] RowGroup& group(std::size_t at) { return problem_.groups[at]; }
 
-    /// A body of nothing but spin about the world's axes, with this inertia. Returns its index among the problem's.
+    /// Adds an artificial body that can only turn, with this moment of inertia about every axis. Returns its index.
     int add_spin(double inertia)
     {
         scales_.emplace_back();
@@ -101,7 +102,7 @@ class Assembly {
     [[nodiscard]] const Scale& scale(std::size_t body) const { return scales_[body]; }
 
     Solution solve() { return reference::solve(problem_); }
-    /// What a solution does to the velocity of a body.
+    /// The change of a body's velocity by a solution.
     [[nodiscard]] Vector6 change(const Solution& solution, std::size_t body) const
     {
         const Vector6 y = solution.change.segment<6>(6 * static_cast<Eigen::Index>(body));

@@ -1,14 +1,16 @@
-// Light bodies that bear heavy loads.
+// Stability of light bodies that bear heavy loads.
 //
-// A substep that sees the forces of joints stay where they were when it began swings light taut links wider each time, once
-// h^2 K exceeds about 4 M, K = -d(J^T f)/dx: however exactly it holds the joints. So the velocity that the substep ends with
-// feels the forces where the bodies will then be, (M + h^2 K) v' = M v + ... (M. Tournier and others, Stable
-// Constrained Dynamics, 2015; S. Andrews and others, Geometric Stiffness for Real-time Constrained Multibody Dynamics, 2017.)
+// A substep h that applies the joint forces f of its beginning throughout swings light taut links of mass M wider each
+// time, once h^2 K exceeds about 4 M with the geometric stiffness K = -d(J^T f)/dx, however exactly it holds the
+// joints. So the velocity v' at the end of the substep is solved with the forces in the poses of its end,
+// (M + h^2 K) v' = M v + ... (M. Tournier and others, Stable Constrained Dynamics, 2015; S. Andrews and others,
+// Geometric Stiffness for Real-time Constrained Multibody Dynamics, 2017.)
 //
-// K is symmetric up to what the constraint's own forces will make good, and known by its eigenvectors over scaled velocities:
-// those with a positive eigenvalue above what an explicit substep follows anyway are soft rows with one impulse each.
-// Forces that turn as a whole need no work: the rows see velocities less those of a common spin, a body that has
-// next to no inertia, so that it takes no angular momentum and what turns as one is not slowed.
+// K is symmetric except for a part that the constraint's own forces make up for, and is used by its eigenvectors over
+// scaled velocities: each one whose eigenvalue is above what an explicit substep follows anyway becomes a soft row with
+// one impulse. When everything rotates as a whole, so do the forces, and there must be no resistance. So the rows see
+// velocities relative to a common spin, an artificial body with nearly no inertia: it takes nearly no angular momentum,
+// and rotation as a whole is not slowed down.
 #include <Eigen/Eigenvalues>
 
 #include "direct_rows.h"
@@ -20,10 +22,10 @@ namespace {
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 using Eigen::Index;
 
-/// h^2 K / M that each joint leaves to the explicit substep.
+/// The h^2 K / M of each joint that is left to the explicit substep.
 constexpr double bearable = 0.25;
-/// Inertia of a common spin as a share of the stiffness that sees it. Less would be lost to rounding; what it takes of the
-/// angular momentum of what floats is given back (hold_locks.cpp).
+/// Inertia of a common spin as a share of the stiffness of its rows. A smaller one would be lost in rounding. The
+/// angular momentum that it takes from islands that float is given back (hold_locks.cpp).
 constexpr double lightness = 1e-4;
 
 }  // namespace
@@ -81,7 +83,7 @@ std::vector<World::StiffRow> World::find_stiff_rows(const Islands& islands, doub
             if (!(stiff > bearable)) continue;
             const bool moves_a = here[0]->motion == BodyMotion::dynamic_body;
             const Vector12 row = stiffness * (scale * modes.eigenvectors().col(mode)) / stiff;
-            // Velocities of a common spin about the middle of a, or of b where a is fixed.
+            // Speed along the row for a common spin about the centre of a, or of b where a is fixed.
             const Eigen::Vector3d centre = here[moves_a ? 0 : 1]->position;
             Eigen::Vector3d turn = Eigen::Vector3d::Zero();
             for (Index end = 0; end < 2; ++end) {

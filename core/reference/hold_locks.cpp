@@ -1,8 +1,9 @@
-// Locks held where a substep ends.
+// Corrects the positions of locks at the end of a substep.
 //
-// Rows of the beginning take bodies along tangents, and what turns by an angle leaves its lock by half of that squared. So
-// positions are moved along J^T until C is what the rows promised, C + h J v', by Newton's method. Velocities that stay
-// while levers turn change the angular momentum: what floats is given it back as a common spin.
+// The rows of the beginning of a substep move bodies along tangents, so a rotation by an angle violates a lock by about
+// half of the square of the angle. So positions are moved along M^-1 J^T, by Newton's method, until C is what these
+// rows imply, C + h J v', with C of the beginning, the substep h and the new velocity v'. Velocities that stay the same
+// while levers rotate change the angular momentum; islands that float get it back as a common spin.
 #include <cmath>
 #include <numeric>
 
@@ -12,10 +13,11 @@
 namespace motley::reference {
 namespace {
 
-/// Squared errors, m2 or rad2, of an island: below which Newton's method ends, and above which it has not found its way.
+/// Sums of squared errors of an island, m2 or rad2: Newton's method ends below `nearest`, and has failed above
+/// `held_to`.
 constexpr double nearest = 1e-26, held_to = 1e-12;
 
-/// The angular momentum of an island about the origin, and the inertia that a common spin finds.
+/// The angular momentum of an island about the origin, and its inertia against a common spin.
 struct Spin {
     double mass = 0;
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< sum of m x
@@ -37,7 +39,7 @@ struct Spin {
         angular_momentum += turned * body.velocity.tail<3>();
         inertia += turned;
     }
-    /// The common spin about the middle that has this angular momentum.
+    /// The common spin about the centre of mass that has this angular momentum.
     [[nodiscard]] Eigen::Vector3d spin_of(const Eigen::Vector3d& wanted) const
     {
         const Eigen::Vector3d middle = moment / mass;
@@ -98,7 +100,7 @@ std::vector<World::Hold> World::find_holds(double h) const
         const std::vector<Block> blocks = blocks_of(joint);
         for (std::size_t k = 0; k < blocks.size(); ++k) {
             const Block& block = blocks[k];
-            // Springs and motors are forces, not positions; a limit is held while it bears.
+            // Springs and motors are forces, not positions; a limit is held while it has an impulse.
             const bool bears = block.kind == Block::Kind::limit && joint.impulses[k](0) != 0;
             if (block.is_spring() || !(block.kind == Block::Kind::equality || bears)) continue;
             holds.push_back(
@@ -140,7 +142,7 @@ std::vector<bool> World::hold_locks(const std::vector<Hold>& holds, const Island
         const int island = islands.of_body[static_cast<std::size_t>(joint.a)];
         return island >= 0 ? island : islands.of_body[static_cast<std::size_t>(joint.b)];
     };
-    // Every island goes on while that brings it nearer, and goes back to where it was nearest.
+    // Each island goes on while its error decreases, and returns to the poses with its least error.
     std::vector<Body> best = bodies;
     std::vector<double> least(bodies.size(), unbounded);
     std::vector<bool> goes_on(bodies.size(), true);
@@ -184,7 +186,7 @@ std::vector<bool> World::hold_locks(const std::vector<Hold>& holds, const Island
             assembly.fill(assembly.open(joint.a, joint.b, rows), 0, left.block.jacobian,
                           left.block.side * left.error, -unbounded, unbounded, Eigen::VectorXd::Zero(rows));
         }
-        // Taut light links that are nearly straight are no way to give in: what bears loads stays as stiff as it is.
+        // Nearly straight taut light links must not buckle to meet the targets: joints under load keep their stiffness.
         if (stiff) stiffen(assembly, find_stiff_rows(islands, h), false);
         const Solution solution = assembly.solve();
         for (std::size_t i = 0; i < bodies.size(); ++i) {

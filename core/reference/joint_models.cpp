@@ -1,4 +1,4 @@
-// What each joint wants of its bodies, written from the formulas of its header and nothing else of it.
+// The constraints of each joint, written from the formulas in the header of its type; they share no code with it.
 #include "motley/reference/joint_models.h"
 
 namespace motley::reference {
@@ -22,7 +22,7 @@ Eigen::VectorXd scalar(double value)
     return Eigen::VectorXd::Constant(1, value);
 }
 
-/// lower <= C <= upper: the nearer end as an inequality, or both as an equation where there is no room between them.
+/// lower <= C <= upper: the nearer end as an inequality, or an equation where both are equal.
 Block limit_block(const Jacobian& jacobian, double value, double lower, double upper)
 {
     const double above = value - lower, below = upper - value;
@@ -188,7 +188,7 @@ class SwingLimitModel : public JointModel {
     double max_angle_;
 };
 
-/// A pull or turn of its own softness, or of none, towards a velocity.
+/// With a frequency a soft equation C = 0, without one a motor; both towards the velocity `speed`.
 Block servo_block(const Jacobian& jacobian, const Eigen::VectorXd& error, const Eigen::VectorXd& speed,
                   double hertz, double damping_ratio, double most)
 {
@@ -231,7 +231,7 @@ class AngularServoModel : public JointModel {
             frame_error(a, b, frame_a_, frame_b_, LinearLock::none, AngularLock::all);
         const Jacobian jacobian =
             frame_jacobian(a, b, frame_a_, frame_b_, LinearLock::none, AngularLock::all);
-        // dC/dt where the angular velocity of b against a is the wanted one.
+        // dC/dt where the angular velocity of b relative to a is the target.
         const Eigen::Vector3d speed = jacobian.rightCols<3>() * eigen(servo_.target_velocity);
         Block block =
             servo_block(jacobian, error, speed, servo_.hertz, servo_.damping_ratio, servo_.max_torque);
@@ -244,7 +244,7 @@ class AngularServoModel : public JointModel {
     Frame frame_a_, frame_b_;
 };
 
-/// The angle by which a body has turned about an axis that it carries.
+/// The angle by which a body has turned about an axis that is fixed in it.
 double turn_about(const Body& start, const Body& now, const Eigen::Vector3d& local_axis)
 {
     const Eigen::Quaterniond turn = now.orientation * start.orientation.conjugate();
@@ -291,7 +291,7 @@ class TransmissionModel : public JointModel {
     bool slides_;
 };
 
-/// What b has slid along the axis of a, less what it has screwed.
+/// C is how far b has moved along the axis of a, minus what its rotation about that axis accounts for.
 class ScrewModel : public JointModel {
   public:
     explicit ScrewModel(const ScrewDefinition& screw)
@@ -355,7 +355,8 @@ class PulleyModel : public JointModel {
                         rope_b = b.position + arm_b - eigen(pulley_.point_b);
         if (in_plane) rope_a.z() = rope_b.z() = 0;
         const double ratio = pulley_.ratio;
-        // A wheel that is not there would turn the row of a joint around: only b's half of [-u, .., u, ..] is used.
+        // Each end of the rope is a row between its wheel, which is no body, and an anchor: only b's half of
+        // [-u, .., u, ..] is used.
         const auto row = [](const Eigen::Vector3d& rope, const Eigen::Vector3d& arm) {
             return Eigen::Matrix<double, 1, 6>(
                 direction_jacobian(rope.normalized(), Eigen::Vector3d::Zero(), arm).rightCols<6>());
@@ -437,8 +438,8 @@ class ManifoldModel : public JointModel {
   private:
     ManifoldDefinition contact_;
 
-    /// The tangent that the lanes take, by the same rule: bounds are circles, and any would do, but a host that turns
-    /// to Method::direct and back finds its impulses along the same directions.
+    /// The same tangent as in the lanes. Any would do, because bounds are circles, but so a host that changes to
+    /// Method::direct and back keeps its impulses along the same directions.
     static Eigen::Vector3d tangent_of(const Eigen::Vector3d& n)
     {
         const Eigen::Vector3d v =

@@ -1,4 +1,4 @@
-// A scene as a world of the reference, and back.
+// Converts a scene to a world of the reference, and back.
 #include "motley/reference/scene_step.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ Body body_of(const Scene& scene, BodyId id)
     const BodyRow where = store.row_of(id);
     BodyDefinition definition;
     definition.model = store.model(id);
-    // What a step has frozen cannot be moved until the host revives it.
+    // A contained body cannot be moved until the host revives it.
     definition.motion = store.contained[id.slot] != 0 ? BodyMotion::static_body : store.motion(id);
     definition.position = state.position;
     definition.orientation = state.orientation;
@@ -45,7 +45,7 @@ Body body_of(const Scene& scene, BodyId id)
     return body;
 }
 
-/// Velocities as they come, poses only where they are finite.
+/// Writes velocities in any case, poses only where they are finite.
 void write_back(Scene& scene, BodyId id, const Body& body)
 {
     BodyStore& store = scene.bodies();
@@ -124,7 +124,7 @@ DirectResult step_directly(Scene& scene, float dt, const SolverSettings& setting
 
     const DirectResult result = world.step_directly(static_cast<double>(dt), settings, points);
 
-    // Everything that asks for memory comes before anything is written.
+    // Everything that allocates comes before anything is written.
     std::vector<std::vector<double>> memories;
     for (const Joint& joint : world.joints)
         memories.push_back(joint.model->memory(joint.impulses, joint.travelled));

@@ -1,4 +1,4 @@
-// The step of the reference, written for reading.
+// The step of the reference, written to be read rather than to be fast.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -14,9 +14,10 @@ Eigen::Vector3d eigen(const Vec3<float>& v)
     return {v.x, v.y, v.z};
 }
 
-/// A bounded impulse after a step that would lead to `free`. Where that is too long, a step of the same stride in every
-/// direction of the force, and then the cut: it rests only where the force points against what is left of the speed.
-/// `to_force` turns impulses into what is bounded, whose response is k; `most` is at least k's largest eigenvalue.
+/// A bounded impulse after a step that would lead to `free`. Where that is too long, the step has the same stride in
+/// every direction of the force and is then shortened: it converges only where the force points against the speed that
+/// remains (see bounded_impulse.h). `to_force` maps impulses to what is bounded, whose response is k; `most` is at
+/// least k's largest eigenvalue.
 Eigen::VectorXd bounded(const Eigen::VectorXd& held, const Eigen::VectorXd& free,
                         const Eigen::MatrixXd& to_force, const Eigen::MatrixXd& k, double most, double bound)
 {
@@ -64,7 +65,8 @@ void World::apply(Joint& joint, const Jacobian& jacobian, const Eigen::VectorXd&
     joint.wrench += wrench_of(jacobian, impulse);
 }
 
-/// What contacts did in a substep that is done. Joints add up as they push, for their rows turn.
+/// Adds up the impulses of contacts after a substep. Those of joints are added when they are applied, because their
+/// rows change from substep to substep.
 void World::add_up(std::vector<ContactRow>& contacts)
 {
     for (ContactRow& row : contacts) {
@@ -145,7 +147,7 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
     }
 }
 
-/// How a block answers an error, in a sweep and in relaxation.
+/// Softness and bias of a block with this error, for sweeps and for relaxation.
 void World::aim(BlockRow& row, const Eigen::VectorXd& error, double h, const SolverSettings& settings) const
 {
     const Block& block = row.block;
@@ -175,7 +177,7 @@ void World::aim(BlockRow& row, const Eigen::VectorXd& error, double h, const Sol
     row.relax_bias = row.relax_soft.rate * error;
     if (block.is_one_sided()) {
         const double slop = contact && !soft_step ? static_cast<double>(settings.penetration_slop) : 0;
-        if (error(0) > 0) {  // room: it may be used up within the substep and no further
+        if (error(0) > 0) {  // room: it may close by that much within the substep
             row.soft = rigid;
             row.bias = row.relax_bias = error / h;
         } else {
@@ -191,13 +193,14 @@ void World::aim(BlockRow& row, const Eigen::VectorXd& error, double h, const Sol
 void World::solve_block(BlockRow& row, double h, const SolverSettings& settings, bool relax)
 {
     Joint& joint = *row.joint;
-    // Contacts look again at how far apart they are, also after positions have moved.
+    // The separation of contacts is computed anew, because positions may have moved since.
     if (row.block.kind == Block::Kind::contact) aim(row, blocks_of(joint)[row.index].error, h, settings);
     const Soft& soft = relax ? row.relax_soft : row.soft;
     const Eigen::VectorXd& bias = relax ? row.relax_bias : row.bias;
     const Eigen::VectorXd held = row.impulse();
     const double side = row.block.side;
-    // Of an impulse along the row a rotor that goes along takes its share; and of what others did to the speed since.
+    // A rotor that is geared to the row takes its share of an impulse along it, and of what others changed of its
+    // speed.
     const double rotor = row.block.armature, to_bodies = rotor > 0 ? 1 - rotor / row.mass(0, 0) : 1;
     if (rotor > 0) {
         const Eigen::VectorXd excess =
@@ -235,7 +238,7 @@ World::Soft World::contact_softness(int a, int b, double h, const SolverSettings
     return softness((on_fixed ? 2 : 1) * hertz, settings.contact_damping_ratio, h);
 }
 
-/// What the blocks of joints close at when a step begins.
+/// Notes poses and the speeds along the blocks of joints when a step begins.
 void World::begin_step()
 {
     start_ = bodies;
@@ -266,7 +269,7 @@ World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
     row.approach = speed(point.a, point.b, row.normal)(0);
     const ContactResult before = memory_.contains(c.key) ? memory_.at(c.key) : ContactResult{};
     row.impulse = warm * before.normal;
-    // Any two directions across n will do: the cone is round.
+    // Any two directions perpendicular to n will do, because the cone is circular.
     const Eigen::Vector3d t1 =
         is_planar_pair(point.a, point.b) ? Eigen::Vector3d(-n.y(), n.x(), 0) : n.unitOrthogonal();
     if (is_planar_pair(point.a, point.b)) {
@@ -293,7 +296,7 @@ Eigen::Matrix<double, 12, 1> World::moved_since_start(int a, int b) const
         Eigen::Quaterniond turn = now.orientation * then.orientation.conjugate();
         if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
         Eigen::Vector3d angle = 2 * turn.vec();
-        // A planar body's turn is known exactly, an angle and not its sine.
+        // The rotation of a planar body is known exactly: the angle, not its sine.
         if (now.motion == BodyMotion::dynamic_body && now.model == BodyModel::planar) {
             angle = {0, 0, 2 * std::atan2(turn.z(), turn.w())};
         }
@@ -338,7 +341,7 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
     const double opening = speed(point.a, point.b, row.normal)(0);
     const double wanted =
         row.impulse - row.normal_mass * soft.mass_scale * (opening + bias) - soft.impulse_scale * row.impulse;
-    // What would make it open as fast as it may.
+    // The impulse with which the contact would open at push_out_speed.
     const double most =
         row.impulse - row.normal_mass * (opening - static_cast<double>(settings.push_out_speed));
     const double impulse = std::max(std::min(wanted, most), 0.0);
@@ -347,7 +350,8 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
     row.peak = std::max(row.peak, impulse);
 }
 
-/// The points of a manifold one by one, each knowing what those before it have moved; then the bodies at once.
+/// Projects the points of a manifold one by one, each taking the displacements by those before it into account; the
+/// bodies are moved at the end.
 void World::project_contacts(const Joint& joint, const SolverSettings& settings)
 {
     Body &a = bodies[static_cast<std::size_t>(joint.a)], &b = bodies[static_cast<std::size_t>(joint.b)];
@@ -437,7 +441,7 @@ void World::step(double dt, const SolverSettings& asked, const std::vector<Conta
     land_free_groups(h, dt, settings);
 }
 
-/// What forces alone make of the velocity of a body in a second.
+/// The acceleration of a body by forces and gravity alone.
 Vector6 World::free_acceleration(int i, const SolverSettings& settings) const
 {
     Body body = bodies[static_cast<std::size_t>(i)];
@@ -447,8 +451,8 @@ Vector6 World::free_acceleration(int i, const SolverSettings& settings) const
     return body.velocity;
 }
 
-/// Restitution: how fast a contact, `now` m apart, is to open, from the energy of the flight before and after the impact: what
-/// flies freely keeps v^2 / 2 - a x.
+/// Restitution: the speed at which a contact that is `now` m apart must open, from the energy of the flight before and
+/// after the impact: free flight conserves v^2 / 2 - a x. See restitution.h.
 double World::opening_speed(int a, int b, const Jacobian& normal, double approach, double now,
                             double restitution, const SolverSettings& settings) const
 {
@@ -460,8 +464,9 @@ double World::opening_speed(int a, int b, const Jacobian& normal, double approac
     return std::sqrt(std::max(of_leaving, 0.0));
 }
 
-/// What hangs together by joints, and whose momentum forces alone made in the step, flew by v += h a, x += h v, which takes its
-/// centre of mass a h dt / 2 too far. What turns is left as it is, but in the plane, where a body alone turns as it moves.
+/// Corrects free flight: v += h a, x += h v moves the centre of mass of a group of jointed bodies whose momentum only
+/// forces have changed in the step by a h dt / 2 too far. Rotations are not corrected, except that of a single planar
+/// body, which is integrated like a position.
 void World::land_free_groups(double h, double dt, const SolverSettings& settings)
 {
     const std::vector<int> group_of = find_islands({}).of_body;
@@ -496,7 +501,7 @@ void World::land_free_groups(double h, double dt, const SolverSettings& settings
         const Eigen::Vector3d in_space(1, 1, group.in_plane ? 0 : 1);
         const Eigen::Vector3d force = in_space.cwiseProduct(group.force),
                               change = in_space.cwiseProduct(group.change);
-        // What pushes it across the force does not matter to how far that takes it.
+        // Impulses perpendicular to the force do not change how far it moves the group.
         const double by_force = dt * force.squaredNorm();
         if (group.is_held || !(std::abs(change.dot(force) - by_force) < 1e-3 * by_force)) continue;
         Vector6 back = Vector6::Zero();
@@ -512,7 +517,7 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSetti
     const double threshold = -static_cast<double>(settings.restitution_threshold);
     for (Joint& joint : joints) {
         const std::vector<Block> blocks = blocks_of(joint);
-        // A face that comes down flat hits with all its points at once, which takes a few rounds.
+        // A face that lands flat hits with all its points at once, which takes a few rounds over the points.
         constexpr std::size_t rounds = 8;
         for (std::size_t k = 0; k < rounds * blocks.size(); ++k) {
             const std::size_t i = k % blocks.size();

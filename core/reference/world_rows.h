@@ -10,11 +10,11 @@ struct World::BlockRow {
     std::size_t index;  ///< of the block in its joint
     Block block;
     Eigen::MatrixXd mass;
-    Eigen::MatrixXd to_force;  ///< turns impulses into what `most` bounds
-    Eigen::MatrixXd response;  ///< the K of that
+    Eigen::MatrixXd to_force;  ///< maps impulses to what `most` bounds
+    Eigen::MatrixXd response;  ///< K of what `most` bounds
     Eigen::VectorXd bias, relax_bias;
     Soft soft, relax_soft;
-    double most;                 ///< largest norm of the impulse, where the joint's contacts do not say
+    double most;                 ///< largest norm of the impulse, unless the joint's contacts bound it
     std::size_t joint_contacts;  ///< how many of the joint's blocks are contacts; they come last
 
     [[nodiscard]] double bound() const
@@ -38,11 +38,12 @@ struct World::ContactRow {
     Eigen::VectorXd friction;
     ContactResult step{};  ///< of the substeps so far
 
-    /// Friction in the world: the tangents' linear part on b is the direction itself.
+    /// Friction in the world frame: the linear part on b of a row is its tangent.
     [[nodiscard]] Eigen::Vector3d force() const { return tangents.middleCols<3>(6).transpose() * friction; }
 };
 
-/// What an impulse along rows is on b where they act: a row pushes there and turns nothing, one without a linear part turns.
+/// The wrench on b of an impulse along rows, at the point where they act: a row with a linear part gives a linear
+/// impulse there, a row without one an angular impulse.
 inline Eigen::Matrix<double, 6, 1> wrench_of(const Jacobian& jacobian, const Eigen::VectorXd& impulse)
 {
     Eigen::Matrix<double, 6, 1> wrench = Eigen::Matrix<double, 6, 1>::Zero();

@@ -1,4 +1,4 @@
-// Words and limits for what a host says of bodies.
+// Ranges and messages for the values that a host gives for bodies.
 #include "motley/core/body_checks.h"
 
 #include <cmath>
@@ -69,8 +69,8 @@ void check_velocity_of(BodyModel model, BodyMotion motion, const Vec3<float>* li
     }
 }
 
-/// Principal moments are the eigenvalues; a real body's obey A + B >= C, that is 2 |m| <= trace in every
-/// direction. Checked through tr(m)/2 I - m being positive semi-definite, which needs no eigenvalues.
+/// The principal moments of a real body, the eigenvalues of its tensor m, obey A + B >= C: none exceeds half of the
+/// trace. Checked by tr(m)/2 I - m being positive semi-definite, which needs no eigenvalues.
 void check_inertia(const Sym3<float>& inertia)
 {
     const double xx = inertia.xx, xy = inertia.xy, xz = inertia.xz, yy = inertia.yy, yz = inertia.yz,
@@ -86,7 +86,7 @@ void check_inertia(const Sym3<float>& inertia)
     if (!(minor > 0) || !(full > 0)) {
         refuse("BodyDefinition.inertia", full, "a positive definite tensor (determinant above 0)");
     }
-    const double half = trace / 2 * (1 + 1e-5);  // a thin rod sits on the edge; leave room for float rounding
+    const double half = trace / 2 * (1 + 1e-5);  // room for float rounding: a thin rod is on the boundary
     const Sym3<double> rest{half - xx, -xy, -xz, half - yy, -yz, half - zz};
     const double scale = trace * trace * trace;
     const double edge = -1e-12;

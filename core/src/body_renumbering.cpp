@@ -1,4 +1,4 @@
-// Rows in the order of a curve that fills space, so that what a constraint ties together is in few cache lines.
+// Sorts rows along a space-filling curve, so that the bodies of neighbouring constraints lie in few cache lines.
 #include <algorithm>
 #include <array>
 #include <span>
@@ -20,7 +20,7 @@ std::uint64_t every_third(std::uint64_t x)
     return (x | x << 2) & 0x1249249249249249ULL;
 }
 
-/// Where positions lie along the Z-order curve (G. M. Morton, 1966) of the cube that holds them all.
+/// The place of positions along the Z-order curve (G. M. Morton, 1966) of the cube that holds them all.
 class ZOrder {
   public:
     void include(const Vec3<PoseReal>& at)
@@ -42,7 +42,7 @@ class ZOrder {
     Vec3<PoseReal> low_{1e30F, 1e30F, 1e30F}, high_{-1e30F, -1e30F, -1e30F};
 };
 
-/// What entry i, of `size` values, becomes: what entry order[i] was.
+/// Copies entries of `size` values each in a new order: entry i is the old entry order[i].
 template <class T, class Allocator>
 std::vector<T, Allocator> reordered(const std::vector<T, Allocator>& values,
                                     std::span<const std::uint32_t> order, std::size_t size)
@@ -55,7 +55,7 @@ std::vector<T, Allocator> reordered(const std::vector<T, Allocator>& values,
     return moved;
 }
 
-/// The rows of bodies, along the curve, behind the null row.
+/// The null row, then the rows of bodies in the order of the curve.
 std::vector<std::uint32_t> order_of(const BodyRows& rows)
 {
     ZOrder curve;
@@ -76,7 +76,7 @@ std::vector<std::uint32_t> order_of(const BodyRows& rows)
 
 void BodyStore::renumber()
 {
-    // All of it beside what is there, which holds until memory for everything is found.
+    // Into new arrays: the old ones stay valid until memory for all of them has been found.
     std::array<BodyRows, body_kind_count> renumbered;
     for (int k = 0; k < body_kind_count; ++k) {
         const auto kind = static_cast<BodyKind>(k);

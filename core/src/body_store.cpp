@@ -1,4 +1,4 @@
-// Rows of bodies: added, removed, and moved on at the end of a step.
+// Rows of bodies: added, removed, and moved at the end of a step.
 #include "motley/core/body_store.h"
 
 #include <algorithm>
@@ -27,8 +27,7 @@ Sym3<float> inverse_of(const Sym3<float>& m)
             f(xx * zz - xz * xz), f(xz * xy - xx * yz), f(xx * yy - xy * xy)};
 }
 
-/// Finite exactly when every one of the floats is: infinity and NaN survive the multiplication by zero as
-/// NaN.
+/// Whether all values are finite: infinity and NaN times zero are NaN.
 bool all_finite(const float* values, int count)
 {
     float zero = 0;
@@ -305,8 +304,7 @@ int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, con
         float* velocity = &r.velocity[std::size_t{4} * quads * row];
         float* delta = &r.delta[std::size_t{4} * quads * row];
         if (!all_finite(velocity, 4 * quads) || !all_finite(delta, 4 * quads)) {
-            // Frozen where it was last known to be: without mass nothing can move it until the host revives
-            // it.
+            // Frozen at its last finite pose: without inverse mass nothing can move it until the host revives it.
             for (int i = 0; i < 4 * quads; ++i) velocity[i] = 0;
             if (kind == BodyKind::rigid) {
                 for (std::size_t q = std::size_t{2} * row; q < std::size_t{2} * row + 2; ++q) {
@@ -324,7 +322,8 @@ int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, con
             const Vec3<float>& g = flight.gravity;
             const Vec3<float> acceleration{a[0] + g.x, a[1] + g.y, in_plane ? 0 : a[2] + g.z};
             const Vec3<float> now{velocity[0], velocity[1], in_plane ? 0 : velocity[2]};
-            // Bodies without inverse mass, fixed or contained, do not fall; the acceleration of a contained one may be infinite.
+            // Bodies without inverse mass, fixed or contained, do not fall; the acceleration of a contained one may be
+            // infinite.
             const bool falls = velocity[3] > 0 && flight.is_jointed[row] == 0 &&
                                flew_freely(flight.start_along[row], dot(now, acceleration),
                                            flight.seconds * dot(acceleration, acceleration));

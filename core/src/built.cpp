@@ -1,4 +1,4 @@
-// What the build said of joints and models, see .cmake/built.cmake.
+// Checks joints and models against those that were built; .cmake/built.cmake defines the macros.
 #include "motley/core/built.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ constexpr bool is_one_of(TypeList<Built...>)
     return (std::is_same_v<Type, Built> || ...);
 }
 
-/// As the compiler spells it.
+/// The name of a definition as the compiler spells it.
 template <class Definition>
 std::string name_of()
 {

@@ -1,4 +1,4 @@
-// Contacts found again from step to step: most of a crowd touches the neighbours that it touched before.
+// Matches contacts with those of the last step: in a crowd most people touch the same neighbours as before.
 #include "motley/core/contact_cache.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace motley {
 namespace {
 
 constexpr std::size_t contacts_per_part = 2048;
-/// How far a walk that has lost its way looks to either side, contacts.
+/// How many contacts to either side a walk searches after it has lost its place.
 constexpr std::uint32_t sight = 1024;
 
 }  // namespace
@@ -17,8 +17,8 @@ constexpr std::uint32_t sight = 1024;
 void ContactCache::begin(std::size_t count)
 {
     ContactList& list = staged();
-    // Room to grow into, so that a crowd that keeps pressing together does not allocate at each new contact. Each list by its
-    // own length: memory may have run out between two of them in an earlier step.
+    // With room to grow, so that a crowd that becomes denser does not allocate at every new contact. Each list is
+    // judged by its own length, because memory may have run out between two of them in an earlier step.
     const auto grow = [](auto& values, std::size_t size) {
         if (values.size() < size) values.resize(size);
     };
@@ -32,7 +32,7 @@ void ContactCache::begin(std::size_t count)
     grow(claimed_, most);
     grow(missed_, most);
     grow(lost_, most);
-    table_.reserve(2 * most, most);  // all gone and as many come
+    table_.reserve(2 * most, most);  // in case all contacts are gone and as many are new
     list.count = count;
     parts_.resize(std::max(count, current().count) / contacts_per_part + 1);
     std::fill_n(claimed_.begin(), current().count, std::uint8_t{0});
@@ -42,7 +42,7 @@ void ContactCache::begin(std::size_t count)
 ContactCache::Walk::Walk(ContactCache& cache, std::int64_t part)
     : cache_(cache), list_(cache.current()), part_(part), index_(cache.part(part).begin), missed_(index_)
 {
-    // The part before knows best, be it in this step or, if it is not there yet, in the last.
+    // Begin at the shift where the part before ended: in this step or, if it has not been read yet, in the last one.
     std::int32_t shift = 0;
     if (part > 0)
         shift = std::atomic_ref(cache.parts_[static_cast<std::size_t>(part - 1)].shift)
@@ -61,7 +61,7 @@ ContactCache::Walk::~Walk()
                std::memory_order_relaxed);
 }
 
-/// The nearest first: most often a few contacts have come or gone since the part before.
+/// Searches the nearest contacts first: most often only a few have come or gone since the part before.
 std::uint32_t ContactCache::Walk::look_around(std::uint64_t key) const
 {
     const std::uint32_t ahead = std::min(static_cast<std::uint32_t>(list_.count) - cursor_, sight);
@@ -78,7 +78,7 @@ void ContactCache::find_lost(std::int64_t part)
     const Range range = share(current().count, part);
     std::uint32_t end = range.begin;
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        // Written always and counted when lost: no predictor guesses who has gone.
+        // Always written, and counted only if lost: a branch on it could not be predicted.
         lost_[end] = i;
         end += claimed_[i] == 0 ? 1 : 0;
     }
@@ -121,7 +121,7 @@ std::uint32_t ContactCache::trace(std::int64_t part, std::uint32_t index)
     return which == KeyTable::List::lost ? found : none;
 }
 
-/// What is left to ask: whether one that is new has the key of one that a walk found.
+/// The only repeated keys not found yet: those of a new contact and of one that a walk has matched.
 void ContactCache::verify(std::int64_t part)
 {
     if (!looks_up_) return;

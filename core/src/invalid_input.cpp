@@ -1,4 +1,4 @@
-// Words for refused input.
+// Messages for refused input.
 #include "motley/core/invalid_input.h"
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Room for keys.
+// Allocation and clearing of the table of keys.
 #include "motley/core/key_table.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ std::size_t buckets_for(std::size_t count)
     return std::bit_ceil(count + count / 3 + 2);
 }
 
-/// Sixteen bits a key: one in sixteen strangers has a bit that is set.
+/// Sixteen bits for each key, so that about one in sixteen other keys finds its bit set.
 std::size_t bits_for(std::size_t fresh)
 {
     return std::bit_ceil(16 * fresh + 64);

@@ -1,4 +1,4 @@
-// The scene's door: bodies that come and go. Nothing is changed before everything is checked.
+// Adding and removing bodies. Nothing is changed before everything is checked.
 #include "motley/core/scene.h"
 
 #include "motley/core/body_checks.h"
@@ -43,7 +43,7 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
     for (const BodyId body : bodies) {
         if (body == ground_) refuse("remove_bodies.bodies", "the ground", "a body that the host added");
     }
-    // `contained` doubles as the mark of this call; its third value never outlives it.
+    // `contained` also holds a mark for bodies that were seen, which is removed before this call returns.
     constexpr std::uint8_t mark = 0x80;
     bool twice = false;
     for (const BodyId body : bodies) {
@@ -63,7 +63,7 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
 void Scene::renumber_bodies()
 {
     bodies_.renumber();
-    joints_->version.reset();  // blocks name rows
+    joints_->version.reset();  // blocks refer to rows
 }
 
 bool Scene::is_alive(BodyId body) const

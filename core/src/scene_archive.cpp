@@ -1,4 +1,4 @@
-// Whether what was read is a scene: a checksum tells of accidents, this of everything else.
+// Checks that what was read is a valid scene: the checksum of a file detects accidents, these checks everything else.
 #include "scene_archive.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ void demand(bool holds, const char* what)
     if (!holds) throw std::runtime_error(std::string("is no scene: ") + what);
 }
 
-/// Handles or rows that may be given out again: each that is not taken, once.
+/// A list of free handles or rows: each index must be valid, not taken, and listed only once.
 template <class IsTaken>
 void check_free_list(const std::vector<std::uint32_t>& free, std::size_t size, const IsTaken& is_taken,
                      const char* what)
@@ -35,7 +35,7 @@ bool are_finite(std::initializer_list<Real> values)
     return true;
 }
 
-/// Rounding leaves a length of 1 within a few units of the last place, of floats too.
+/// Rounding changes a length of 1 by a few units in the last place of a float at most.
 bool is_unit(const Quat<PoseReal>& q)
 {
     const double length2 = static_cast<double>(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
@@ -52,7 +52,8 @@ void check_lengths(const BodyRows& rows, BodyKind kind)
            "its rows of bodies differ in length");
 }
 
-/// Where a live body is and how it moves. Steps may drive it further than the door would let it be put.
+/// Pose and velocity of a live body. Finite values are enough: steps may exceed the ranges that Scene accepts from a
+/// host.
 void check_state(const BodyRows& rows, BodyKind kind, std::uint32_t row, BodyModel model, BodyMotion motion)
 {
     const BodyPose& pose = rows.pose[row];
@@ -132,7 +133,7 @@ void SceneArchive::check_joints(const Scene& scene)
     const BodyStore& bodies = scene.bodies_;
     const JointStores& joints = *scene.joints_;
     demand(!joints.slots.empty() && joints.slots[0].live == 0, "a joint of the null handle");
-    std::vector<std::uint32_t> colours(bodies.slots_.size(), 0);  // a bit for each that touches a body
+    std::vector<std::uint32_t> colours(bodies.slots_.size(), 0);  // by body, a bit for each colour
     std::size_t count = 0;
     joints.for_each([&](const auto& store, int type) {
         using Store = std::remove_cvref_t<decltype(store)>;

@@ -1,4 +1,5 @@
-// Every field of a scene that outlives a step and does not follow from others, named once for writing and reading alike.
+// Every field of a scene that outlives a step and does not follow from others, named once for writing and reading
+// alike.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +16,7 @@
 
 namespace motley {
 
-/// Fields into bytes.
+/// Writes fields as bytes.
 class ArchiveWriter {
   public:
     static constexpr bool reads = false;
@@ -43,7 +44,7 @@ class ArchiveWriter {
     }
 };
 
-/// Bytes into fields. Throws std::runtime_error rather than read past the end.
+/// Reads fields from bytes. Throws std::runtime_error rather than read past the end.
 class ArchiveReader {
   public:
     static constexpr bool reads = true;
@@ -76,7 +77,7 @@ class ArchiveReader {
     }
 };
 
-/// The friend that knows the private fields.
+/// A friend of Scene and BodyStore that reads and writes their private fields.
 struct SceneArchive {
     template <class Archive, class S>
     static void visit(Archive& archive, S& scene)
@@ -96,12 +97,12 @@ struct SceneArchive {
     }
 
   private:
-    /// Throws unless the scene is one that its host could have made: every index leads somewhere, and what its door
-    /// refuses is refused here, by the same checks.
+    /// Throws unless the scene is one that a host could have made: every index is valid, and bad input is refused here
+    /// by the same checks as in Scene.
     static void check(const Scene& scene);
     static void check_bodies(const Scene& scene);
     static void check_joints(const Scene& scene);
-    /// What is in no file.
+    /// Computes what is not stored in files.
     static void derive(Scene& scene);
 
     template <class Archive, class Store>
@@ -139,7 +140,7 @@ struct SceneArchive {
         archive(joints.free_slots);
         archive(joints.watched);
     }
-    /// The list of the last step; where its keys lie in the table decides nothing.
+    /// Only the list of the last step: the table of keys does not affect results.
     template <class Archive, class Cache>
     static void visit_contacts(Archive& archive, Cache& cache)
     {

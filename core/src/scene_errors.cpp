@@ -1,4 +1,4 @@
-// A scene as a whole: the hash of its state, and how far it is from what its joints want.
+// A scene as a whole: the hash of its state, its errors, energy and momentum.
 #include "motley/core/joint_store.h"
 #include "motley/core/scene.h"
 
@@ -53,7 +53,7 @@ SceneErrors Scene::errors() const
     std::size_t count = 0;
     joints_->for_each([&](const auto& store, int) {
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-        if constexpr (Type::only_pulls) return;  // what it is from its target is no error
+        if constexpr (Type::only_pulls) return;  // the distance from a target is no error
         for (std::size_t i = 0; i < store.size(); ++i) {
             const auto& definition = store.definitions[i];
             const JointReport report = Type::report(definition, store.memory_of(i), state(definition.body_a),

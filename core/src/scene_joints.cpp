@@ -1,4 +1,4 @@
-// Joints that come and go, and what they and contacts did.
+// Adding, changing and removing joints, and reports on joints and contacts.
 #include "motley/core/joint_store.h"
 #include "motley/core/scene.h"
 
@@ -111,7 +111,7 @@ void Scene::remove_joints_of(std::span<const BodyId> bodies)
             going.emplace_back(joint.type, joint.index);
         });
     }
-    // The last of a type first: each removal moves the last one into the gap.
+    // Within a type the last one first, because each removal moves the last joint into the gap.
     std::sort(going.begin(), going.end(), [](const auto& x, const auto& y) {
         return x.first != y.first ? x.first < y.first : x.second > y.second;
     });
@@ -195,7 +195,7 @@ void Scene::find_break_events() noexcept
     }
 }
 
-/// Of an impulse of the last step, its mean over the step.
+/// The mean force over the last step that an impulse of that step makes.
 Vec3<float> Scene::force_of(const Vec3<float>& impulse) const
 {
     return last_step > 0 ? 1 / last_step * impulse : Vec3<float>{};
@@ -268,14 +268,14 @@ void Scene::set_joint(ConstraintId joint, const Definition& definition)
     if (definition.body_a != now.body_a || definition.body_b != now.body_b)
         refuse("set_joint.definition", "other bodies", "the bodies of the joint");
     Type::validate(definition, check_joint_bodies(type, definition.body_a, definition.body_b));
-    // What locks is laid out by itself.
+    // Locks and other joints are laid out differently.
     if (Type::is_equality(definition) != Type::is_equality(now)) joints_->version.reset();
     store.define(index, definition);
 }
 
 namespace {
 
-/// Has both calls compiled for every type in the list.
+/// Instantiates both calls for every type in the list.
 template <class List>
 struct JointCalls;
 template <class... Types>

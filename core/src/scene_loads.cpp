@@ -1,4 +1,4 @@
-// What bodies bear of their contacts, in bulk.
+// The loads that contacts put on bodies, in bulk.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 namespace motley {
 namespace {
 
-/// N s of a body's contacts.
+/// Impulses of a body's contacts, N s.
 struct Borne {
     double normal = 0, largest = 0;
     Vec3<double> net{};

@@ -1,4 +1,4 @@
-// A definition of six coordinates, taken apart into joints.
+// Splits a definition of six coordinates into joints.
 #include "motley/core/six_dof.h"
 
 #include <cmath>
@@ -29,20 +29,20 @@ bool is_free(const AxisSetup& axis)
 /// The frame turned so that its x axis is its old axis `axis`, right-handed.
 JointFrame turned_to(JointFrame frame, int axis)
 {
-    // (1, 1, 1) by a third of a turn, or two: x -> y -> z -> x.
+    // By no, one and two thirds of a turn about (1, 1, 1), which take x to x, y and z.
     constexpr Quat<float> turns[3] = {{0, 0, 0, 1}, {0.5F, 0.5F, 0.5F, 0.5F}, {-0.5F, -0.5F, -0.5F, 0.5F}};
     frame.rotation = frame.rotation * turns[axis];
     return frame;
 }
 
-/// The frame turned about its x axis by a quarter, so that its y axis is its old z axis.
+/// The frame turned about its x axis by a quarter turn, so that its y axis is its old z axis.
 JointFrame turned_about_x(JointFrame frame)
 {
     frame.rotation = frame.rotation * Quat<float>{0.70710678F, 0, 0, 0.70710678F};
     return frame;
 }
 
-/// How many of three coordinates are locked, and which one is not like the other two.
+/// How many of three coordinates are locked, and which one differs from the other two.
 struct Locks {
     int count = 0, odd = 0;
     explicit Locks(const AxisSetup (&axes)[3])
@@ -54,7 +54,7 @@ struct Locks {
     }
 };
 
-/// Adds the joints one by one, and takes them back when one is refused.
+/// Adds the joints one by one, and removes them again when one is refused.
 class Assembler {
   public:
     Assembler(Scene& scene, const SixDofDefinition& joint)
@@ -113,14 +113,14 @@ class Assembler {
         ids_.push_back(scene_.add_joint(FrameJointDefinition<linear, angular>{
             joint_.body_a, joint_.body_b, frame_a, frame_b, joint_.stiffness}));
     }
-    /// `axis`: the one that is not like the other two becomes x of both frames.
+    /// `axis`, the coordinate that differs from the other two, becomes x of both frames.
     template <LinearLock linear, AngularLock angular>
     void add_locks(int axis)
     {
         add_locks<linear, angular>(turned_to(joint_.frame_a, axis), turned_to(joint_.frame_b, axis));
     }
 
-    /// Where one joint has the rows of both positions and rotations, one joint.
+    /// Locks positions and rotations by one joint if a type of joint has the rows of both, else by one for each.
     void lock()
     {
         const bool all = angular_.count == 3, hinge = angular_.count == 2;
@@ -138,7 +138,8 @@ class Assembler {
         if (hinge) add_locks<LinearLock::none, AngularLock::swing>(angular_.odd);
         if (angular_.count != 1) return;
         if (joint_.rotations == SixDofRotation::euler) return drive_rotation(angular_.odd);
-        // About z: y of b stays across x of a. About y: z of b does. About x: the twist itself is held.
+        // Rotation about z is locked by keeping y of b perpendicular to x of a, about y by keeping z of b perpendicular
+        // to it, and about x by a drive that holds the twist.
         if (angular_.odd == 0) drive<DriveAxis::twist>(joint_.rotation[0], 0);
         if (angular_.odd == 1) {
             add_locks<LinearLock::none, AngularLock::perpendicular>(turned_about_x(joint_.frame_a),

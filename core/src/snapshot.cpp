@@ -1,4 +1,4 @@
-// Files of scenes: a header that says what they are, the fields, and a checksum over both.
+// Files of scenes: a header, which says what they are and has a checksum of the fields, and the fields.
 #include "motley/core/snapshot.h"
 #include "motley/core/joint_store.h"
 
@@ -16,7 +16,7 @@
 namespace motley {
 namespace {
 
-/// Grows with every change of what is written.
+/// To be increased with every change of what is written.
 constexpr std::uint32_t format_version = 3;
 constexpr std::array<char, 8> scene_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 's'};
 constexpr std::array<char, 8> problem_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 'p'};
@@ -25,7 +25,7 @@ struct Header {
     std::array<char, 8> name;
     std::uint32_t version;
     std::uint32_t layout;    ///< a hash of how numbers and definitions lie in memory
-    std::uint64_t size;      ///< bytes behind the header
+    std::uint64_t size;      ///< bytes after the header
     std::uint64_t checksum;  ///< of those
 };
 
@@ -46,7 +46,7 @@ std::uint64_t checksum_of(std::span<const std::byte> bytes)
     return hash;
 }
 
-/// Byte order, and the size of everything that is written as it lies in memory.
+/// A hash of the byte order and of the size of everything that is written as it lies in memory.
 std::uint32_t layout_of_numbers()
 {
     std::uint64_t hash = 0;
@@ -78,7 +78,7 @@ std::uint32_t layout_of_numbers()
     fail(file, what + ": " + std::strerror(errno));
 }
 
-/// Beside the file first, then renamed over it: whoever looks sees the old one or the new one.
+/// Writes another file and renames it to `file`, so that a reader sees either the old file or the new one.
 void write_whole(const std::string& file, const Header& header, std::span<const std::byte> bytes)
 {
     const std::string part = file + ".part";
@@ -131,7 +131,7 @@ void write_archive(const std::string& file, const std::array<char, 8>& name, con
                 archive.bytes);
 }
 
-/// Reads fields with `read`, and holds them to account.
+/// Reads the fields of a file with `read`, and adds the file's name to any error.
 template <class Read>
 void read_archive(const std::string& file, const std::array<char, 8>& name, const Read& read)
 {
@@ -145,7 +145,8 @@ void read_archive(const std::string& file, const std::array<char, 8>& name, cons
     }
 }
 
-/// As it lies in memory; but a bool must be one before it is read as one.
+/// Reads settings as they lie in memory. A byte other than 0 or 1 must not be read as a bool, so these are checked
+/// first.
 SolverSettings read_settings(ArchiveReader& archive)
 {
     std::array<unsigned char, sizeof(SolverSettings)> bytes{};

@@ -1,4 +1,4 @@
-// Settings: their ranges, and what a step makes of them.
+// The ranges of settings, and the constants that a step derives from them.
 #include "motley/core/step_constants.h"
 
 #include <algorithm>
@@ -83,17 +83,18 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
     step.substep = dt / static_cast<float>(settings.substeps);
     step.inverse_substep = 1 / step.substep;
     step.seconds = dt;
-    // The reference, which solves directly, moves bodies itself.
+    // Method::direct corrects free flight itself (core/reference).
     if (settings.method != Method::direct) step.flight_excess = 0.5F * step.substep * dt;
     step.gravity = settings.gravity;
     step.restitution_threshold = settings.restitution_threshold;
     step.push_out_speed = settings.push_out_speed;
-    // An impulse is a force times the substep, so a cached one is scaled when the substep changes; but never up: what
-    // mended an error in a short substep is no force, and would throw things in a long one.
+    // An impulse is a force times the substep, so a cached one is scaled when the substep changes; but never up,
+    // because an impulse that corrected an error in a short substep is not a force, and would throw bodies in a long
+    // one.
     step.warm_start_scale =
         settings.warm_start && last_substep > 0 ? std::min(1.0F, step.substep / last_substep) : 0.0F;
     if (settings.method == Method::soft_step) {
-        // Nor is an error that a longer substep left mended faster than that one would have: it would be a blow.
+        // Nor is an error that a longer substep left corrected faster than that one would have: that would be a blow.
         const float longer_substep = std::max(step.substep, last_substep);
         const float stiffest = 0.25F / longer_substep;
         step.exact_rate = 1 / longer_substep;
@@ -102,7 +103,7 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
         const float contact_hertz =
             settings.contact_hertz > 0 ? settings.contact_hertz : std::max(30.0F, 0.5F * stiffest);
         step.contact = soft(contact_hertz, settings.contact_damping_ratio, step.substep);
-        // What cannot give way is made twice as stiff, or a crowd would sink into its walls first.
+        // Contacts with bodies that cannot give way are twice as stiff, or a crowd would sink into its walls first.
         step.static_contact = soft(2 * contact_hertz, settings.contact_damping_ratio, step.substep);
     } else {
         const bool baumgarte = settings.drift_correction == DriftCorrection::baumgarte;

@@ -1,4 +1,4 @@
-// Names for the report.
+// Names of the stages.
 #include "motley/core/step_report.h"
 
 namespace motley {

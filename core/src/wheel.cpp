@@ -1,4 +1,4 @@
-// A wheel, taken apart into joints.
+// Splits a wheel into joints.
 #include "motley/core/wheel.h"
 
 #include <cmath>
@@ -14,7 +14,8 @@ Quat<float> frame_of(const Vec3<float>& x, const Vec3<float>& y)
 {
     const Vec3<float> z = unit(cross(x, y));
     const Vec3<float> up = cross(z, x);
-    // The largest of the four squares tells which to divide by; the trace alone is lost near half a turn.
+    // Computed from its largest component: the scalar part, which the trace gives, is lost in rounding near half a
+    // turn.
     const float trace = x.x + up.y + z.z;
     Quat<float> q{};
     if (trace > 0) {
@@ -29,7 +30,7 @@ Quat<float> frame_of(const Vec3<float>& x, const Vec3<float>& y)
     return unit(q);
 }
 
-/// Any direction across a unit vector.
+/// A direction perpendicular to a unit vector.
 Vec3<float> across(const Vec3<float>& v)
 {
     return std::abs(v.x) < 0.6F ? Vec3<float>{0, v.z, -v.y} : Vec3<float>{-v.z, 0, v.x};
@@ -46,7 +47,7 @@ void check(const WheelDefinition& wheel)
     }
 }
 
-/// The axle on the chassis, steered, and on the wheel.
+/// A joint whose x axes are the steered axle on the chassis and the axle on the wheel.
 template <class Definition>
 Definition about_axle(const WheelDefinition& wheel, float angle)
 {

@@ -1,5 +1,5 @@
-// A vector whose elements start on a cache line, so that rows and blocks never straddle one needlessly, and on huge
-// pages when it is long, so that scattered reads of it do not miss the translation buffers too.
+// A vector whose storage starts on a cache line, so that rows and blocks do not straddle two needlessly, and on huge
+// pages when it is long, so that scattered reads of it seldom miss the translation lookaside buffers.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace motley {
 
-/// Asks the system for huge pages under memory that nothing was written to yet; a hint, without effect where there
+/// Asks the operating system for huge pages for memory that was not written to yet; a hint, without effect where there
 /// are none.
 void advise_huge_pages(void* memory, std::size_t bytes);
 

@@ -1,6 +1,6 @@
 // An assembly: many copies of one articulated figure. The copies are ordinary bodies and joints, which the host may
-// join, push, break and remove like any others; that they are alike is found by the solver, which keeps sixteen of
-// them in lanes, a copy a lane, as long as nothing else touches them.
+// join, push, break and remove like any others. The solver itself finds out that they are alike, and solves sixteen of
+// them together, one copy in each lane, as long as nothing else touches them.
 #pragma once
 
 #include <functional>
@@ -11,13 +11,13 @@
 
 namespace motley {
 
-/// Bodies and joints to be copied, as they stand around the origin.
+/// Bodies and joints to be copied, in the frame of the figure.
 class Figure {
   public:
-    /// Adds a body. The handle is good for joints of this figure alone. Refuses what Scene::add_body refuses.
+    /// Adds a body. Its handle is valid only in joints of this figure. Refuses what Scene::add_body refuses.
     BodyId add_body(const BodyDefinition& definition);
-    /// Adds a joint between bodies of this figure. Refuses what Scene::add_joint refuses. Not of pulleys, whose
-    /// points are the world's. What hangs on the world hangs on a static body of the figure.
+    /// Adds a joint between bodies of this figure. Refuses what Scene::add_joint refuses. Pulleys do not compile here:
+    /// their points are fixed in the world. To attach a figure to the world, give it a static body.
     template <class Definition>
     void add_joint(const Definition& definition)
     {
@@ -35,11 +35,12 @@ class Figure {
     }
     [[nodiscard]] std::span<const BodyDefinition> bodies() const { return bodies_; }
     [[nodiscard]] std::size_t joint_count() const { return joints_.size(); }
-    /// Adds this figure's joints between bodies of a scene, which stand for its own in their order.
+    /// Adds this figure's joints to a scene, between `bodies`, which take the place of the figure's own in the same
+    /// order.
     void join(Scene& scene, std::span<const BodyId> bodies) const;
 
   private:
-    Scene sketch_;  ///< checks what is added
+    Scene sketch_;  ///< a copy of the figure, made to check what is added
     std::vector<BodyDefinition> bodies_;
     std::vector<BodyId> ids_;
     std::vector<std::function<void(Scene&, std::span<const BodyId>)>> joints_;
@@ -47,15 +48,15 @@ class Figure {
     [[nodiscard]] std::size_t index_of(BodyId body) const;
 };
 
-/// Where a copy stands and how it moves as a whole.
+/// Where a copy is placed and how it moves as a whole, world frame.
 struct Placing {
-    Vec3<double> position{};               ///< m, finite: of the figure's origin
-    Quat<double> orientation{0, 0, 0, 1};  ///< finite, not zero; about z alone for figures with planar bodies
-    Vec3<float> linear_velocity{};         ///< m/s, added to that of its bodies
+    Vec3<double> position{};               ///< m, of the origin of the figure's frame
+    Quat<double> orientation{0, 0, 0, 1};  ///< finite, not zero, normalised on entry; planar bodies: about z
+    Vec3<float> linear_velocity{};         ///< m/s, added to that of its bodies that are not static
 };
 
-/// Adds a copy a placing. Returns the bodies, those of one copy in line in the figure's order. Refuses what
-/// Scene::add_body refuses, naming a body's field; then nothing is added.
+/// Adds one copy for each placing. Returns the bodies copy after copy, those of a copy in the order of the figure.
+/// Refuses a bad orientation, and what Scene::add_body refuses, naming a body's field; then nothing is added.
 std::vector<BodyId> add_assembly(Scene& scene, const Figure& figure, std::span<const Placing> copies);
 
 }  // namespace motley

@@ -1,11 +1,11 @@
-// Checks of what a host says of bodies. Each names the field, the value and what was expected.
+// Checks of the values that a host gives for bodies. A refusal names the field, the value and what was expected.
 #pragma once
 
 #include "motley/core/body.h"
 
 namespace motley {
 
-/// kg, and kg m2 of each moment: what a dynamic body may have.
+/// The valid ranges of the mass (kg) and of each moment of inertia (kg m2) of a dynamic body.
 inline constexpr float lightest_body = 1e-10F, heaviest_body = 1e10F;
 inline constexpr float least_moment = 1e-20F, most_moment = 1e20F;
 
@@ -15,10 +15,11 @@ void check(const char* field, double value, double low, double high, const char*
 /// Each component by name: `who`.x, `who`.y, `who`.z.
 void check_position(const char* who, const Vec3<double>& p);
 void check_vector(const char* who, const Vec3<float>& v, float limit, const char* expected);
-/// Null: not given. The components that a body does not have must be zero: a silent loss would be a wrong answer.
+/// A null pointer means not given. Components that a body does not have must be zero, because dropping them silently
+/// would give a wrong result.
 void check_velocity_of(BodyModel model, BodyMotion motion, const Vec3<float>* linear,
                        const Vec3<float>* angular);
-/// Of a rigid body: positive definite, with moments that a body can have.
+/// For a rigid body: must be positive definite, with moments that obey the triangle inequality.
 void check_inertia(const Sym3<float>& inertia);
 void check_definition(const BodyDefinition& definition);
 

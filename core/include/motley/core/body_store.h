@@ -1,5 +1,5 @@
 // Bodies as rows. What a sweep reads of a body lies together in quads of four floats, 16 bytes a row for
-// particles and planar bodies, 32 for rigid ones: moving bodies in and out of lanes is what costs.
+// particles and planar bodies, 32 for rigid ones, because loading bodies into lanes and storing them is what costs.
 //
 //   kind      velocity                     delta since the step began       acceleration
 //   particle  vx vy vz 1/m                 dx dy dz  -                      ax ay az  -
@@ -33,7 +33,7 @@ constexpr int quads_of(BodyKind kind)
     return kind == BodyKind::rigid || kind == BodyKind::fixed ? 2 : 1;
 }
 
-/// A kind and a row in two and thirty bits.
+/// The kind of a body, in two bits, and its row, in thirty.
 struct BodyRow {
     std::uint32_t bits = 0;
     BodyRow() = default;
@@ -42,15 +42,16 @@ struct BodyRow {
     [[nodiscard]] std::uint32_t row() const { return bits & 0x3FFFFFFFU; }
 };
 
-/// What positions and orientations are kept in from step to step. Floats halve their bytes, and place bodies at 1 km from
-/// the origin to 0.06 mm.
+/// The type of positions and orientations from step to step. Floats halve their bytes, but resolve positions at 1 km
+/// from the origin only to 0.06 mm.
 #ifdef MOTLEY_FLOAT_POSITIONS
 using PoseReal = float;
 #else
 using PoseReal = double;
 #endif
 
-/// Where a body is. A planar body uses yaw, a rigid or fixed one the orientation, a particle neither.
+/// The position of a body, m, and, of a planar one, its yaw, rad. Orientations of rigid and fixed bodies are in
+/// BodyRows.
 struct BodyPose {
     Vec3<PoseReal> position{};
     PoseReal yaw = 0;
@@ -59,7 +60,7 @@ struct BodyPose {
 /// The rows of one kind. Row 0 is the null body of padding lanes: it cannot move and nothing is tied to it.
 struct BodyRows {
     AlignedVector<float> velocity, delta, acceleration;
-    AlignedVector<float> unpushed;  ///< as velocity: what it was in this substep before any constraint pushed
+    AlignedVector<float> unpushed;  ///< as velocity: its value in this substep before any constraint impulse
     AlignedVector<BodyPose> pose;
     AlignedVector<Quat<PoseReal>> orientation;   ///< rigid and fixed only
     AlignedVector<float> world_inverse_inertia;  ///< rigid, and zero for fixed: xx xy xz yy | yz zz - -
@@ -67,7 +68,7 @@ struct BodyRows {
     AlignedVector<Sym3<float>> inertia;          ///< rigid only, body frame
     AlignedVector<Sym3<float>> inverse_inertia;  ///< rigid only, body frame
     std::vector<std::uint32_t> slot;             ///< the handle slot of each row, 0 for a free one
-    std::vector<std::uint32_t> free_rows;        ///< last removed, first reused
+    std::vector<std::uint32_t> free_rows;        ///< the last one is reused first
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot.size()); }
 };
 
@@ -76,23 +77,23 @@ class BodyStore {
   public:
     BodyStore();
 
-    /// Room for these; then add() cannot fail.
+    /// Reserves room for these, so that add() cannot fail.
     void make_room(std::span<const BodyDefinition> definitions);
     /// Adds a checked definition.
     BodyId add(const BodyDefinition& definition);
-    /// Room to remember what these leave free; then remove() cannot fail.
+    /// Reserves room in the lists of free rows and slots, so that remove() of these cannot fail.
     void make_room_to_remove(std::span<const BodyId> bodies);
     /// Frees the slot and row of a live body.
     void remove(BodyId body);
-    /// Gives every body a new row, in the order of a curve that fills space, and closes the gaps of free ones.
+    /// Gives every body a new row, in the order of a space-filling curve, and closes the gaps of free rows.
     void renumber();
     [[nodiscard]] bool is_alive(BodyId body) const
     {
-        // A removal moves the generation on, so a handle that matches is alive; the null slot's is never handed out.
+        // A removal increments the generation, so a handle that matches is alive; slot 0 is the null handle's.
         return body.slot < slots_.size() && slots_[body.slot].generation == body.generation && body.slot != 0;
     }
     [[nodiscard]] BodyRow row_of(BodyId body) const { return slots_[body.slot].row; }
-    /// Asks for what is_alive() and row_of() will read of any handle, dead ones too.
+    /// Prefetches what is_alive() and row_of() will read. Any handle is allowed, also of a removed body.
     void prefetch(BodyId body) const { __builtin_prefetch(slots_.data() + body.slot); }
     [[nodiscard]] BodyId id_of_slot(std::uint32_t slot) const { return {slot, slots_[slot].generation}; }
     /// Slots ever used; slot 0 is never a body.
@@ -104,30 +105,30 @@ class BodyStore {
 
     [[nodiscard]] BodyMotion motion(BodyId body) const { return motions_[body.slot]; }
     [[nodiscard]] BodyModel model(BodyId body) const { return models_[body.slot]; }
-    /// Of each slot the first joint on it, as JointStores::ends counts; 0 when there is none.
+    /// For each slot the first end in its list of joints (JointStores::ends); 0 when there is none.
     std::vector<std::uint32_t> first_ends;
-    /// Frozen by a step because its state was not finite: what pushes it is left out.
+    /// For each slot 1 if a step froze the body because its state was not finite: its constraints are then left out.
     std::vector<std::uint8_t> contained;
     std::size_t contained_count = 0;
     [[nodiscard]] bool is_contained(BodyRow where) const
     {
         return contained_count > 0 && contained[rows(where.kind()).slot[where.row()]] != 0;
     }
-    /// What the inverse mass was before a containment took it, for the revival.
+    /// For each slot the inverse mass, 1/kg; kept while the body is contained, for its revival.
     AlignedVector<float> inverse_masses;
     std::vector<float> inverse_inertias;  ///< likewise, planar only
 
-    /// Adds the deltas of a step to the poses of rows [begin, end) of a kind, less the excess of free flight, and clears
-    /// them. A row that is not finite keeps its pose, loses its velocity and is contained: its slot goes to
-    /// `contained_slot`. Returns how many were contained.
+    /// Adds the deltas of a step to the poses of rows [begin, end) of a kind, minus the excess of free flight (see
+    /// Flight), and clears them. A body whose velocity or delta is not finite keeps its pose, loses its velocity and is
+    /// contained; the least slot of such bodies goes to `contained_slot`. Returns how many were contained.
     int commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, const Flight& flight,
                std::uint32_t& contained_slot);
-    /// Once a step has committed: planar bodies that were stiffened for it have their own inertia again. That of others is made
-    /// anew by every commit.
+    /// After the commits of a step: gives planar bodies that were stiffened for it (tension.h) their own inertia back.
+    /// That of rigid bodies is recomputed by every commit.
     void restore_planar_inertia();
-    /// Gives a contained body its mass back.
+    /// Ends the containment of a body: gives it its mass and inertia back.
     void revive(BodyId body);
-    /// Fills in what follows from the rest and is in no file: displacements, inertias, what is counted.
+    /// Computes what follows from other fields and is not stored in files: displacements, inverse inertias, counts.
     void derive();
     /// World inverse inertia of a rigid row from its orientation, now and for the start of the next step.
     void refresh_world_inertia(std::uint32_t row);

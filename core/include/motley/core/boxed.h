@@ -1,4 +1,5 @@
-// A member whose type only its owner's source files know, so that whoever includes the owner's header is not compiled anew with it.
+// A member whose type is known only to its owner's source files, so that changes of that type do not recompile every
+// file that includes the owner's header.
 #pragma once
 
 #include <memory>
@@ -6,8 +7,8 @@
 
 namespace motley {
 
-/// Holds a T of its own and copies with it. What was moved from may be assigned to and destroyed. A header says
-/// `extern template class Boxed<T>;`, one source file `template class Boxed<T>;`.
+/// Owns a T, and copies it when copied. After a move it may only be assigned to or destroyed. A header declares
+/// `extern template class Boxed<T>;`, and one source file defines `template class Boxed<T>;`.
 template <class T>
 class Boxed {
   public:

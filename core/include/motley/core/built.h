@@ -1,5 +1,5 @@
-// Which joints and body models the library was built with: MOTLEY_JOINTS and MOTLEY_MODELS of the build. What is not built has
-// no kernels, and is refused when it is added.
+// Which joints and body models the library was built with: MOTLEY_JOINTS and MOTLEY_MODELS of the build. What is not
+// built has no kernels, and is refused when it is added.
 #pragma once
 
 #include "motley/core/body.h"

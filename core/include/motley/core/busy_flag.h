@@ -1,18 +1,18 @@
-// Tells a second thread that somebody is at work here.
+// Detects a second step on a scene or solver that is in use.
 #pragma once
 
 #include <atomic>
 
 namespace motley {
 
-/// Set while a step is at work on a scene, or by a solver. A copy is at rest: it is another scene.
+/// Set while a step uses a scene or a solver. A copy starts unset, because it is another scene.
 class BusyFlag {
   public:
     BusyFlag() = default;
     BusyFlag(const BusyFlag&) noexcept {}
     BusyFlag& operator=(const BusyFlag&) noexcept { return *this; }
 
-    /// Takes the flag unless it is taken, and gives it back at the end.
+    /// Takes the flag unless it is taken, and releases it at the end of its scope.
     class Hold {
       public:
         explicit Hold(BusyFlag& flag)
@@ -25,7 +25,7 @@ class BusyFlag {
         }
         Hold(const Hold&) = delete;
         Hold& operator=(const Hold&) = delete;
-        /// False: somebody else has it.
+        /// False: the flag was taken already.
         [[nodiscard]] bool holds() const { return holds_; }
 
       private:

@@ -1,5 +1,6 @@
 // The one list of constraint types. Storage, batches, kernels and typed tests follow from it: to add a joint, write its
-// header x.h as constraint_type.h says, with the list XTypes of its types at its end, and put that name into JointTypes.
+// header x.h as constraint_type.h says, with the list XTypes of its types at its end, and put that name into
+// JointTypes.
 #pragma once
 
 #include "motley/core/constraints/ball_socket.h"
@@ -16,9 +17,10 @@
 
 namespace motley {
 
-/// The lists of the headers above, which are what the build compiles kernels by: contacts first, then joints.
-using ConstraintLists = TypeList<ContactTypes, BallSocketTypes, DistanceTypes, FrameJointTypes, DriveTypes,
-                                 SwingLimitTypes, ServoTypes, TransmissionTypes, PulleyTypes, ManifoldTypes, ScrewTypes>;
+/// The lists of the headers above: contacts first, then joints. The build compiles the kernels of each list separately.
+using ConstraintLists =
+    TypeList<ContactTypes, BallSocketTypes, DistanceTypes, FrameJointTypes, DriveTypes, SwingLimitTypes,
+             ServoTypes, TransmissionTypes, PulleyTypes, ManifoldTypes, ScrewTypes>;
 
 template <class Lists>
 struct JointTypesOf;

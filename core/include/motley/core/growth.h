@@ -1,24 +1,25 @@
-// How room is made when something outgrows what it had.
+// How vectors are enlarged.
 #pragma once
 
 #include <cstddef>
 
 namespace motley {
 
-/// Room for `count` and a quarter: what grows a little each step then allocates seldom.
+/// `count` and a quarter more: with this room, what grows a little each step allocates seldom.
 constexpr std::size_t with_room_to_grow(std::size_t count)
 {
     return count + count / 4;
 }
 
-/// Makes a vector at least so long, with room to grow. One by one: when memory runs out between two that belong together,
-/// the next call finds the second one short.
+/// Makes a vector at least `size` long, with room to grow. Each vector is judged by its own length: if memory runs out
+/// between two that belong together, the next call still enlarges the second one.
 template <class Vector>
 void grow_to(Vector& values, std::size_t size)
 {
     if (values.size() < size) values.resize(with_room_to_grow(size));
 }
-/// Room for so many more elements, so that adding them cannot fail half-way. Doubles, as adding one by one would.
+/// Reserves room for `more` elements, so that adding them cannot fail half-way. At least doubles the capacity when it
+/// is too small, so that repeated calls stay cheap.
 template <class Vector>
 void make_room_for(Vector& values, std::size_t more)
 {

@@ -1,4 +1,4 @@
-// The one exception of the library: bad input, refused at the door with nothing changed.
+// The exception that the library throws for bad input, before anything is changed.
 #pragma once
 
 #include <stdexcept>
@@ -7,9 +7,8 @@
 
 namespace motley {
 
-/// Thrown by Scene when a definition, handle or value is refused. The message names the field, the value,
-/// and the valid range, as in "DistanceDefinition.length is -0.3; expected a finite value >= 0 (m)".
-/// The scene is as it was before the call.
+/// Thrown when a definition, handle, setting or other value is refused. The message names the field, the value and the
+/// valid range, as in "BodyDefinition.mass is -1; expected 1e-10 to 1e10 (kg)". Nothing has been changed by the call.
 class InvalidInput : public std::invalid_argument {
   public:
     using std::invalid_argument::invalid_argument;

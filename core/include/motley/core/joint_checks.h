@@ -16,12 +16,12 @@ struct JointBodies {
 };
 
 inline constexpr float largest_length = 1e9F;
-/// N or N m: what an infinite bound on a force comes to. Its impulse, over the longest step, is still finite.
+/// N or N m: replaces an infinite bound on a force. Its impulse over the longest step, 1 s, is still finite.
 inline constexpr float largest_force = 1e30F;
 
 /// Refuses a value outside [low, high] or not finite.
 void check_range(std::string_view field, float value, float low, float high, std::string_view expected);
-/// Refuses a bound on a force or torque that is negative or NaN; infinite is none.
+/// Refuses a bound on a force or torque that is negative or NaN; infinity means no bound.
 void check_bound(std::string_view field, float value);
 /// Refuses lengths that are not 0 <= min_length <= max_length, at most 1e9 m; max_length may be infinite.
 void check_length_range(std::string_view definition, float min_length, float max_length);
@@ -31,21 +31,22 @@ void check_anchor(std::string_view field, const Vec3<float>& anchor, BodyModel m
 
 /// Refuses a coordinate that is not within 1e9 m.
 void check_world_point(std::string_view field, const Vec3<double>& point);
-/// Refuses a direction that is not finite or has no length.
+/// Refuses a direction whose length is not from 1e-6 to 1e6.
 void check_direction(std::string_view field, const Vec3<float>& direction);
 /// Refuses a particle, which cannot turn.
 void check_turns(std::string_view field, BodyModel model, bool fixed);
 
-/// Refuses a frame that is not finite, whose rotation has no direction, or on a particle, which cannot turn.
+/// Refuses a frame whose position check_anchor() refuses, whose rotation has a length that is not from 1e-6 to 1e6, or
+/// that is on a particle, which cannot turn.
 void check_joint_frame(std::string_view field, const JointFrame& frame, BodyModel model, bool fixed);
 
-/// A vector of any length made unit; exact to rounding.
+/// The unit vector along a vector; exact to rounding.
 template <class Real>
 Vec3<Real> unit(const Vec3<Real>& v)
 {
     return Real(1) / std::sqrt(dot(v, v)) * v;
 }
-/// A quaternion of any length made unit; exact to rounding.
+/// A quaternion normalised; exact to rounding.
 template <class Real>
 Quat<Real> unit(const Quat<Real>& q)
 {

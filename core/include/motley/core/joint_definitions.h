@@ -1,4 +1,4 @@
-// What a host may say of joints: the definitions of every type in constraint_types.h.
+// The definitions of all types of joints in constraint_types.h.
 #pragma once
 
 #include "motley/core/constraints/ball_socket_definition.h"

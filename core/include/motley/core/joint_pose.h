@@ -18,7 +18,7 @@ struct Orientation<Real, BodyKind::planar> {
     Real yaw;  ///< wrapped to +-pi
 };
 
-/// A body-frame vector seen from the world.
+/// Takes a vector from the body frame to the world frame.
 template <class Real>
 Vec3<Real> to_world(const Orientation<Real, BodyKind::particle>&, const Vec3<Real>& local)
 {
@@ -38,7 +38,8 @@ requires(kind == BodyKind::rigid ||
     return rotate(o.rotation, local);
 }
 
-/// The start of a step as a joint sees it: `between` is x_b - x_a, subtracted in double.
+/// The poses of a joint's bodies when a step begins. `between` is x_b - x_a, the difference of their centres of mass,
+/// computed in double.
 template <class Real, BodyKind a, BodyKind b>
 struct JointPose {
     Vec3<Real> between;
@@ -46,13 +47,13 @@ struct JointPose {
     Orientation<Real, b> orientation_b;
 };
 
-/// Of joints with points in the world: x_a - point_a and x_b - point_b, subtracted in double.
+/// For joints that are defined by points of the world: x_a - point_a and x_b - point_b, computed in double.
 template <class Real>
 struct FromWorldPoints {
     Vec3<Real> a, b;
 };
 
-/// Two points of the world that a joint is defined by.
+/// The two points of the world, m, that such a joint is defined by.
 struct WorldPoints {
     Vec3<double> a, b;
 };

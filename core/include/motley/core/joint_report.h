@@ -1,4 +1,4 @@
-// What a joint tells of itself.
+// Reports on joints, and break limits.
 #pragma once
 
 #include <cstdint>
@@ -9,42 +9,42 @@
 
 namespace motley {
 
-/// What a joint did to its body b in some time: an impulse where it acts, and a turning impulse beside it; world.
+/// The linear and the angular impulse of a joint on its body b over some time, world frame.
 template <class Real>
 struct Wrench {
     Vec3<Real> push;  ///< N s, at the joint's anchor on b
     Vec3<Real> turn;  ///< N m s, about that anchor
 };
 
-/// Whether a joint had anything to say in the last substep.
+/// What a joint did in the last substep.
 enum class JointState : std::uint8_t {
-    inactive,  ///< a limit or rope with room on every side
-    active,    ///< holds, drives or springs
-    lower,     ///< at its lower limit
-    upper      ///< at its upper limit; of a rope: taut
+    inactive,  ///< nothing: a limit or rope that is not reached
+    active,    ///< it holds or drives, or its spring acts
+    lower,     ///< it is at its lower limit
+    upper      ///< it is at its upper limit; of a rope: taut
 };
 
-/// What a joint did in the last step, all its substeps together, and how far off it is now.
+/// The mean force of a joint over the last step, and its position error now.
 struct JointReport {
     Vec3<float>
-        force{};  ///< N, world, on body b at its anchor: its impulse over the step, divided by the step
+        force{};  ///< N, world, on body b at its anchor: the impulse of the whole step divided by its duration
     Vec3<float> torque{};   ///< N m, world, on body b about its anchor, likewise
-    float error = 0;        ///< m: the length of the linear part of C, of a limit only what it is beyond it
-    float angle_error = 0;  ///< rad, of the angular part
+    float error = 0;        ///< m: norm of the linear part of C; of a limit how far it is exceeded
+    float angle_error = 0;  ///< rad, likewise of the angular part
     JointState state = JointState::inactive;
 };
 
-/// What a joint bears before the host is told.
+/// The load on a joint above which Scene::break_events() reports it.
 struct BreakLimit {
-    float force = std::numeric_limits<float>::infinity();   ///< N, > 0
-    float torque = std::numeric_limits<float>::infinity();  ///< N m, > 0
+    float force = std::numeric_limits<float>::infinity();   ///< N, > 0; infinite: no limit
+    float torque = std::numeric_limits<float>::infinity();  ///< N m, > 0; infinite: no limit
 };
 
-/// A joint that bore more than its BreakLimit, on average over the last step.
+/// A joint whose mean force or torque over the last step was above its BreakLimit.
 struct BreakEvent {
     ConstraintId joint{};
-    float force = 0;   ///< N
-    float torque = 0;  ///< N m
+    float force = 0;   ///< N, norm of JointReport::force
+    float torque = 0;  ///< N m, norm of JointReport::torque
 };
 
 }  // namespace motley

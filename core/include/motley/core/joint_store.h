@@ -8,22 +8,22 @@
 #include <vector>
 
 #include "motley/core/aligned_vector.h"
+#include "motley/core/constraint_type.h"
 #include "motley/core/constraint_types.h"
 #include "motley/core/contact_cache.h"
 #include "motley/core/growth.h"
 #include "motley/core/ids.h"
 #include "motley/core/joint_pose.h"
 #include "motley/core/joint_report.h"
-#include "motley/core/constraint_type.h"
 
 namespace motley {
 
-/// Floats of T rounded up to whole quads, the unit in which rows enter lanes.
+/// The number of floats in T, rounded up to whole quads of four, in which lanes are loaded.
 template <class T>
 inline constexpr std::size_t quad_floats = (sizeof(T) / sizeof(float) + 3) / 4 * 4;
 
-/// Joints of one type, dense. The order decides blocks and so bits; removal moves the last joint into the
-/// gap.
+/// Joints of one type, without gaps: removal moves the last joint into the gap. Their order decides which joints share
+/// a block, and so every bit of the result.
 template <JointType JointInList>
 struct JointStore {
     using Type = JointInList;
@@ -34,7 +34,7 @@ struct JointStore {
     AlignedVector<float> parameters;        ///< quad_floats<Parameters> a joint
     AlignedVector<float> memory;            ///< quad_floats<Memory> a joint: impulses of the last substep
     AlignedVector<float> wrenches;          ///< quad_floats<Wrench> a joint: of the last step
-    std::vector<WorldPoints> world_points;  ///< of types that have any
+    std::vector<WorldPoints> world_points;  ///< only of types with has_world_points
     std::vector<std::uint8_t> colours;      ///< no_colour until the first step
     std::vector<std::uint32_t> slots;       ///< handle slot of each joint
 
@@ -42,7 +42,7 @@ struct JointStore {
     static constexpr std::size_t wrench_floats = quad_floats<Wrench<float>>;
     [[nodiscard]] std::size_t size() const { return definitions.size(); }
 
-    /// Room for one more; then push_back() cannot fail.
+    /// Reserves room for one more joint, so that push_back() cannot fail.
     void make_room()
     {
         make_room_for(definitions, 1);
@@ -64,7 +64,7 @@ struct JointStore {
         colours.push_back(no_colour);
         slots.push_back(slot);
     }
-    /// Says a joint anew; what it remembers stays.
+    /// Replaces the definition of a joint. Its accumulated impulses are kept.
     void define(std::size_t index, const typename Type::Definition& definition)
     {
         const Parameters packed = Type::parameters(definition);
@@ -121,41 +121,41 @@ struct StoresOf<TypeList<Types...>> {
     using type = std::tuple<JointStore<Types>...>;
 };
 
-/// Every type's store, the handles, and a count that grows with each change of the set.
+/// The stores of all types, the handles, and a token of the present set of joints.
 struct JointStores {
     struct Slot {
         std::uint32_t generation = 0;
         std::uint32_t index = 0;
         std::uint8_t type = 0;
-        std::uint8_t live = 0;     ///< 1 or 0: in a file, a bool might be anything
-        std::uint8_t watched = 0;  ///< likewise: stands in the list below
+        std::uint8_t live = 0;     ///< 1 or 0; no bool, which a corrupt file could make invalid
+        std::uint8_t watched = 0;  ///< likewise: whether the joint is in `watched` below
         BreakLimit break_limit{};
         std::uint16_t iterations =
-            0;  ///< at least so many sweeps of solve a substep; 0: as the solver's settings
+            0;  ///< least number of sweeps of solve in a substep; 0: as SolverSettings says
     };
     typename StoresOf<JointTypes>::type stores;
-    std::vector<Slot> slots{Slot{}};  ///< slot 0 is null
+    std::vector<Slot> slots{Slot{}};  ///< slot 0 is the null handle's
     std::vector<std::uint32_t> free_slots;
-    /// The joints on each body, a list each, threaded through the joints: end 2 s is that of the joint in slot s on its body
-    /// a, end 2 s + 1 that on its body b; 0 is no end. A list begins at BodyStore::first_ends.
+    /// The joints on each body as a doubly linked list of joint ends: end 2 s is the end of the joint in slot s on its
+    /// body a, end 2 s + 1 the one on its body b; 0 is no end. The list of a body begins at BodyStore::first_ends.
     struct End {
         std::uint32_t next = 0, previous = 0;
     };
     std::vector<End> ends{2};
     std::vector<ConstraintId> watched;  ///< joints with a break limit, and some that had one
-    std::size_t with_iterations = 0;    ///< joints that ask for iterations of their own
-    /// Names this set of joints: null after a change, given by the next step, shared by copies of the scene.
+    std::size_t with_iterations = 0;    ///< number of joints with `iterations` above 0
+    /// Token of this set of joints: null after a change, made by the next step, shared by copies of the scene.
     /// A layout that holds the same token was made from the same joints.
     std::shared_ptr<const char> version;
 
-    /// Room for one more handle, and to take it back; then neither can fail.
+    /// Reserves room to give out one more handle and to take it back, so that neither can fail.
     void make_room()
     {
         make_room_for(slots, 1);
         make_room_for(ends, 2);
         if (free_slots.capacity() <= slots.size()) free_slots.reserve(slots.capacity());
     }
-    /// Puts an end at the front of the list that begins at `first`; or takes it out.
+    /// link() puts an end at the front of the list that begins at `first`; unlink() takes it out.
     void link(std::uint32_t end, std::uint32_t& first)
     {
         ends[end] = {first, 0};

@@ -1,4 +1,4 @@
-// A set of keys that threads fill together: of contacts that are looked for, and of contacts that are new.
+// A hash set of contact keys that several threads fill at once: see ContactCache.
 #pragma once
 
 #include <atomic>
@@ -9,27 +9,28 @@
 
 namespace motley {
 
-/// Open addressing, linear probing, at most three quarters full. A key's list and index, below 2^31, stand for it; the
-/// lists are the caller's.
+/// Open addressing with linear probing, at most three quarters full. An entry is a list and an index in it (below
+/// 2^31), not the key itself; the lists belong to the caller.
 class KeyTable {
   public:
-    /// Which list an index is of.
+    /// The list of an entry: contacts of the last step that are not matched (lost), or of the new list (fresh).
     enum class List : std::uint8_t { lost, fresh };
     struct Found {
         List list;
-        std::uint32_t index;  ///< or none
+        std::uint32_t index;  ///< in the list, or none
         static constexpr std::uint32_t none = 0xFFFFFFFFU;
     };
 
-    /// Until there are more than `count` keys, of which `fresh` of the second list, clear() allocates nothing. Memory that is
-    /// not used yet is not touched.
+    /// Reserves memory so that clear() allocates nothing for up to `count` keys, up to `fresh` of them fresh. Does not
+    /// touch that memory.
     void reserve(std::size_t count, std::size_t fresh);
-    /// Empties it, with room for so many.
+    /// Empties the table, and makes room for `count` keys, `fresh` of them fresh.
     void clear(std::size_t count, std::size_t fresh);
-    /// Asks for the cache line that enter() will look at first.
+    /// Prefetches the cache line that enter() will read first.
     void prefetch(std::uint64_t key) const { __builtin_prefetch(&buckets_[place_of(hash_of(key))]); }
 
-    /// Enters index `index` of `list` unless there is its key already; then that one. `key_of(list, index)` is a key.
+    /// Enters entry `index` of `list`, whose key is `key`, and returns none; or returns the entry that has this key
+    /// already. `key_of(list, index)` must return the key of an entry.
     template <class KeyOf>
     Found enter(std::uint64_t key, List list, std::uint32_t index, const KeyOf& key_of)
     {
@@ -48,7 +49,7 @@ class KeyTable {
         }
         return {list, Found::none};
     }
-    /// Whether a key of the second list is this one. Only when nobody enters any more.
+    /// Whether a fresh entry has this key. Must not run at the same time as enter().
     template <class KeyOf>
     [[nodiscard]] bool is_fresh(std::uint64_t key, const KeyOf& key_of) const
     {
@@ -64,8 +65,8 @@ class KeyTable {
     }
 
   private:
-    // A bucket holds 32 bits of the key's hash, never all zero, above the index and its list: zero is empty, and a
-    // probe that passes strangers seldom has to fetch their keys.
+    // A bucket holds 32 bits of the key's hash, never all zero, above the index and its list. Zero is an empty bucket.
+    // Because hashes are compared first, a probe that passes other keys seldom has to fetch them.
     static std::uint64_t hash_of(std::uint64_t key)
     {
         return (key ^ key >> 32) * 0x9E3779B97F4A7C15ULL >> 32 | 1;
@@ -77,7 +78,7 @@ class KeyTable {
     [[nodiscard]] std::size_t place_of(std::uint64_t hash) const { return hash >> shift_; }
 
     AlignedVector<std::uint64_t> buckets_;  ///< the first mask_ + 1 are in use
-    AlignedVector<std::uint64_t> filter_;   ///< a bit for the leading bits of each key of the second list
+    AlignedVector<std::uint64_t> filter_;   ///< the bit at the leading hash bits of each fresh key is set
     std::size_t mask_ = 0;
     int shift_ = 32, filter_shift_ = 32;
 };

@@ -75,7 +75,7 @@ using PairVector = typename PairSpace<Real, is_planar_pair(a, b)>::Vector;
 template <class Real, BodyKind a, BodyKind b>
 using PairSymmetric = typename PairSpace<Real, is_planar_pair(a, b)>::Symmetric;
 
-/// Drops or keeps z.
+/// Converts a vector to the space of a pair: drops or keeps z.
 template <class Vector, class Real>
 Vector to_space(const Vec3<Real>& v)
 {
@@ -96,8 +96,7 @@ Vec3<Real> to_three(const Vec2<Real>& v)
     return {v.x, v.y, Real(0)};
 }
 
-// ---- velocity of the point at `arm`
-// ------------------------------------------------------------------------
+// ---- velocity of the point at `arm` --------------------------------------------------------------------------------
 
 template <class Real>
 Vec3<Real> velocity_at(const LaneBody<Real, BodyKind::particle>& body, const Vec3<Real>&)
@@ -130,8 +129,7 @@ Vec2<Real> velocity_at(const LaneBody<Real, BodyKind::fixed>& body, const Vec2<R
     return {body.linear.x - body.angular.z * arm.y, body.linear.y + body.angular.z * arm.x};
 }
 
-// ---- impulse at the point at `arm`: v += M^-1 J^T P
-// --------------------------------------------------------
+// ---- impulse P at the point at `arm`: v += M^-1 J^T P --------------------------------------------------------------
 
 template <class Real>
 void apply_impulse(LaneBody<Real, BodyKind::particle>& body, const Vec3<Real>&, const Vec3<Real>& impulse)
@@ -170,8 +168,7 @@ Quat<Real> rotation_by(const Vec3<Real>& turn)
     return {scale * turn.x, scale * turn.y, scale * turn.z, half.cosine};
 }
 
-// ---- the same for positions: the displacement of an impulse of a position solve
-// -----------------------------
+// ---- the same for positions, in a position solve -------------------------------------------------------------------
 
 template <class Real>
 void apply_displacement(LaneBody<Real, BodyKind::particle>& body, const Vec3<Real>&, const Vec3<Real>& push)
@@ -201,8 +198,7 @@ void apply_displacement(LaneBody<Real, BodyKind::fixed>&, const Vector&, const V
 {
 }
 
-// ---- inverse mass of the point at `arm`, -[r]x I^-1 [r]x + 1/m
-// ----------------------------------------------
+// ---- inverse mass of the point at the arm r, -[r]x I^-1 [r]x + 1/m -------------------------------------------------
 
 template <class Real, class Vector>
 auto inverse_point_mass(const LaneBody<Real, BodyKind::particle>& body, const Vector&)
@@ -248,8 +244,7 @@ Sym3<Real> inverse_point_mass(const LaneBody<Real, BodyKind::fixed>&, const Vec3
     return {zero, zero, zero, zero, zero, zero};
 }
 
-// ---- how far the point that started at `arm` has moved, to first order; and the arm turned along
-// ------------
+// ---- displacement of the point that started at `arm`, to first order in the rotation; and the rotated arm ----------
 
 template <class Real>
 Vec3<Real> displacement_at(const LaneBody<Real, BodyKind::particle>& body, const Vec3<Real>&)
@@ -323,7 +318,8 @@ Vector translation(const Body& body)
     return to_space<Vector>(to_three(body.delta));
 }
 
-/// p_b - p_a now, from what it was when the step began: only differences, so nothing is lost far from the origin.
+/// p_b - p_a now, computed from its value when the step began and from displacements, so that nothing is lost far from
+/// the origin.
 template <class Vector, class A, class B>
 Vector anchor_error(const Vector& start_error, const Vector& start_arm_a, const Vector& start_arm_b,
                     const Vector& arm_a, const Vector& arm_b, const A& a, const B& b)
@@ -332,8 +328,9 @@ Vector anchor_error(const Vector& start_error, const Vector& start_arm_a, const 
            (arm_a - start_arm_a);
 }
 
-/// Arms of two anchors that are `apart` (p_b - p_a) to the point in the middle between them. Where both impulses of a joint act at
-/// one point they have no moment together, so angular momentum is kept however far the anchors are apart.
+/// Moves the ends of two arms from their anchors to the midpoint between these; `apart` is p_b - p_a. Where both
+/// impulses of a joint act at one point they have no moment together, so angular momentum is kept however far apart the
+/// anchors are.
 template <class Vector>
 void meet_half_way(Vector& arm_a, Vector& arm_b, const Vector& apart)
 {
@@ -342,8 +339,7 @@ void meet_half_way(Vector& arm_a, Vector& arm_b, const Vector& apart)
     arm_b = arm_b - Real(0.5F) * apart;
 }
 
-// ---- inverses of effective masses: zero where a direction cannot move, never a division by zero
-// --------------
+// ---- inverses of effective masses: zero where a direction cannot move, never a division by zero --------------------
 
 /// 1/x, or 0 where x is not above the smallest mass that a float can invert.
 template <class Real>
@@ -353,8 +349,8 @@ Real inverse_or_zero(const Real& x)
     return select(usable, Real(1) / select(usable, x, Real(1)), Real(0));
 }
 
-/// Scaled by its trace first: in float the determinants of bodies of 5e-20 kg m2 and of 1e10 kg m2 leave the range. Zero
-/// where that of the scaled one is lost in rounding, or there is nothing.
+/// The inverse of a symmetric matrix. It is divided by its trace first, because determinants of bodies of 5e-20 kg m2
+/// and of 1e10 kg m2 leave the range of a float. Zero where the determinant of the scaled matrix is lost in rounding.
 template <class Real>
 Sym2<Real> inverse(const Sym2<Real>& k)
 {

@@ -1,9 +1,9 @@
-// How far a constraint is from its solution, from what solving it once more does to its bodies.
+// How far a constraint is from its solution, measured by what solving it once more changes.
 //
 // Solving a constraint changes its impulse by d lambda = -K^-1 r, where r is what is left of its equations and
 // inequalities, softness and limits included, and its bodies' velocities by dv = M^-1 J^T d lambda. So
 //     dv^T M dv = d lambda^T K d lambda = r^T K^-1 r,
-// the M^-1 norm of the residual, whatever the type of the constraint: nothing has to be written once a type. Where a
+// the squared K^-1 norm of the residual, for every type of constraint, so that no type needs code of its own. Where a
 // limit or a friction cone holds the impulse back, d lambda is the projected residual: zero exactly when the
 // complementarity conditions hold.
 #pragma once
@@ -59,11 +59,11 @@ Real inverse_mass_of(const LaneBody<Real, kind>& body)
     }
 }
 
-/// Of the energy that both bodies' velocities change by, and 1/m_a + 1/m_b.
+/// The residual from dv^T M dv of both bodies together and from 1/m_a + 1/m_b.
 template <class Real>
 LaneResidual<Real> residual_of(const Real& energy_of_changes, const Real& inverse_masses)
 {
-    // Rounding may leave it below zero. In this order what is not a number stays that, and is never taken for solved.
+    // Rounding may leave it below zero. With the arguments in this order NaN stays NaN, and is never taken for solved.
     const Real energy = maximum(Real(0), energy_of_changes);
     return {energy, square_root(energy * inverse_masses)};
 }

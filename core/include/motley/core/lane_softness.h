@@ -1,4 +1,4 @@
-// Softness in lanes: a joint's own frequency where it has one, the solver's where it has none.
+// Softness in lanes: from a joint's own frequency where it has one, from the solver's settings where it has none.
 #pragma once
 
 #include "motley/core/scalar.h"
@@ -6,7 +6,7 @@
 
 namespace motley {
 
-/// delta lambda = -mass_scale K^-1 (J v + rate C) - impulse_scale lambda.
+/// delta lambda = -mass_scale K^-1 (J v + rate C) - impulse_scale lambda: see Softness.
 template <class Real>
 struct LaneSoftness {
     Real rate, mass_scale, impulse_scale;
@@ -21,7 +21,7 @@ LaneSoftness<Real> softness_or(const StepConstants& step, const Real& hertz, con
 {
     const auto own = hertz > Real(0);
     const Real h(step.substep);
-    // Capped at 0.25 / h: a quarter of a turn is pi/2.
+    // The frequency is capped at 0.25 / h, that is omega = 2 pi hertz at pi / (2 h).
     const Real omega = minimum(Real(6.2831853F) * hertz, Real(1.5707963F * step.inverse_substep));
     const Real a1 = select(own, Real(2) * damping_ratio + h * omega, Real(1));
     const Real a2 = h * omega * a1;
@@ -30,15 +30,16 @@ LaneSoftness<Real> softness_or(const StepConstants& step, const Real& hertz, con
             select(own, a3, Real(usual.impulse_scale)), select(own, Real(1), Real(0))};
 }
 
-/// A spring of a row: of a frequency on the row's own effective mass, or of a stiffness k and a damping c. Both implicit:
+/// The spring of a row, given by a frequency on the row's own effective mass, or by a stiffness k and a damping c. Both
+/// are integrated implicitly. For the latter, with C', v' and the impulse lambda' at the end of the substep h:
 ///
 ///   h (k C' + c v') = -lambda',  C' = C + h v'    =>    v' + k / (c + h k) C + lambda' / (h (c + h k)) = 0.
 template <class Real>
 struct SpringSoftness {
     Real rate;  ///< 1/s
     Real mass_scale,
-        impulse_scale;  ///< of a frequency; where there is no spring nothing is wanted and nothing kept
-    Real give;          ///< 1 / (h (c + h k)); 0 where the spring is no stiffness
+        impulse_scale;  ///< of a frequency; 0 and 1 where there is no spring, which makes its impulse 0
+    Real give;          ///< 1 / (h (c + h k)); 0 without stiffness and damping
 };
 template <class Real>
 SpringSoftness<Real> spring_softness(const StepConstants& step, const Real& hertz, const Real& damping_ratio,
@@ -57,7 +58,7 @@ template <class Real>
 struct SoftRow {
     Real rate, effective_mass, kept;
 };
-/// With K = J M^-1 J^T where the bodies are now, and its inverse, 0 where nothing can move.
+/// `response` is K = J M^-1 J^T in the present poses, `effective_mass` its inverse, or 0 where nothing can move.
 template <class Real>
 SoftRow<Real> soft_row(const SpringSoftness<Real>& spring, const Real& response, const Real& effective_mass)
 {
@@ -68,8 +69,8 @@ SoftRow<Real> soft_row(const SpringSoftness<Real>& spring, const Real& response,
             select(is_stiffness, spring.give * inverse, spring.impulse_scale)};
 }
 
-/// What a sweep solves with: a spring as it is, everything else as soft as the sweep's constants say, which are rigid when
-/// it relaxes.
+/// The softness that a sweep uses: that of the spring where there is one, else that of the sweep's constants, which are
+/// rigid in relaxation.
 template <class Real>
 LaneSoftness<Real> softness_in(const StepConstants& step, const LaneSoftness<Real>& soft)
 {

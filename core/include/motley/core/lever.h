@@ -1,5 +1,6 @@
-// One row of a Jacobian along a direction n that stays put for a step, at arms that do: J = [-n, -(r_a x n), n,
-// r_b x n]. What turns a body, r x n, is kept instead of r: fewer numbers for planar bodies, none for particles.
+// One row of a Jacobian along a direction n with arms r_a and r_b that all stay fixed for a step:
+// J = [-n, -(r_a x n), n, r_b x n]. The levers r x n are stored instead of the arms: one number for planar bodies, none
+// for particles.
 #pragma once
 
 #include <type_traits>
@@ -10,7 +11,7 @@ namespace motley {
 
 struct NoLever {};
 
-/// r x n in the coordinates that a body of this kind turns in, within a pair that is planar or not.
+/// The type of r x n, by the kind of the body and by whether the pair is planar: nothing, its z component, or a vector.
 template <class Real, BodyKind kind, bool planar_pair>
 using Lever =
     std::conditional_t<kind == BodyKind::particle, NoLever,
@@ -28,7 +29,7 @@ Lever lever_of(const Vector& arm, const Vector& n)
     }
 }
 
-// ---- J v of one body, for b; of a it is subtracted ----------------------------------------------------------------
+// ---- the part of J v of one body: added for b, subtracted for a -----------------------------------------------------
 
 template <class Real>
 Real speed_along(const LaneBody<Real, BodyKind::particle>& body, const Vec3<Real>& n, NoLever)
@@ -78,7 +79,7 @@ void push_along(LaneBody<Real, BodyKind::fixed>&, const Vector&, const Lever&, c
 {
 }
 
-// ---- the same for what the step has moved so far, to first order in the turn --------------------------------------
+// ---- the same for displacements since the step began, to first order in the rotation --------------------------------
 
 template <class Real>
 Real moved_along(const LaneBody<Real, BodyKind::particle>& body, const Vec3<Real>& n, NoLever)
@@ -101,7 +102,7 @@ Real moved_along(const LaneBody<Real, BodyKind::fixed>& body, const Vec2<Real>& 
     return n.x * body.delta.x + n.y * body.delta.y + lever * small_rotation(body.delta_rotation).z;
 }
 
-// ---- and a displacement of an impulse of a position solve -----------------------------------------------------------
+// ---- displacement by M^-1 J^T lambda, for position solves -----------------------------------------------------------
 
 template <class Real>
 void displace_along(LaneBody<Real, BodyKind::particle>& body, const Vec3<Real>& n, NoLever,

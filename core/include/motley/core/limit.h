@@ -1,4 +1,6 @@
-// Limits, locks, springs and bounds on one row: what an accumulated impulse wants to be.
+// Limits, locks, springs and bounds on one row. Each function returns the new accumulated impulse of the row from its
+// constraint function C, its `speed` dC/dt = J v, its `effective_mass` K^-1, and `held`, the accumulated impulse so
+// far.
 #pragma once
 
 #include "motley/core/lane_softness.h"
@@ -7,9 +9,9 @@
 
 namespace motley {
 
-/// An impulse that pushes out what is beyond a bound, but not faster than push_out_speed. It is the speed that is
-/// held back, never the impulse: a load that is pressed on is held however large it is, and gives way as far as the softness
-/// says and no further. (A bound on the bias alone would be one on the impulse, which then leaks as fast as it grows.)
+/// `wanted`, but no more than what makes the row open at push_out_speed. The bound is on the speed, not on the impulse:
+/// a load of any size is held, and moves in only as far as the softness allows. (A bound on the bias alone would bound
+/// the impulse, because softness takes away a share of the impulse in each sweep.)
 template <class Real>
 Real no_faster_than_push_out(const StepConstants& step, const Real& wanted, const Real& speed,
                              const Real& effective_mass, const Real& held)
@@ -17,8 +19,8 @@ Real no_faster_than_push_out(const StepConstants& step, const Real& wanted, cons
     return minimum(wanted, held - effective_mass * (speed - Real(step.push_out_speed)));
 }
 
-/// Of C >= 0 with speed dC/dt; the caller clamps it at 0. With room left it may be used up within the substep and no
-/// further; without, the error goes as fast as the joints' softness and push_out_speed allow.
+/// For C >= 0; the caller clamps the result at 0. While there is room, C > 0, the row may close by that much within the
+/// substep and no more; without room the error is removed as fast as the softness of joints and push_out_speed allow.
 template <class Real>
 Real limit_impulse(const StepConstants& step, const Real& c, const Real& speed, const Real& effective_mass,
                    const Real& held)
@@ -30,11 +32,11 @@ Real limit_impulse(const StepConstants& step, const Real& c, const Real& speed, 
     const Real impulse_scale = select(room, Real(0), Real(step.joint.impulse_scale));
     const Real wanted =
         held - mass_scale * effective_mass * (speed + select(room, closing, soft)) - impulse_scale * held;
-    // With room nothing opens, so it may stand for both.
+    // With room this bound never applies, since closing > -push_out_speed.
     return no_faster_than_push_out(step, wanted, speed, effective_mass, held);
 }
 
-/// Of C = 0.
+/// For C = 0.
 template <class Real>
 Real lock_impulse(const StepConstants& step, const Real& c, const Real& speed, const Real& effective_mass,
                   const Real& held)
@@ -43,7 +45,8 @@ Real lock_impulse(const StepConstants& step, const Real& c, const Real& speed, c
            Real(step.joint.impulse_scale) * held;
 }
 
-/// Of a contact, C >= 0: with room as a limit; without, as deep as the slop allows and no faster than push_out_speed.
+/// For a contact, C >= 0: with room as a limit; without, penetration beyond the slop is removed as fast as `soft` and
+/// push_out_speed allow.
 template <class Real>
 Real contact_impulse(const StepConstants& step, const Softness& soft, const Real& separation,
                      const Real& speed, const Real& effective_mass, const Real& held)
@@ -57,8 +60,7 @@ Real contact_impulse(const StepConstants& step, const Softness& soft, const Real
     return maximum(no_faster_than_push_out(step, wanted, speed, effective_mass, held), Real(0));
 }
 
-/// Of lower <= C <= upper. One limit at a time, the nearer one; a coordinate without room between them is held from
-/// both sides.
+/// For lower <= C <= upper. Only the nearer limit acts; where both are equal, the coordinate is locked.
 template <class Real>
 Real range_impulse(const StepConstants& step, const Real& c, const Real& lower, const Real& upper,
                    const Real& speed, const Real& effective_mass, const Real& held)
@@ -78,7 +80,7 @@ Real beyond_range(const Real& c, const Real& lower, const Real& upper)
     return minimum(c - lower, Real(0)) + maximum(c - upper, Real(0));
 }
 
-/// Of a soft C = 0, bounded. A spring is physics: relaxation leaves it as it is.
+/// For a spring, a soft C = 0, of an impulse of at most `most`. A spring is a force, so relaxation keeps its softness.
 template <class Real>
 Real spring_impulse(const SoftRow<Real>& spring, const Real& c, const Real& speed, const Real& held,
                     const Real& most)

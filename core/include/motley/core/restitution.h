@@ -1,16 +1,18 @@
-// Restitution: the speed that an impact gives back.
+// Restitution: the speed with which bodies separate after an impact.
 #pragma once
 
 #include "motley/core/scalar.h"
 
 namespace motley {
 
-/// How fast a contact is to open at the end of a step in which it was hit, m/s: e times as fast as it closed when it was.
+/// The speed, m/s, at which a contact must open at the end of a step in which there was an impact, so that right after
+/// the impact it opened with `restitution` times the speed at which it closed.
 ///
-/// `approach` is how fast it opened when the step began, `acceleration` (m/s2) what forces alone make of that a second,
-/// `start` and `now` (m) how far it was open then and is. A flight keeps v^2 / 2 - a x, so the speed of the impact, wherever
-/// in the step it was, and the speed to leave with, which is given some substeps later or, by relaxation, one too early,
-/// follow from that energy. Steps in which nothing pushes keep it too (see Flight), and so do bounces without loss.
+/// `approach` (m/s) is dC/dt when the step began, negative when closing, `acceleration` a (m/s2) its rate of change by
+/// forces alone, `start` and `now` (m) are C when the step began and now. Free flight conserves v^2 / 2 - a x. From
+/// that follow the speed of the impact, at whatever time in the step it was, and the speed to leave with, although it
+/// is applied some substeps after the impact or, by relaxation, one before. Steps without impulses conserve it too (see
+/// Flight), so bounces with a restitution of 1 lose no energy.
 template <class Real>
 Real opening_speed(const Real& restitution, const Real& approach, const Real& acceleration, const Real& start,
                    const Real& now)

@@ -1,6 +1,6 @@
-// The operations that constraint maths may use on a Real, for float; soa/ gives the same names to lanes.
-// Each is defined by what it selects, not by a library call, so that every width answers with the same bits:
-// std::max(0, -0) and max(0, NaN) differ between processors' instructions.
+// The operations that constraint maths may use on a Real, for float; soa/ defines the same names for lanes.
+// Each is defined by what it selects, not by a library call, so that every width gives the same bits:
+// max(0, -0) and max(0, NaN) differ between the instructions of processors.
 #pragma once
 
 #include <cmath>
@@ -41,8 +41,8 @@ struct SineCosine {
     Real sine, cosine;
 };
 
-/// Sine and cosine for |x| <= pi, absolute error below 4e-7. Ours, so that they have one answer everywhere:
-/// Taylor polynomials of sine (degree 9) and cosine (degree 8) on |x| <= pi/4 of the quarter angle folded
+/// Sine and cosine for |x| <= pi, absolute error below 4e-7. Not those of the C library, whose bits differ between
+/// systems: Taylor polynomials of sine (degree 9) and cosine (degree 8) on |x| <= pi/4 of the quarter angle folded
 /// twice.
 template <class Real>
 SineCosine<Real> sine_cosine(const Real& angle)
@@ -65,7 +65,7 @@ SineCosine<Real> sine_cosine(const Real& angle)
 }
 
 /// The angle of (x, y) for x >= 0, absolute error below 2e-7: Abramowitz and Stegun 4.4.49 on the smaller over the
-/// larger. Ours, so that it has one answer everywhere; (0, 0) gives 0.
+/// larger. Not that of the C library, whose bits differ between systems; (0, 0) gives 0.
 template <class Real>
 Real arc_tangent2(const Real& y, const Real& x)
 {

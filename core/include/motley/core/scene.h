@@ -1,4 +1,5 @@
-// A scene: bodies, joints, and the memory of contacts. A plain value: copy it to run one state two ways.
+// A scene: bodies, joints, and what is remembered of contacts from step to step. A plain value: copy it to continue
+// from one state in two ways.
 #pragma once
 
 #include <cstdint>
@@ -23,15 +24,17 @@ struct JointBodies;
 struct JointStores;
 extern template class Boxed<JointStores>;
 
-/// Holds everything that decides what the next step computes. Every call that is refused throws
-/// InvalidInput and changes nothing; so does one for which memory runs out, which throws std::bad_alloc. A scene that was
-/// moved from, or whose assignment ran out of memory, may be assigned to and destroyed, and nothing else.
+/// Holds everything that decides what the next step computes. A refused call throws InvalidInput and changes nothing. A
+/// call that runs out of memory throws std::bad_alloc and changes nothing either. A scene that was moved from, or whose
+/// assignment ran out of memory, may only be assigned to or destroyed.
 ///
-/// Threads. Different scenes know nothing of each other. Of one scene,
-/// - calls that are const may run beside each other;
-/// - set_velocity, set_velocities, set_force and set_forces may run beside each other, and beside const calls about one or
-///   some bodies, as long as no body that one of them names is named by another: they touch those bodies' rows alone;
-/// - every other call, and a step, must be alone. A second step at the same time is refused; nothing else is found out.
+/// Threads. Different scenes are independent of each other. For one scene:
+/// - const calls may run at the same time as each other;
+/// - set_velocity, set_velocities, set_force and set_forces may run at the same time as each other and as const calls
+///   about single bodies or lists of bodies, as long as a body that one of them names is named by no other call: they
+///   access only the data of the bodies that they name;
+/// - every other call, and a step, must run alone. A second step at the same time is refused; no other violation is
+///   detected.
 class Scene {
   public:
     Scene();
@@ -39,40 +42,49 @@ class Scene {
     // ---- bodies -------------------------------------------------------------------------------------------
     /// Adds a body. Refuses a definition out of the ranges stated at BodyDefinition.
     BodyId add_body(const BodyDefinition& definition);
-    /// Adds many; `ids` must be as long as `definitions`. Either all are added or none.
+    /// Adds many and writes their handles to `ids`, which must be as long as `definitions`. Either all are added or
+    /// none.
     void add_bodies(std::span<const BodyDefinition> definitions, std::span<BodyId> ids);
-    /// Removes a body and every joint on it.
+    /// Removes a body and every joint on it. Refuses the ground.
     void remove_body(BodyId body);
-    /// Removes many. Refuses a list that names a body twice.
+    /// Removes many, or none: refuses a list that names a body twice, or the ground.
     void remove_bodies(std::span<const BodyId> bodies);
     [[nodiscard]] bool is_alive(BodyId body) const;
-    /// The static body at the origin to which joints to "the world" are tied.
+    /// The static body at the origin of the world, to which joints with the world are attached.
     [[nodiscard]] BodyId ground() const { return ground_; }
-    /// Bodies alive, the ground not counted.
+    /// Number of bodies alive, without the ground.
     [[nodiscard]] std::size_t body_count() const { return body_count_; }
 
     [[nodiscard]] BodyModel model(BodyId body) const;
     [[nodiscard]] BodyMotion motion(BodyId body) const;
     [[nodiscard]] BodyState state(BodyId body) const;
-    /// Teleports a body. Velocities are kept. Joints on it start cold in the next step.
+    /// Teleports a body: `position` of its centre of mass (m, each coordinate -1e12 to 1e12), `orientation` (of a
+    /// length from 1e-6 to 1e6; used by rigid, kinematic and static bodies) and `yaw` (rad, -1e9 to 1e9; used by planar
+    /// ones), all in the world. Velocities are kept. Joints on it lose their accumulated impulses and counted turns.
+    /// Refuses the ground.
     void set_pose(BodyId body, const Vec3<double>& position, const Quat<double>& orientation, double yaw);
-    /// Sets one body's velocity. Refused for static bodies and for components that the model does not have. Of no effect on
-    /// a contained body, which stays where it is: revive() says how it moves.
+    /// Sets the velocity of a body, world, m/s and rad/s, each component -1e9 to 1e9. Refuses a velocity other than
+    /// zero of a static body, and of components that the model does not have. Without effect on a contained body: see
+    /// revive().
     void set_velocity(BodyId body, const Vec3<float>& linear, const Vec3<float>& angular);
-    /// A force (N) and torque (N m), world, that act in every step until changed; on a contained body once it is revived.
-    /// Dynamic bodies only.
+    /// Sets a force (N, at the centre of mass) and a torque (N m), world, finite, that act in every step until changed;
+    /// on a contained body only after it is revived. Dynamic bodies only.
     void set_force(BodyId body, const Vec3<float>& force, const Vec3<float>& torque);
-    /// Thaws a body that a step contained: the host says where it is and how it moves.
+    /// Lets a contained body move again, from `position` (m, world) with the velocity `linear` (m/s, world) and no
+    /// angular velocity; its orientation stays. Refuses a body that is not contained.
     void revive(BodyId body, const Vec3<double>& position, const Vec3<float>& linear);
-    /// True when a step froze the body because its state was not finite.
+    /// Whether a step has contained the body: frozen it at its last finite pose because its state became infinite or
+    /// NaN.
     [[nodiscard]] bool is_contained(BodyId body) const;
 
-    /// Bulk writes: element i belongs to bodies[i]. `angular`, `torques` may be empty: left alone.
+    /// Bulk writes, as set_velocity() and set_force(): element i belongs to bodies[i]. Where `angular` or `torques` is
+    /// empty, these values stay as they are.
     void set_velocities(std::span<const BodyId> bodies, StridedSpan<const Vec3<float>> linear,
                         StridedSpan<const Vec3<float>> angular = {});
     void set_forces(std::span<const BodyId> bodies, StridedSpan<const Vec3<float>> forces,
                     StridedSpan<const Vec3<float>> torques = {});
-    /// Bulk reads into arrays of the host; an empty span is skipped.
+    /// Bulk reads into arrays of the host, world frame, m, m/s, rad/s and rad: element i belongs to bodies[i]. An empty
+    /// span of velocities is skipped.
     void read_positions(std::span<const BodyId> bodies, StridedSpan<Vec3<double>> positions) const;
     void read_velocities(std::span<const BodyId> bodies, StridedSpan<Vec3<float>> linear,
                          StridedSpan<Vec3<float>> angular = {}) const;
@@ -82,65 +94,69 @@ class Scene {
     /// Adds a joint of any type of joint_definitions.h: add_joint(BallSocketDefinition{...}).
     template <class Definition>
     ConstraintId add_joint(const Definition& definition);
-    /// Says a joint anew: a motor's speed, a servo's target, a limit. Type and bodies stay as they are, and so does what
-    /// the joint remembers from the last step. Refuses what add_joint refuses, and a definition of another type or of
-    /// other bodies.
+    /// Replaces the definition of a joint: the speed of a motor, the target of a servo, a limit. Its accumulated
+    /// impulses are kept. Refuses what add_joint refuses, and a definition of another type or of other bodies.
     template <class Definition>
     void set_joint(ConstraintId joint, const Definition& definition);
     void remove_joint(ConstraintId joint);
     [[nodiscard]] bool is_alive(ConstraintId joint) const;
     [[nodiscard]] std::size_t joint_count() const;
-    /// The force and torque that a joint applied over the last step, and its error now.
+    /// The mean force and torque that a joint applied over the last step, and its position error now.
     [[nodiscard]] JointReport joint_report(ConstraintId joint) const;
 
-    /// Asks to be told when a joint bears more than this; infinite limits ask no more. The joint holds on: whether it
-    /// breaks, the host decides, by removing it. Refuses limits that are not above 0.
+    /// Reports the joint in break_events() after every step in which it bore more than `limit`; an infinite limit
+    /// reports nothing. The joint holds all the same: the host breaks it by removing it. Refuses limits that are not
+    /// above 0.
     void set_break_limit(ConstraintId joint, const BreakLimit& limit);
-    /// Joints that bore more than their limit on average over the last step, in the order in which they were first watched.
+    /// Joints whose mean force or torque over the last step exceeded their break limit, in the order in which they were
+    /// first given one.
     [[nodiscard]] std::span<const BreakEvent> break_events() const { return break_events_; }
 
     // ---- memory -------------------------------------------------------------------------------------------
-    /// Puts bodies that are near each other near each other in memory. Handles and results stay what they are, to the bit;
-    /// steps of a large crowd whose people have mixed get faster. Costs about a step: call it now and then.
+    /// Reorders the bodies so that neighbours in space are neighbours in memory. Handles stay valid and results keep
+    /// every bit. Makes the steps of a large crowd faster after its people have mixed. Costs about as much as a step:
+    /// call it rarely.
     void renumber_bodies();
 
     // ---- accuracy where it is wanted ----------------------------------------------------------------------
-    /// Asks for at least so many sweeps of `solve` a substep for one joint, 0 to 10000; 0: as the solver's settings say.
-    /// The up to fifteen constraints that share its block are swept along. Not of Method::direct.
+    /// Sets the least number of sweeps of `solve` in each substep for one joint, 0 to 10000; 0: as SolverSettings says.
+    /// The up to fifteen other constraints in its block of lanes are swept as often. Without effect on Method::direct.
     void set_iterations(ConstraintId joint, int at_least);
-    /// The same for every joint and contact of the island that the body is in, as it is in each step. Dynamic bodies only.
+    /// The same for every joint and contact of the island that contains the body; islands are found anew in every step.
+    /// Dynamic bodies only.
     void set_island_iterations(BodyId body, int at_least);
 
     // ---- contacts -----------------------------------------------------------------------------------------
-    /// What the contacts of the last step did in all its substeps together, in the order of its list: what changed the
-    /// bodies' momentum. Divided by last_step it is the mean force.
+    /// The impulses of the contacts of the last step, summed over its substeps, in the order of the host's list. They
+    /// are what changed the momentum of the bodies. Divided by last_step they are mean forces.
     [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const
     {
         return contacts_.step_impulses();
     }
-    /// What they did in its last substep alone, which takes last_substep.
+    /// Their impulses in the last substep alone, which lasted last_substep.
     [[nodiscard]] std::span<const ContactImpulse> last_substep_impulses() const
     {
         return contacts_.impulses();
     }
 
-    /// What contact `index` of the list of the last step did, as a joint tells it: the force on b at the point, the depth
-    /// that the host gave, active when it pushed. Refuses an index beyond the last list, or another contact's.
+    /// A report on contact `index` of the last step in the form of a joint's: the mean force on b at the contact point,
+    /// the depth that the host gave as the error, and active if it pushed in the last substep. `contacts` is the list
+    /// of that step. Refuses an index beyond the list, and a list that has another contact there.
     [[nodiscard]] JointReport contact_report(std::span<const Contact> contacts, std::size_t index) const;
 
-    /// What bodies bear of the contacts of the last step, `contacts` being its list: element i is of bodies[i], be it
-    /// dynamic, kinematic, static or contained. `circumferences` (m, > 0), if there are any, give the pressure of each.
-    /// Refuses another list. Allocates room for a sum a body of the scene.
+    /// The loads that the contacts of the last step put on bodies: loads[i] is of bodies[i], which may be dynamic,
+    /// kinematic, static or contained. `contacts` is the list of that step; another list is refused. `circumferences`
+    /// (m, above 0, to 1e9), if given, turn forces into pressures. Allocates one sum for each body of the scene.
     void read_loads(std::span<const BodyId> bodies, std::span<const Contact> contacts,
                     StridedSpan<BodyLoad> loads, StridedSpan<const float> circumferences = {}) const;
 
     // ---- whole scene --------------------------------------------------------------------------------------
     /// 64-bit hash of every body's position, orientation and velocity bits, in slot order.
     [[nodiscard]] std::uint64_t state_hash() const;
+    /// Position errors of the joints, energy and momentum of the bodies, as they are now.
     [[nodiscard]] SceneErrors errors() const;
 
-    // ---- for the solver
-    // ------------------------------------------------------------------------------------
+    // ---- for the solver -----------------------------------------------------------------------------------
     [[nodiscard]] bool asks_for_iterations() const;
     struct IslandIterations {
         BodyId body;
@@ -153,13 +169,14 @@ class Scene {
     [[nodiscard]] JointStores& joints() { return *joints_; }
     [[nodiscard]] ContactCache& contact_cache() { return contacts_; }
     [[nodiscard]] const ContactCache& contact_cache() const { return contacts_; }
-    /// Room for a break event of each watched joint; then looking for them allocates nothing.
+    /// Reserves a break event for each joint with a break limit, so that find_break_events() allocates nothing.
     void make_room_for_break_events();
-    /// Looks for joints that bore more than their limit, once a step is done.
+    /// Fills break_events(), at the end of a step.
     void find_break_events() noexcept;
-    /// Taken by a step for as long as it lasts.
+    /// Held by a step while it runs.
     [[nodiscard]] BusyFlag& busy() { return busy_; }
-    /// Seconds of the last step and of its last substep: they turn impulses into forces. 0 before the first step.
+    /// Durations of the last step and of its last substep, s; an impulse divided by one is a force. 0 before the first
+    /// step.
     float last_step = 0, last_substep = 0;
 
   private:
@@ -167,7 +184,7 @@ class Scene {
     BodyStore bodies_;
     Boxed<JointStores> joints_;
     ContactCache contacts_;
-    std::vector<BreakEvent> break_events_;             ///< with room for every watched joint
+    std::vector<BreakEvent> break_events_;             ///< with capacity for every joint with a limit
     std::vector<IslandIterations> island_iterations_;  ///< of bodies alive
     BodyId ground_{};
     std::size_t body_count_ = 0;

@@ -1,4 +1,5 @@
-// The dials of a step. Every one trades speed for accuracy or stiffness for calm; the README has the prices.
+// The settings of a step. Each trades speed for accuracy, or stiffness for smooth motion; bench/README.md gives the
+// costs.
 #pragma once
 
 #include "motley/core/vector.h"
@@ -7,16 +8,17 @@ namespace motley {
 
 /// How the constraints of a step are solved.
 enum class Method {
-    /// Substeps with soft constraints and a relaxation pass. Few sweeps a substep, many substeps.
+    /// Many substeps with soft constraints, each of few sweeps and then a relaxation pass, which sweeps without bias.
     soft_step,
-    /// The theory's loop: integrate velocities, warm start, iterate rigid constraints, integrate positions.
+    /// The textbook loop: integrate velocities, warm start, sweep over rigid constraints, integrate positions.
     sequential_impulse,
-    /// Everything at once, in double: exact for equalities at any mass ratio, and limits, friction and contacts to 1e-9 m/s,
-    /// or StepReport::direct_unsolved says that an island was left with more (friction between masses 1 : 1000, or many
-    /// contacts that hold what joints pull apart). One sparse system a substep and island, on one thread: for small
-    /// scenes, and as the truth for the others. Rigid, with `drift_correction`; ignores `iterations`, `relaxations`,
-    /// `warm_start` and the softness of contacts and joints (springs keep theirs). Allocates. Milliseconds a step for a
-    /// thousand rows at rest or nearly so, a tenth of a second to one where most of them start or stop to slide.
+    /// Solves all rows of an island at once, in double: equalities exactly at any mass ratio; limits, friction and
+    /// contacts to 1e-9 m/s. StepReport::direct_unsolved counts the islands that were left with more (friction between
+    /// masses 1 : 1000, or many contacts that hold what joints pull apart). One sparse system for each substep and
+    /// island, on one thread: for small scenes, and as the reference for the other methods. Constraints are rigid, with
+    /// `drift_correction`; `iterations`, `relaxations`, `warm_start` and the softness of contacts and joints are
+    /// ignored (springs keep theirs). Allocates. For a thousand rows a step takes milliseconds while they rest or
+    /// nearly so, and 0.1 s to 1 s while most of them begin or stop to slide.
     direct,
 };
 
@@ -24,66 +26,74 @@ enum class Method {
 enum class DriftCorrection {
     /// projection for `sequential_impulse`, but baumgarte for `direct` and with `exact_joints`
     by_method,
-    none,  ///< nothing: shows the drift
-    /// Adds beta C / h to the velocity constraint; `direct` also holds what that promises where a substep ends. Sweeps that
-    /// have not converged leave some of it in the velocities: long or loaded chains gain energy.
+    none,  ///< no correction: the drift stays
+    /// Adds beta C / h to the velocity constraint J v = 0: C is the position error, h the substep, beta
+    /// SolverSettings::baumgarte. `direct` also corrects positions at the end of each substep, so that the error of a
+    /// lock is what this velocity implies. Sweeps that have not converged leave some of the correction in the
+    /// velocities: long or loaded chains gain energy.
     baumgarte,
-    projection,  ///< moves positions along J^T after the integration, weighted by inverse mass
+    projection,  ///< moves positions along M^-1 J^T after their integration
 };
 
-/// What a step does about a contact that it cannot take (see Contact for the valid ranges).
+/// What a step does about an invalid contact (see Contact for the valid ranges).
 enum class BadContacts {
     refuse,  ///< the whole step is refused
-    skip,    ///< it is left out, and the report tells. A key that comes twice is refused all the same
+    skip,  ///< the contact is left out and counted in the report. A key that occurs twice still refuses the step
 };
 
-/// Settings of a step. A default-constructed value is a sensible crowd at 60 Hz.
+/// Settings of a step. The default values suit a crowd at 60 steps a second.
 struct SolverSettings {
     Method method = Method::soft_step;
     int substeps = 4;     ///< 1 to 1024; position and velocity integrations a step
     int iterations = 0;   ///< sweeps a substep, 1 to 10000; 0: 1 for soft_step, 8 for sequential_impulse
     int relaxations = 1;  ///< 0 to 10000; soft_step: sweeps without bias a substep
     /// soft_step, and sequential_impulse with baumgarte: locks (ball-sockets, fixed joints, hinges, sliders and their
-    /// parts) between rigid bodies are solved all at once, exactly at any mass ratio, where they hang together as a
-    /// tree with few loops (24 rows of closing locks at most; nets stay iterative); but not without a fixed body and with a light one
-    /// between heavy ones (StepReport::exact_joints_refused). Limits, motors, springs and contacts
-    /// are swept on top. Costs about one to two sweeps more a substep. `joint_hertz` is then of the others.
+    /// parts) between rigid bodies are solved all at once, exactly at any mass ratio, where they connect the bodies as
+    /// a tree with few loops (at most 24 rows of locks that close loops; nets stay iterative). Figures without a fixed
+    /// body that have a light body between heavy ones are excepted (StepReport::exact_joints_refused). Limits, motors,
+    /// springs and contacts are still swept. Costs about one to two sweeps more a substep. `joint_hertz` then applies
+    /// to the other joints only.
     bool exact_joints = false;
-    bool warm_start = true;  ///< start from the impulses of the step before
-    /// m/s, >= 0. Above 0 an island gets no more sweeps of a substep once none of its constraints would change a
-    /// speed by more (StepMeasures::residual_max); `iterations` and `relaxations` are then the most. Same bits
-    /// for any threads and instruction set. Where it is never reached it costs 15 to 35 %.
+    bool warm_start = true;  ///< start from the accumulated impulses of the last substep
+    /// m/s, 0 to 1e9; 0: off. Above 0 the sweeps over an island end within a substep once none of its constraints would
+    /// change a speed by more than this (the measure of StepMeasures::residual_max); `iterations` and `relaxations` are
+    /// then upper bounds. Same bits for any number of threads and instruction set. Costs 15 to 35 % where it is never
+    /// reached.
     float tolerance = 0;
-    /// ms, 0 to 1e6. Above 0 each step picks its own substeps (soft_step) or iterations (sequential_impulse), so that it
-    /// takes about so long on this machine, from what the steps before took; `substeps` or `iterations` are then the most.
-    /// StepReport tells what was picked, whether it took longer, and, in `measures`, the residual that was left. Not of `direct`. NOT the same bits
-    /// from run to run: what is picked depends on the clock.
+    /// ms, 0 to 1e6; 0: off. Above 0 each step picks its own number of substeps (soft_step) or iterations
+    /// (sequential_impulse) so that it takes about this time, judged by the times of earlier steps; `substeps` or
+    /// `iterations` is then an upper bound. StepReport says what was picked, whether the step took longer, and, in
+    /// `measures`, the residual that was left. Ignored by `direct`. NOT the same bits from run to run: what is picked
+    /// depends on the clock.
     float budget_ms = 0;
     bool measures =
         false;  ///< fill StepReport::measures; costs about two sweeps a step, and reading every joint twice
     BadContacts bad_contacts = BadContacts::refuse;
-    Vec3<float> gravity{0, 0, 0};  ///< m/s2; planar bodies ignore z
+    Vec3<float> gravity{0, 0, 0};  ///< m/s2, world, -1e9 to 1e9; planar bodies ignore z
 
-    /// soft_step: stiffness of contacts, > 0, capped at 0.25 / substep; 0: half of that cap and 30 at least, so that shorter substeps
-    /// come to the rigid truth. Against what cannot move it is doubled.
+    /// Hz; soft_step: stiffness of contacts, 0.001 to 1e6, capped at 0.25 / substep. 0: half of that cap, but at least
+    /// 30, so that contacts become rigid as substeps become shorter. Doubled for contacts with static and kinematic
+    /// bodies.
     float contact_hertz = 0;
-    float contact_damping_ratio = 10;  ///< >= 0
-    /// m/s or rad/s, > 0: the fastest that penetration is resolved, and that a joint beyond its limit comes back. Bounds no
-    /// force: what presses on a contact or a limit is held.
+    float contact_damping_ratio = 10;  ///< soft_step: 0 to 1e6
+    /// m/s or rad/s, 1e-6 to 1e9: the greatest speed at which penetration is removed and a joint beyond its limit comes
+    /// back. It bounds no force: contacts and limits hold any load.
     float push_out_speed = 3;
-    /// soft_step: stiffness of joints, > 0, capped at 0.25 / substep: by default the stiffest that a substep can follow.
+    /// Hz; soft_step: stiffness of joints, 0.001 to 1e6, capped at 0.25 / substep. The default is that cap, which is
+    /// the stiffest spring that a substep can follow.
     float joint_hertz = 1e6F;
-    float joint_damping_ratio = 2;    ///< >= 0
-    float restitution_threshold = 1;  ///< m/s, >= 0: slower impacts do not bounce
+    float joint_damping_ratio = 2;    ///< soft_step: 0 to 1e6
+    float restitution_threshold = 1;  ///< m/s, 0 to 1e9: slower impacts do not bounce
 
-    DriftCorrection drift_correction = DriftCorrection::by_method;  ///< not of soft_step
-    float baumgarte = 0.2F;  ///< 0 to 1: share of the error removed a step
+    DriftCorrection drift_correction = DriftCorrection::by_method;  ///< ignored by soft_step
+    float baumgarte = 0.2F;  ///< 0 to 1: share of a position error removed in a substep (baumgarte), or of a
+                             ///< penetration in a position sweep (projection)
     int projections = 2;     ///< 0 to 10000: position sweeps a substep with DriftCorrection::projection
-    float penetration_slop = 0.0005F;  ///< m, >= 0: penetration that baumgarte and projection leave alone
+    float penetration_slop = 0.0005F;  ///< m, 0 to 1e9: penetration that baumgarte and projection leave
 
     /// Throws InvalidInput naming the first field out of its range.
     void validate() const;
-    /// The same with what the method picks picked: `iterations` above 0, and no `by_method`.
+    /// The same settings with the method's choices filled in: `iterations` above 0, and no `by_method`.
     [[nodiscard]] SolverSettings resolved() const;
 };
 

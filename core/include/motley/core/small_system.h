@@ -23,8 +23,8 @@ constexpr int below_diagonal(int row, int column)
     return row * (row - 1) / 2 + column;
 }
 
-/// Factors K, given by its rows up to the diagonal. A row whose diagonal is not above its floor cannot move, one whose
-/// pivot is lost in the rounding of its diagonal cannot move on its own: neither gets an impulse of its own.
+/// Factors K, of which the lower triangle is read. A row whose diagonal is not above its floor cannot move; a row whose
+/// pivot is lost in the rounding of its diagonal depends on the rows before it. Neither gets an impulse of its own.
 template <class Real, int n>
 SmallFactor<Real, n> factor(const Real (&k)[n][n], const Real (&floor)[n])
 {

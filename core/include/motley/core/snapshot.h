@@ -1,4 +1,4 @@
-// A scene in a file, and a step's problem in a file: to go on from later, and to send to whoever has to find a bug.
+// Files of scenes, to continue from later, and of the input of a step, to reproduce a bug.
 #pragma once
 
 #include <span>
@@ -11,23 +11,24 @@
 
 namespace motley {
 
-/// What goes into one step.
+/// The whole input of one step.
 struct StepProblem {
     Scene scene;
     SolverSettings settings;
-    float dt = 0;  ///< s
+    float dt = 0;  ///< s, duration of the step
     std::vector<Contact> contacts;
 };
 
-/// Writes everything that decides what the next steps compute: bodies, joints, handles, colours, the impulses to start
-/// warm from. A scene read back goes on with the same bits, and the host's handles stay good.
-/// The file appears whole or not at all. Throws std::runtime_error naming the file when it cannot be written.
+/// Writes everything that decides what the next steps compute: bodies, joints, handles, colours, and the accumulated
+/// impulses. A scene that is read back continues with the same bits, and the host's handles stay valid. The file
+/// appears completely or not at all. Throws std::runtime_error naming the file when it cannot be written.
 void save_scene(const Scene& scene, const std::string& file);
-/// Reads what save_scene wrote, with the same version of motley, on a machine with the same layout of numbers. Throws
-/// std::runtime_error naming the file and what is wrong with it: missing, foreign, of another version, truncated, changed.
+/// Reads what save_scene wrote, with the same version of the format and the same layout of data in memory. Throws
+/// std::runtime_error naming the file and what is wrong with it: missing, not such a file, of another version or
+/// layout, truncated, or corrupted.
 Scene load_scene(const std::string& file);
 
-/// The same for a step's whole problem.
+/// The same for the input of a step.
 void save_problem(const StepProblem& problem, const std::string& file);
 StepProblem load_problem(const std::string& file);
 

@@ -7,9 +7,8 @@
 
 namespace motley {
 
-/// `size` elements of type T, `stride` bytes apart. Made from a std::span (stride sizeof(T)), or from a
-/// member of an array of structs: StridedSpan<Vec3<float>>(&agents[0].velocity, agents.size(),
-/// sizeof(Agent)).
+/// `size` elements of type T, `stride` bytes apart. Made from a std::span (its stride is sizeof(T)), or from a member
+/// of an array of structs: StridedSpan<Vec3<float>>(&agents[0].velocity, agents.size(), sizeof(Agent)).
 template <class T>
 class StridedSpan {
     using Byte = std::conditional_t<std::is_const_v<T>, const std::byte, std::byte>;
@@ -20,7 +19,7 @@ class StridedSpan {
         : first_(reinterpret_cast<Byte*>(first)), size_(size), stride_(stride_bytes)
     {
     }
-    /// A span is a strided span.
+    /// Converts anything that is convertible to std::span<T>.
     template <class Container>
     requires std::is_convertible_v<Container&&, std::span<T>>
     // NOLINTNEXTLINE(google-explicit-constructor)

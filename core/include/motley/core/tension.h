@@ -1,31 +1,34 @@
-// Light bodies that bear heavy loads.
+// Stability of light bodies that bear heavy loads.
 //
-// A taut joint is a stiff spring against turning: an impulse P that pulls at the end of an arm r turns back what has
-// turned by an angle, with r . P of it. A substep sees the arm where it was, and swings the body wider each time once
-// h r . P exceeds about twice the inertia: the load gains energy without bound, however well the joint holds. So the inertia grows
-// for this step by twice what an explicit substep cannot follow,
+// A taut joint is a stiff spring against rotation: an impulse P of a substep h that pulls outwards at the end of an arm
+// r turns a body back that has turned by a small angle, by an angular impulse of r . P times that angle. A substep
+// applies P at the arm of its beginning, and once h r . P exceeds about twice the inertia I each substep swings the
+// body wider: its load gains energy without bound, however exactly the joint holds. So for this step the inertia grows
+// by twice the part of h r . P that an explicit substep cannot follow,
 //
 //   I' = I + 2 max(0, h r . P - 1 / b),   b = tr I^-1 - n . I^-1 n,   n = r / |r|,
 //
-// and (h w)^2 = h r . P / I', w the frequency, stays below 1 whatever the load; an explicit substep follows up to 4. Twice, because P is of the step before. All
-// directions alike, which inverts nothing that may be singular. Velocities stay as they are: nothing is slowed down that turns
-// as one, and nothing at all is changed of what bears loads that a substep can follow.
-// (Mass scaling by geometric stiffness; M. Tournier and others, Stable Constrained Dynamics, 2015, S. Andrews and others,
-// Geometric Stiffness for Real-time Constrained Multibody Dynamics, 2017, add the same K and slow bodies down by it.)
+// where b is the response to torques perpendicular to the arm. Then (h w)^2 = h r . P / I', with the angular frequency
+// w of the swing, stays below 1 whatever the load; an explicit substep is stable up to 4. The factor is two because P
+// is of the step before. The same is added in all directions, so that no singular matrix has to be inverted. Velocities
+// are not changed: bodies that turn as a whole are not slowed down, and bodies with loads that a substep can follow are
+// not changed at all. (Mass scaling by geometric stiffness. M. Tournier and others, Stable Constrained Dynamics, 2015,
+// and S. Andrews and others, Geometric Stiffness for Real-time Constrained Multibody Dynamics, 2017, add the same
+// stiffness, but it slows bodies down.)
 #pragma once
 
 #include "motley/core/lane_body.h"
 
 namespace motley {
 
-/// What a joint pulls with when a step begins.
+/// The arms and impulses of a joint when a step begins.
 template <class Real>
 struct Tension {
-    Vec3<Real> arm_a, arm_b;    ///< m, world: from the centres of mass to where it pulls
+    Vec3<Real> arm_a, arm_b;    ///< m, world: from the centres of mass to where the impulses act
     Vec3<Real> push_a, push_b;  ///< N s, of the substep before
 };
 
-/// What h r . P has beyond what a substep can follow, kg m2; 0 for bodies that do not turn.
+/// max(0, h r . P - 1 / b), kg m2: what a substep cannot follow; 0 for bodies that do not turn.
 template <class Real, BodyKind kind>
 Real unbearable_tension(const LaneBody<Real, kind>& body, const Vec3<Real>& arm, const Vec3<Real>& push,
                         const Real& substep)
@@ -44,13 +47,13 @@ Real unbearable_tension(const LaneBody<Real, kind>& body, const Vec3<Real>& arm,
     }
 }
 
-/// Gives a body I' for I.
+/// Replaces the inertia I of a body by I'.
 template <class Real, BodyKind kind>
 void stiffen(LaneBody<Real, kind>& body, const Vec3<Real>& arm, const Vec3<Real>& push, const Real& substep)
 {
     const Real k = Real(2) * unbearable_tension(body, arm, push, substep);
     if constexpr (kind == BodyKind::rigid) {
-        // (I + k)^-1 = (1 + k I^-1)^-1 I^-1, which commute.
+        // (I + k 1)^-1 = (1 + k I^-1)^-1 I^-1; the factors commute, so the product is symmetric.
         const Sym3<Real>& i = body.inverse_inertia;
         const Real one(1);
         const Sym3<Real> share =

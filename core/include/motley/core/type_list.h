@@ -1,4 +1,4 @@
-// A list of types, for what is made once for each type of a list.
+// Lists of types.
 #pragma once
 
 namespace motley {
@@ -8,7 +8,7 @@ struct TypeList {
     static constexpr int size = sizeof...(Types);
 };
 
-/// The types of several lists, one list behind the other.
+/// The concatenation of several lists.
 template <class... Lists>
 struct JoinedLists;
 template <class... Types>

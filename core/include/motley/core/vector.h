@@ -1,5 +1,5 @@
 // Small vectors, quaternions and symmetric matrices over any scalar: float, double, or a bundle of lanes.
-// Nothing here branches on a value, so the same text serves one constraint and sixteen.
+// Nothing here branches on a value, so the same code serves one constraint or a bundle of lanes.
 #pragma once
 
 namespace motley {
@@ -117,7 +117,7 @@ Quat<R> normalised(const Quat<R>& q)
     return {scale * q.x, scale * q.y, scale * q.z, scale * q.w};
 }
 
-/// R m R^T for the rotation R of q: a body tensor seen from the world.
+/// R m R^T for the rotation R of q: takes a tensor from the body frame to the world frame.
 template <class R>
 Sym3<R> rotate_tensor(const Quat<R>& q, const Sym3<R>& m)
 {

@@ -1,6 +1,6 @@
-// Bodies that turn, seen in three dimensions whatever their kind: twists (linear and angular velocity) and wrenches
-// (an impulse and a turning impulse), for constraints whose rows may point anywhere. What a kind cannot do has no
-// inverse mass, and so no effect.
+// Bodies that turn, treated in three dimensions whatever their kind: linear and angular velocities, and wrenches (a
+// linear and an angular impulse), for constraints whose rows may point anywhere. Along a direction in which a kind
+// cannot move its inverse mass is zero, so that impulses have no effect.
 #pragma once
 
 #include "motley/core/joint_pose.h"
@@ -77,8 +77,8 @@ Sym3<Real> angular_response(const LaneBody<Real, BodyKind::fixed>&)
     return {none, none, none, none, none, none};
 }
 
-/// The size of M^-1, against which a row that a body cannot follow is told from one that it hardly can: a planar body
-/// has no mass across its plane but rounding.
+/// The magnitude of M^-1. A row whose J M^-1 J^T is below `rounding_share` of it is one that the bodies cannot follow:
+/// for example a row perpendicular to the plane of planar bodies, where only rounding is left.
 template <class Real, BodyKind kind>
 Real linear_size(const LaneBody<Real, kind>& body)
 {
@@ -104,7 +104,7 @@ Real angular_size(const LaneBody<Real, BodyKind::fixed>&)
 {
     return Real(0);
 }
-/// Share of that size below which a row is nothing but rounding: a direction off by 1e-5, squared.
+/// The share of that magnitude below which a row is only rounding: the square of an error of 1e-5 in its direction.
 inline constexpr float rounding_share = 1e-10F;
 
 // ---- v += M^-1 (linear, angular) ------------------------------------------------------------------------------------
@@ -142,7 +142,7 @@ void apply_turn(LaneBody<Real, BodyKind::fixed>&, const Vec3<Real>&)
 {
 }
 
-/// The same to positions: the displacement of an impulse of a position solve.
+/// The same for positions, in a position solve.
 template <class Real>
 void displace(LaneBody<Real, BodyKind::rigid>& body, const Vec3<Real>& linear, const Vec3<Real>& angular)
 {
@@ -162,7 +162,7 @@ void displace(LaneBody<Real, BodyKind::fixed>&, const Vec3<Real>&, const Vec3<Re
 
 // ---- orientations ---------------------------------------------------------------------------------------------------
 
-/// How far a body has turned since the step began.
+/// The rotation of a body since the step began.
 template <class Real, BodyKind kind>
 Quat<Real> turn_of(const LaneBody<Real, kind>& body)
 {
@@ -175,7 +175,8 @@ Quat<Real> turn_of(const LaneBody<Real, BodyKind::planar>& body)
     return {Real(0), Real(0), half.sine, half.cosine};
 }
 
-/// How far a body has turned since the step began about an axis that it carries, in the world of that time; rad.
+/// The angle, rad, by which a body has turned since the step began about an axis that is fixed in it. `axis` is that
+/// axis in the world when the step began.
 template <class Real, BodyKind kind>
 Real turn_about(const LaneBody<Real, kind>& body, const Vec3<Real>& axis)
 {
@@ -188,7 +189,7 @@ Real turn_about(const LaneBody<Real, BodyKind::planar>& body, const Vec3<Real>& 
     return axis.z * body.delta_yaw;
 }
 
-/// A rotation in the frame of a body, seen from the world.
+/// Takes a rotation from the body frame to the world frame.
 template <class Real, BodyKind kind>
 Quat<Real> to_world(const Orientation<Real, kind>& o, const Quat<Real>& local)
 {
@@ -231,7 +232,8 @@ template <class Real>
 struct RotationRows {
     Vec3<Real> axis[3];  ///< the rows of G: J = [0, -G, 0, G]
 };
-/// C = 2 vec(q_a* q_b), w >= 0, and G = (w I - [v]x) F_a^T.
+/// The error C = 2 v and the rows G = (w I - [v]x) F_a^T, with (v, w) = q_a* q_b, w >= 0, from the rotations q_a and
+/// q_b of the frames and the rotation matrix F_a of q_a.
 template <class Real>
 RotationRows<Real> rotation_rows(const Quat<Real>& frame_a, const Quat<Real>& frame_b, Real* error)
 {

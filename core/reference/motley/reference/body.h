@@ -22,15 +22,16 @@ struct Body {
     double mass = 1;
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< body frame
 
-    /// Reads the host's words.
+    /// A body from a host's definition.
     static Body from(const BodyDefinition& definition);
-    /// M^-1, (1/m I, I^-1) with the inertia turned into the world; zero for what the model holds.
+    /// M^-1, with the inertia in the world frame; zero for coordinates that the model does not have.
     [[nodiscard]] Matrix6 inverse_mass() const;
-    /// The pose after moving with a generalised velocity for a time, exactly for constant velocity.
+    /// Moves the pose with a constant generalised velocity for a time, exactly.
     void advance(const Vector6& generalised_velocity, double seconds);
-    /// v += h (g + M^-1 f).
+    /// v += h (g + M^-1 f), with the time h, gravity g and the force f.
     void accelerate(const Eigen::Vector3d& gravity, double seconds);
-    /// x += h v, turned by the velocity half way; the speed after it is what keeps the angular momentum.
+    /// x += h v. A rigid body is turned by the angular velocity that it has half way, and afterwards has the angular
+    /// velocity that keeps its angular momentum.
     void move_on(double seconds);
 };
 

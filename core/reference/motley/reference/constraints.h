@@ -18,8 +18,9 @@ Eigen::Vector3d point_error(const Body& a, const Body& b, const Eigen::Vector3d&
 /// [-I, [r_a]x, I, -[r_b]x].
 Jacobian point_jacobian(const Body& a, const Body& b, const Eigen::Vector3d& local_a,
                         const Eigen::Vector3d& local_b);
-/// The same with both arms to the point in the middle between the anchors: what joints that lock a point push along. Equal and
-/// opposite impulses have no moment there. J v is the rate of C as seen by who turns with the mean of both spins.
+/// The same with both arms to the midpoint between the anchors, as used by joints that lock a point: equal and opposite
+/// impulses there have no moment together. J v is the rate of C in a frame that turns with the mean of both angular
+/// velocities.
 Jacobian lock_jacobian(const Body& a, const Body& b, const Eigen::Vector3d& local_a,
                        const Eigen::Vector3d& local_b);
 
@@ -35,20 +36,20 @@ struct Frame {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
 };
-/// The locked coordinates of frame b in frame a: of a point all of d (world), of a line d along y and z of a, of a plane
-/// d along x; of all rotations 2 vec(q_a* q_b) with w >= 0, of swing x_b along y and z of a, of perpendicular axes
-/// x_a . y_b.
+/// The locked coordinates of frame b in frame a: of a point all of d (world), of a line d along y and z of a, of a
+/// plane d along x; of all rotations 2 vec(q_a* q_b) with w >= 0, of swing x_b along y and z of a, of perpendicular
+/// axes x_a . y_b.
 Eigen::VectorXd frame_error(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
                             LinearLock linear, AngularLock angular);
 /// Rows [-e, -(r_a + d) x e, e, r_b x e] and [0, -g, 0, g].
 Jacobian frame_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
                         LinearLock linear, AngularLock angular);
 
-/// How far b's frame is along x of a's frame, or turned about the x axis that the frames share.
-/// `angle`: of an Euler drive.
+/// The coordinate of a drive: the position of b's frame along x of a's frame, its rotation about the x axis that the
+/// frames share, or the Euler angle `angle`.
 double drive_value(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b, DriveAxis axis,
                    EulerAngle angle = EulerAngle::x);
-/// [-x, -(r_a + d) x x, x, r_b x x], or [0, -t, 0, t] with t = (x_a + x_b) / (1 + x_a . x_b).
+/// [-x, -(r_a + d) x x, x, r_b x x] of a slide, or [0, -t, 0, t], of a twist with t = (x_a + x_b) / (1 + x_a . x_b).
 Jacobian drive_jacobian(const Body& a, const Body& b, const Frame& frame_a, const Frame& frame_b,
                         DriveAxis axis, EulerAngle angle = EulerAngle::x);
 
@@ -62,7 +63,7 @@ Jacobian direction_jacobian(const Eigen::Vector3d& direction, const Eigen::Vecto
 
 /// M^-1 of a pair, 12 x 12.
 Eigen::Matrix<double, 12, 12> pair_inverse_mass(const Body& a, const Body& b);
-/// (J M^-1 J^T)^+: the pseudo-inverse, so that directions nobody can move along take no impulse.
+/// (J M^-1 J^T)^+: the pseudo-inverse, so that directions in which no body can move get no impulse.
 Eigen::MatrixXd effective_mass(const Jacobian& jacobian, const Body& a, const Body& b);
 
 }  // namespace motley::reference

@@ -1,13 +1,13 @@
-// What Method::direct says of its step.
+// The result of a step of Method::direct.
 #pragma once
 
 namespace motley::reference {
 
-/// How well a step was solved at once.
+/// How well a step was solved.
 struct DirectResult {
     double violation =
-        0;  ///< largest that is left of the equations and inequalities of all substeps, m/s or rad/s
-    int unsolved = 0;  ///< islands with more than 1e-9 of it, counted in every substep
+        0;             ///< largest residual of the equations and inequalities of all substeps, m/s or rad/s
+    int unsolved = 0;  ///< islands with a residual above 1e-9, summed over the substeps
 };
 
 }  // namespace motley::reference

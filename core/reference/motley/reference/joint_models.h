@@ -27,7 +27,7 @@ Model model_of(const FrameJointDefinition<linear, angular>& joint)
 {
     return frame_model(joint.frame_a, joint.frame_b, joint.stiffness, linear, angular);
 }
-/// All drives have the very fields of a slide drive.
+/// The definitions of all drives have the same fields as that of a slide drive.
 template <DriveAxis axis>
 Model model_of(const DriveDefinition<axis>& drive)
 {

@@ -10,9 +10,9 @@
 
 namespace motley::reference {
 
-/// Moves a scene on by `dt` seconds with everything solved at once in double. The contacts are those that the scene's
-/// cache has staged. Bodies, joint memories and staged contact impulses are written; bodies whose state is no longer
-/// finite are left as such, for BodyStore::commit to contain.
+/// Advances a scene by `dt` seconds, with all constraints solved at once in double. `contacts` are those that the
+/// scene's cache has staged. Writes bodies, joint memories and staged contact impulses. Bodies whose state has become
+/// infinite or NaN are left so, for BodyStore::commit to contain.
 DirectResult step_directly(Scene& scene, float dt, const SolverSettings& settings,
                            std::span<const Contact> contacts);
 

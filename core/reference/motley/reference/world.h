@@ -1,5 +1,5 @@
-// The whole step in double, with explicit J and M^-1, one constraint after another in the order they are given:
-// what the lanes must agree with up to the rounding of floats.
+// The whole step in double, with explicit J and M^-1, one constraint after another in the order in which they are
+// given. The lanes must agree with it up to the rounding of floats.
 #pragma once
 
 #include <cstdint>
@@ -29,16 +29,17 @@ class World {
     /// One step. Contacts are solved in the order of the list.
     void step(double dt, const SolverSettings& asked, const std::vector<ContactPoint>& contacts);
 
-    /// One step solved simultaneously: every row of a substep at once, to a residual near the rounding of doubles,
-    /// instead of one after another; what a sequential method converges to as its iterations grow. Rigid, with the drift
-    /// correction of the settings: baumgarte, or a position solve of all rows at once. Redundant rows share their impulse
-    /// with the least norm, contradictory ones are met in the least squares. Restitution comes after the substeps,
-    /// contact by contact, as in step(). What bears heavy loads is stiffened against its own turning, and with baumgarte
-    /// locks are held at the end of each substep. Impulses of the step before are where the search begins.
+    /// One step in which all rows of a substep are solved at once, to a residual near the rounding of doubles: the
+    /// result that a sequential method approaches with the number of its iterations. Constraints are rigid, with the
+    /// drift correction of the settings: baumgarte, or a position solve of all rows at once. Redundant rows get the
+    /// impulses of least norm, contradictory ones are solved in the least squares sense. Restitution comes after the
+    /// substeps, contact by contact, as in step(). Joints under heavy loads are stabilised (geometric_stiffness.cpp),
+    /// and with baumgarte the positions of locks are corrected at the end of each substep (hold_locks.cpp). The search
+    /// starts from the impulses of the step before.
     DirectResult step_directly(double dt, const SolverSettings& asked,
                                const std::vector<ContactPoint>& contacts);
 
-    /// What a contact did, N s: along the normal, and across it, on b.
+    /// The impulse of a contact on b, N s: along the normal, and perpendicular to it.
     struct ContactResult {
         double normal = 0;
         Eigen::Vector3d friction = Eigen::Vector3d::Zero();
@@ -48,7 +49,8 @@ class World {
     [[nodiscard]] const ContactResults& last_substep_results() const { return memory_; }
     [[nodiscard]] const ContactResults& step_results() const { return step_results_; }
 
-    /// Takes over what another step, of this substep, did to its contacts: by key. Joints carry theirs themselves.
+    /// Takes over the contact impulses, by key, of another world's step with substeps of `last_substep` s. Joints carry
+    /// their impulses themselves.
     void recall(double last_substep, ContactResults contacts)
     {
         last_substep_ = last_substep;
@@ -66,7 +68,7 @@ class World {
     std::vector<Body> start_;  ///< the bodies when the step began
 
     static Soft softness(double hertz, double damping_ratio, double h);
-    /// Hz: of the stiffest spring that a substep can follow, or the last one if that was longer.
+    /// The frequency, Hz, of the stiffest spring that this substep, or the last one if it was longer, can follow.
     [[nodiscard]] double stiffest(double h) const { return 0.25 / std::max(h, last_substep_); }
     [[nodiscard]] bool moves(int i) const
     {
@@ -98,18 +100,18 @@ class World {
     void finish_contacts(std::vector<ContactRow>& contacts, const SolverSettings& settings);
     void land_free_groups(double h, double dt, const SolverSettings& settings);
     void end_step(double h);
-    /// What hangs together through joints and contacts, and whether anything of it hangs on what cannot be moved.
+    /// Islands of bodies that joints and contacts connect.
     struct Islands {
-        std::vector<int> of_body;  ///< -1 for bodies that nothing moves
-        std::vector<bool> floats;
+        std::vector<int> of_body;  ///< -1 for static and kinematic bodies
+        std::vector<bool> floats;  ///< by island: whether nothing connects it to these or to the world
     };
     using PairMatrix = Eigen::Matrix<double, 12, 12>;
-    /// A direction in which a joint is stiff for what it moves.
+    /// A direction in which the geometric stiffness of a joint is high for the mass that it moves.
     struct StiffRow {
         int a, b, island;
-        double stiffness;      ///< over what an explicit substep follows, in masses of that direction
+        double stiffness;      ///< h^2 K / M beyond what an explicit substep follows
         Jacobian jacobian;     ///< one row
-        Eigen::Vector3d turn;  ///< what it sees of a common spin
+        Eigen::Vector3d turn;  ///< its speed for a common spin of both bodies
     };
     [[nodiscard]] Islands find_islands(const std::vector<ContactRow>& contacts) const;
     DirectResult solve_substep_directly(double h, const SolverSettings& settings,
@@ -117,21 +119,21 @@ class World {
                                         const std::vector<StiffRow>& stiff);
     [[nodiscard]] PairMatrix stiffness_of(const Joint& joint, double h) const;
     [[nodiscard]] std::vector<StiffRow> find_stiff_rows(const Islands& islands, double h) const;
-    /// Adds what bears heavy loads to a problem of velocities or of positions.
+    /// Adds stiff rows to a problem of velocities or of positions.
     void stiffen(Assembly& assembly, const std::vector<StiffRow>& rows, bool sees_velocities) const;
-    /// Where a lock shall be at the end of a substep.
+    /// The C that a lock must have at the end of a substep.
     struct Hold {
         std::size_t joint, block;
         double side;
         Eigen::VectorXd target;
     };
     [[nodiscard]] std::vector<Hold> find_holds(double h) const;
-    /// By island, whether they are held.
+    /// Moves bodies until locks have that C. Returns for each island whether they do.
     std::vector<bool> hold_locks(const std::vector<Hold>& holds, const Islands& islands, double h,
                                  bool stiff);
-    /// About the origin, by island.
+    /// The angular momentum of each island about the origin.
     [[nodiscard]] std::vector<Eigen::Vector3d> angular_momenta(const Islands& islands) const;
-    /// Gives islands that float and are held this angular momentum, as a common spin.
+    /// Adds the angular momentum `lost` to each island that floats and is held, as a common spin.
     void give_back(const Islands& islands, const std::vector<bool>& held,
                    const std::vector<Eigen::Vector3d>& lost);
     [[nodiscard]] double position_error() const;

@@ -2,7 +2,8 @@
 //
 //   C = p_b - p_a = 0,   J = [-I, [r_a]x, I, -[r_b]x],   K = (1/m_a + 1/m_b) I - [r_a]x I_a^-1 [r_a]x - ...
 //
-// Solved as a block: Gauss-Seidel inside one joint does not converge for long levers. Two rows in the plane.
+// p: anchors; r: their arms; m: masses; I_a, I_b: inertias. Solved as a block, because Gauss-Seidel inside one joint
+// does not converge for long levers. Two rows in the plane.
 #pragma once
 
 #include <cmath>
@@ -111,7 +112,7 @@ struct BallSocket : ConstraintTraits {
         apply_impulse(b, substep.arm_b, change);
     }
 
-    /// Between bodies that turn.
+    /// For exact joints, which are between rigid and fixed bodies only.
     static bool is_equality(const Definition&) { return true; }
     static bool locks_place(const Definition&) { return true; }
     template <class Real, class Row, class A, class B>
@@ -153,7 +154,7 @@ struct BallSocket : ConstraintTraits {
         return {to_three(impulse.push), {Real(0), Real(0), Real(0)}};
     }
 
-    /// How far off it is, from the poses now, in double.
+    /// Errors: |C|, from the present poses, in double.
     static JointReport report(const Definition& joint, const Memory<float>&, const BodyState& a,
                               const BodyState& b)
     {

@@ -1,4 +1,4 @@
-// What a host says of a ball-socket joint.
+// The definition of a ball-socket joint.
 #pragma once
 
 #include "motley/core/ids.h"
@@ -6,14 +6,13 @@
 
 namespace motley {
 
-/// Holds a point of a on a point of b: C = p_b - p_a = 0, one row an axis that the pair can move along.
-/// Between bodies that stay in the plane (planar with planar or fixed) only x and y count.
+/// Holds an anchor p_a of body a on an anchor p_b of body b: C = p_b - p_a = 0. Three rows, but only x and y between
+/// bodies that stay in the plane (planar with planar, static or kinematic).
 struct BallSocketDefinition {
     BodyId body_a{};
     BodyId body_b{};
-    Vec3<float>
-        local_anchor_a{};  ///< m, in the frame of a, from its centre of mass; a particle's must be zero
-    Vec3<float> local_anchor_b{};  ///< m, in the frame of b, likewise
+    Vec3<float> local_anchor_a{};  ///< m, -1e9 to 1e9, from a's centre of mass in its frame; particle: zero
+    Vec3<float> local_anchor_b{};  ///< m, likewise of b
 };
 
 }  // namespace motley

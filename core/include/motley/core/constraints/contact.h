@@ -3,8 +3,9 @@
 //   C   = n . (p_b - p_a) >= 0,  lambda_n >= 0
 //   J   = [-n, -(r_a x n), n, r_b x n];  friction: the same rows with the tangents, |lambda_t| <= mu lambda_n
 //
-// The normal and the arms stay as they were when the step began, so J is constant and the separation follows
-// from the displacement, C = C_0 + J delta: exact for discs and balls, second order in the turn for the rest.
+// n: normal; p: surface points; r: arms to the contact point; mu: friction coefficient. The normal and the arms stay as
+// they were when the step began, so J is constant and the separation follows from the displacement delta since then,
+// C = C_0 + J delta: exact for discs and balls, with an error of second order in the rotation for other shapes.
 #pragma once
 
 #include <type_traits>
@@ -36,8 +37,8 @@ struct ContactMemory {
     Vec3<Real> friction;
 };
 
-/// What a contact does besides keeping bodies apart, each what the one before does and more: no friction, no friction rows;
-/// no restitution, nothing to remember of the impact.
+/// What a contact does in addition to keeping bodies apart; each kind does what the one before does. Smooth contacts
+/// have no friction rows, and only bouncing ones store the speed of the impact.
 enum class Touch { smooth, rough, bouncing };
 
 template <Touch touch>
@@ -64,8 +65,8 @@ struct ContactKind : ConstraintTraits {
         [[no_unique_address]] Lever<Real, a, is_planar_pair(a, b)> lever_a;
         [[no_unique_address]] Lever<Real, b, is_planar_pair(a, b)> lever_b;
     };
-    /// The plane's two effective masses are made anew from what a sweep has at hand: from memory that is no dearer than to fetch them,
-    /// in cache it costs a sweep a tenth.
+    /// Without the two effective masses, which each sweep computes from arms and bodies: where rows come from memory
+    /// this costs no more than loading them would, where they are in cache it adds a tenth to a sweep.
     template <class Real>
     struct PlanarSweep {
         Vec2<Real> normal, arm_a, arm_b;
@@ -78,9 +79,9 @@ struct ContactKind : ConstraintTraits {
         Real separation;
         Real normal_effective_mass;
         Vec3<Real>
-            tangent;  ///< where the point gives way most; the second is normal x tangent, where it does least
+            tangent;  ///< direction of the largest response; the second, normal x tangent, has the smallest
         Vec2<Real>
-            tangent_effective_mass;  ///< along the two, which do not touch each other; the first is the smaller
+            tangent_effective_mass;  ///< along the two tangents, which are decoupled; the first is the smaller
         Real friction;
     };
     template <class Real, BodyKind a, BodyKind b>
@@ -118,7 +119,7 @@ struct ContactKind : ConstraintTraits {
                            std::conditional_t<has_restitution, BouncingImpulse<Tangent<Real, a, b>, Real>,
                                               RoughImpulse<Tangent<Real, a, b>, Real>>>;
 
-    /// A unit vector across n: n x (the axis it leans away from).
+    /// A unit vector perpendicular to n: along n x e_x, or n x e_z where n is close to the x axis.
     template <class Real>
     static Vec3<Real> tangent_of(const Vec3<Real>& n)
     {
@@ -219,7 +220,7 @@ struct ContactKind : ConstraintTraits {
         push_normal<Real>(row, wanted, impulse, a, b);
     }
 
-    /// After the substeps: contacts that were hit fast enough leave with e times the speed of the impact.
+    /// After the substeps: contacts that were hit fast enough leave with restitution times the speed of the impact.
     template <class Real, class Row, class Impulse, class A, class B>
     static void restitute(const StepConstants& step, const Row& whole, Impulse& impulse, A& a, B& b)
     {
@@ -238,7 +239,7 @@ struct ContactKind : ConstraintTraits {
     {
         const auto& row = in_sweep(whole);
         const Real deep = minimum(row.separation + moved<Real>(row, a, b) + Real(step.slop), Real(0));
-        const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep start must not explode
+        const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep overlap must not explode
         const Real lambda = -(normal_effective_mass<Real>(row, a, b) * Real(step.projection_rate) * error);
         if constexpr (smooth) {
             displace_along(a, row.normal, row.lever_a, -lambda);
@@ -271,13 +272,13 @@ struct ContactKind : ConstraintTraits {
             return row;
         }
     }
-    /// K = J M^-1 J^T of the point where they touch, in every direction.
+    /// K = J M^-1 J^T of the contact point, for all directions.
     template <class Vector, class A, class B>
     static auto point_response(const A& a, const Vector& arm_a, const B& b, const Vector& arm_b)
     {
         return inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b);
     }
-    /// 1 / (J M^-1 J^T) along a direction, K being the inverse mass of the point.
+    /// 1 / (J M^-1 J^T) along a direction, from K of the point.
     template <class Vector, class Symmetric>
     static auto effective_mass_along(const Vector& direction, const Symmetric& k)
     {
@@ -292,7 +293,7 @@ struct ContactKind : ConstraintTraits {
             return effective_mass_along(row.normal, point_response(a, row.arm_a, b, row.arm_b));
         }
     }
-    // The normal's row of J: times v, times the displacement of the step, and M^-1 J^T lambda.
+    // With J the row of the normal: J v, J times the displacement since the step began, and v += M^-1 J^T lambda.
     template <class Real, class Row, class A, class B>
     static Real speed(const Row& row, const A& a, const B& b)
     {

@@ -3,8 +3,8 @@
 //   C = |d|,  d = p_b - p_a,  u = d / |d|,   J = [-u, -(r_a x u), u, r_b x u]
 //   min <= C <= max as inequalities, C = min where they are equal (a rod), and a soft C = rest (a spring)
 //
-// One row and up to two impulses along it, solved one after another on a speed that each updates. What a joint does not
-// have is masks, not branches: rods, ropes and springs share a block.
+// p: anchors; r: their arms. One row and up to two impulses along it, solved one after another on a speed that each
+// updates. Parts that a joint lacks are switched off by masks, so that rods, ropes and springs share a block.
 #pragma once
 
 #include <cmath>
@@ -23,7 +23,7 @@ struct Distance : ConstraintTraits {
     static constexpr const char* name = "distance";
     static constexpr bool pulls_at_arms = true;
 
-    /// Stands for no limit: far enough to be slack for ever, small enough to stay finite.
+    /// Replaces an infinite limit: too far to be reached, small enough for results to stay finite.
     static constexpr float far_away = 1e12F;
 
     template <class Real>
@@ -169,7 +169,7 @@ struct Distance : ConstraintTraits {
         return {to_three((impulse.spring + impulse.limit) * substep.axis), {Real(0), Real(0), Real(0)}};
     }
 
-    /// How far off it is, from the poses now, in double.
+    /// Errors: how far the length is beyond its limits, from the present poses, in double.
     static JointReport report(const Definition& joint, const Memory<float>& memory, const BodyState& a,
                               const BodyState& b)
     {

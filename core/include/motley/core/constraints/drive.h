@@ -6,14 +6,18 @@
 //                            y: C = atan2(x_a . z_b, |n|),         t = n / |n|
 //                            z: C = atan2(-x_a . y_b, x_a . x_b),  t = x_a x n / n^2
 //
-// A rotor of inertia I_r that is geared to C is one body with the others along the row: with K = J M^-1 J^T an impulse changes
-// the speed by K s of it, s = 1 / (1 + K I_r), and s of it comes to the bodies. What others have changed of their speed since is
-// shared with the rotor first: it goes by s of that.
+// Symbols: p, r: anchors and their arms; x, y, z: axes of the frames of a and b; q = (v, w): rotation of frame b in
+// frame a from those of the frames, q_a and q_b; t: axis of the angular row.
 //
-// One row and up to three impulses along it: the motor's, bounded by its force times h; the spring's, soft; the
-// limit's, >= 0 at the lower end and <= 0 at the upper. They are solved one after another on a speed that each
-// updates, so bodies are read and written once. What a drive does not have is switched off by masks: lanes with and
-// without share a block.
+// A rotor of inertia I_r that is geared to C moves with the bodies along the row. With K = J M^-1 J^T and
+// s = 1 / (1 + K I_r) an impulse along the row changes the speed by K s times the impulse, and the bodies get the share
+// s of it. A change of the bodies' speed by other constraints since then is shared with the rotor first: the share s of
+// it remains.
+//
+// One row and up to three impulses along it: that of the motor, bounded by its force times the substep h; that of the
+// spring, soft; and that of the limit, >= 0 at the lower end and <= 0 at the upper. They are solved one after another
+// on a speed that each updates, so bodies are read and written once. Parts that a drive lacks are switched off by
+// masks, so that drives with and without them share a block.
 #pragma once
 
 #include <cmath>
@@ -34,13 +38,13 @@ struct Drive : ConstraintTraits {
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr bool slides = drive_axis == DriveAxis::slide;
     static constexpr bool is_euler = drive_axis == DriveAxis::euler;
-    /// Few joints count Euler angles: see constraint_type.h.
+    /// Few joints have Euler angles.
     static constexpr bool is_rare = is_euler;
-    /// Stands for no limit: far enough to be slack for ever, small enough to stay finite.
+    /// Replaces an infinite limit: too far to be reached, small enough for results to stay finite.
     static constexpr float far_away = 1e12F;
     static constexpr float half_turn = 3.14159265F;
 
-    /// What only a slide has: where its frames are, and so levers. A twist turns about its axis wherever that is.
+    /// Only slides have positions of frames, arms and levers. Rotations act about their axis wherever that is.
     template <class Real>
     struct Anchors {
         Vec3<Real> position_a, position_b;
@@ -54,7 +58,7 @@ struct Drive : ConstraintTraits {
         Vec3<Real> a, b;
     };
 
-    /// Which Euler angle: 1 for it, 0 for the others.
+    /// Which Euler angle the drive acts on: 1 for it, 0 for the others.
     template <class Real>
     struct Which {
         Real x, y, z;
@@ -101,12 +105,12 @@ struct Drive : ConstraintTraits {
         Real share;                               ///< s
         Real value;                               ///< C
         Real spring_effective_mass, spring_kept;  ///< see SoftRow
-        Real start_speed;                         ///< of the rotor, when the substep began
+        Real start_speed;                         ///< of the rotor when the substep began
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
         Real motor, spring, limit;
-        Real rotor_speed;  ///< m/s or rad/s: no impulse, but what the last sweep left
+        Real rotor_speed;  ///< m/s or rad/s: not an impulse, but the speed that the last sweep left
     };
 
     static void validate(const Definition& drive, const JointBodies& bodies)
@@ -274,7 +278,7 @@ struct Drive : ConstraintTraits {
         return slides ? Wrench<Real>{effort, none} : Wrench<Real>{none, effort};
     }
 
-    /// How far beyond its limits it is, from the poses now, in double.
+    /// Errors: how far C is beyond its limits, from the present poses, in double.
     static JointReport report(const Definition& drive, const Memory<float>& memory, const BodyState& a,
                               const BodyState& b)
     {
@@ -308,14 +312,14 @@ struct Drive : ConstraintTraits {
         if (angle == EulerAngle::y) return std::atan2(dot(x_a, z_b), std::sqrt(dot(n, n)));
         return std::atan2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));
     }
-    /// t and C of the angle that each lane asks for.
+    /// t and C of the Euler angle of each lane.
     template <class Real, class Substep>
     static void build_euler(const Which<Real>& which, const Quat<Real>& frame_a, const Quat<Real>& frame_b,
                             Substep& substep)
     {
         const Vec3<Real> x_a = axis_x(frame_a), z_b = axis_z(frame_b), n = cross(z_b, x_a);
-        // t must never be shorter than 1, or the impulse that reaches a speed along it would grow without bound; and within a degree and a half of a right angle
-        // those of x and z grow no further.
+        // t must never be shorter than 1, or the impulse that reaches a given speed along it would grow without bound.
+        // Within 1.5 degrees of a right angle of y the length of t of x and z, 1 / |n|, is held at 38.
         const Real over_length = Real(1) / square_root(maximum(dot(n, n), Real(1e-30F)));
         const Real steepness = minimum(over_length, Real(38));
         substep.axis = (which.x * steepness * over_length) * cross(n, z_b) + (which.y * over_length) * n +
@@ -349,7 +353,7 @@ struct Drive : ConstraintTraits {
             } else {
                 const Quat<Real> q = relative_rotation(frame_a, frame_b);
                 const Vec3<Real> x_a = axis_x(frame_a), x_b = axis_x(frame_b);
-                // The axes of a hinge never come near opposite; without one, half a turn of swing has no twist.
+                // In a hinge the axes are nearly parallel. Without one they may be opposite, where there is no twist.
                 const Real scale = Real(1) / maximum(Real(1) + dot(x_a, x_b), Real(0.01F));
                 substep.axis = scale * (x_a + x_b);
                 substep.value = Real(2) * arc_tangent2(q.x, q.w);

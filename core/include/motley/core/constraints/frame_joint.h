@@ -1,4 +1,5 @@
-// Joints that lock axes of a frame on b to those of a frame on a: one row an axis, all rows of a joint solved at once.
+// Joints that lock axes of a frame on b to those of a frame on a: one row for each axis, all rows of a joint solved at
+// once.
 //
 //   point          C = d,  d = p_b - p_a        rows [-1, [r_a]x, 1, -[r_b]x]
 //   plane, line    C = e . d, e = x; y and z of a            [-e, -(r_a + d) x e, e, r_b x e]
@@ -6,8 +7,9 @@
 //   swing          C = (y_a . x_b, z_a . x_b)                [0, -g, 0, g], g = x_b x y_a, x_b x z_a
 //   perpendicular  C = x_a . y_b                             [0, -g, 0, g], g = y_b x x_a
 //
-// The lever of a ends where b's anchor is (r_a + d, not r_a): e turns with a. Swing has a false solution half a turn
-// away: x_a . x_b < 0, which no small motion reaches.
+// p, r: anchors and their arms; x, y, z: axes of the frames of a and b; q_a, q_b: rotations of the frames;
+// (v, w) = q_a* q_b; F_a: the matrix of q_a. The lever of a ends at b's anchor (r_a + d, not r_a), because e turns with
+// a. Swing has a second, false solution half a turn away, x_a . x_b < 0, which no small motion reaches.
 #pragma once
 
 #include <cmath>
@@ -65,7 +67,7 @@ struct FrameJoint : ConstraintTraits {
     };
     template <class Real>
     struct Arms {
-        Vec3<Real> a, b;  ///< a's leads to b's anchor; of a point joint to its own
+        Vec3<Real> a, b;  ///< both to one point: b's anchor, or the middle of the anchors for a point lock
     };
     template <class Real, int count>
     struct Axes {
@@ -169,14 +171,14 @@ struct FrameJoint : ConstraintTraits {
         for (int i = 0; i < rows; ++i) {
             const Real held = impulse.lambda[i];
             impulse.lambda[i] = held + (soft.mass_scale * change[i] - soft.impulse_scale * held);
-            change[i] = impulse.lambda[i] - held;  // what has been kept of it, to the last digit
+            change[i] = impulse.lambda[i] - held;  // as rounded: bodies get exactly what lambda gains
         }
         push(substep, change, a, b, [](auto& body, const auto& linear, const auto& angular) {
             apply_wrench(body, linear, angular);
         });
     }
 
-    /// A joint with a stiffness of its own is a spring.
+    /// A joint with a stiffness of its own is a spring, not a lock.
     static bool is_equality(const Definition& joint) { return joint.stiffness.hertz == 0; }
     static bool locks_place(const Definition& joint) { return linear_rows > 0 && is_equality(joint); }
     template <class Real, class Row, class A, class B>
@@ -218,7 +220,7 @@ struct FrameJoint : ConstraintTraits {
         return wrench_of(substep, impulse.lambda);
     }
 
-    /// How far off it is, from the poses now, in double.
+    /// Errors: norms of the linear and the angular part of C, from the present poses, in double.
     static JointReport report(const Definition& joint, const Memory<float>&, const BodyState& a,
                               const BodyState& b)
     {
@@ -285,7 +287,7 @@ struct FrameJoint : ConstraintTraits {
             substep.arm.b = rotate(turn_of(b), row.start.arm_b);
             const Vec3<Real> d = anchor_error(row.start.separation, row.start.arm_a, row.start.arm_b,
                                               substep.arm.a, substep.arm.b, a, b);
-            // Both impulses act at one point: the middle between the anchors, or the point of b on a's line or plane.
+            // Both impulses act at one point: the middle between the anchors, or b's anchor on a's line or plane.
             if constexpr (linear_lock == LinearLock::point) {
                 meet_half_way(substep.arm.a, substep.arm.b, d);
             } else {
@@ -350,7 +352,7 @@ struct FrameJoint : ConstraintTraits {
         }
     }
 
-    /// What lambda is at the point where the rows act.
+    /// The wrench of lambda at the point where the rows act.
     template <class Real, class Substep>
     static Wrench<Real> wrench_of(const Substep& substep, const Real (&lambda)[rows])
     {
@@ -368,7 +370,7 @@ struct FrameJoint : ConstraintTraits {
         }
         return wrench;
     }
-    /// J^T lambda to both bodies, by `apply(body, linear, angular)`.
+    /// Applies J^T lambda to both bodies, by `apply(body, linear, angular)`.
     template <class Real, class Substep, class A, class B, class Apply>
     static void push(const Substep& substep, const Real (&lambda)[rows], A& a, B& b, const Apply& apply)
     {

@@ -5,10 +5,14 @@
 //   torsion   n . (w_b - w_a)                                [0, -n, 0, n], |lambda| <= mu r_t sum lambda_i
 //   rolling   t . (w_b - w_a)                                [0, -t, 0, t], norm lambda <= r_r sum lambda_i
 //
-// A sweep takes friction, torsion and rolling within the bounds of the points so far, then the points one by one. Points
-// that are not there have no effective mass: masks, not branches. Normal and arms stay as they were when the step began, as a
-// Contact's do: C = C_0 + J delta, exact for balls, second order in the turn for the rest. (Arms that turn with a ball would
-// lag behind it, and brake it.)
+// n: normal; t: tangents; p, r: points and their arms; v, w: velocities; u: surface velocity; mu: friction; r_t, r_r:
+// torsional and rolling radius.
+//
+// A sweep solves friction, torsion and rolling within the bounds that the impulses of the points set so far, then the
+// points one by one. Points that a manifold lacks have an effective mass of zero, so that nothing branches. Normal and
+// arms stay as they were when the step began, as in a Contact: C = C_0 + J delta, delta being the displacement since
+// then. This is exact for balls and has an error of second order in the rotation for other shapes. (Arms that turn with
+// a ball would move its contact point along with it, and brake it.)
 #pragma once
 
 #include <cmath>
@@ -55,9 +59,9 @@ struct Manifold : ConstraintTraits {
         Vec3<Real> normal, tangent;  ///< world; the second tangent is normal x tangent
         Vec3<Real> lever_a[most_points], lever_b[most_points];
         Real effective_mass[most_points], separation[most_points];
-        Vec3<Real> arm_a, arm_b;                                     ///< to where the friction acts
+        Vec3<Real> arm_a, arm_b;                                     ///< to the mean of the points
         Sym2<Real> friction_effective_mass, rolling_effective_mass;  ///< K^-1 along the tangents
-        Vec2<Real> friction_stride, rolling_stride;  ///< 1 / k_max; 0 along a tangent where nothing moves
+        Vec2<Real> friction_stride, rolling_stride;  ///< 1 / k_max; 0 along a tangent that cannot move
         Real torsion_effective_mass;
         Real friction, torsional_bound, rolling_radius;  ///< torsional_bound: friction times radius
         Vec2<Real> surface_speed;                        ///< along the tangents
@@ -103,7 +107,7 @@ struct Manifold : ConstraintTraits {
         Parameters<float> p{};
         p.normal = unit(contact.normal);
         p.point_count = static_cast<float>(contact.point_count);
-        // Points that are not there lie where the first one is, so that their mean needs no mask.
+        // Points beyond point_count are copies of the first one, so that their numbers are valid.
         for (int i = 0; i < most_points; ++i) {
             const ManifoldPoint& point = contact.points[i < contact.point_count ? i : 0];
             p.point[i] = {point.local_anchor_a, point.local_anchor_b};
@@ -143,7 +147,7 @@ struct Manifold : ConstraintTraits {
         for (int i = 0; i < most_points; ++i) {
             const Vec3<Real> arm_b = to_world(pose.orientation_b, contact.point[i].anchor_b);
             const Vec3<Real> arm_a =
-                pose.between + arm_b;  // to the same point, so that no push turns the pair
+                pose.between + arm_b;  // to the same point, so that both impulses have no moment together
             row.separation[i] = dot(n, arm_a - to_world(pose.orientation_a, contact.point[i].anchor_a));
             row.lever_a[i] = cross(arm_a, n);
             row.lever_b[i] = cross(arm_b, n);
@@ -205,8 +209,8 @@ struct Manifold : ConstraintTraits {
         }
     }
 
-    /// After the substeps: points that were hit fast enough leave with e times the speed of the impact. A face that comes
-    /// down flat hits with all its points at once, which takes a few rounds.
+    /// After the substeps: points that were hit fast enough leave with restitution times the speed of the impact. A
+    /// face that lands flat hits with all its points at once, which takes a few rounds over the points.
     template <class Real, class Row, class Impulse, class A, class B>
     static void restitute(const StepConstants& step, const Row& whole, Impulse& impulse, A& a, B& b)
     {
@@ -230,8 +234,8 @@ struct Manifold : ConstraintTraits {
         }
     }
 
-    /// Moves the bodies until `projection_rate` of every point's penetration is gone: the points one by one, each knowing
-    /// what those before it have moved.
+    /// Moves the bodies until `projection_rate` of every point's penetration is gone: the points one by one, each
+    /// taking the displacements by those before it into account.
     template <class Real, class Row, class A, class B>
     static void project(const StepConstants& step, const Row& whole, A& a, B& b)
     {
@@ -278,7 +282,7 @@ struct Manifold : ConstraintTraits {
         return {along(normal, impulse.friction), along(impulse.torsion, impulse.rolling)};
     }
 
-    /// How deep its deepest point is, from the poses now, in double.
+    /// Errors: the penetration of the deepest point, from the present poses, in double.
     static JointReport report(const Definition& contact, const Memory<float>& memory, const BodyState& a,
                               const BodyState& b)
     {
@@ -297,7 +301,7 @@ struct Manifold : ConstraintTraits {
     }
 
   private:
-    /// How far a body has turned since the step began, as a rotation vector to first order.
+    /// The rotation of a body since the step began, as a rotation vector to first order.
     template <class Real, BodyKind kind>
     static Vec3<Real> turned_by(const LaneBody<Real, kind>& body)
     {
@@ -309,7 +313,7 @@ struct Manifold : ConstraintTraits {
         return {Real(0), Real(0), body.delta_yaw};
     }
 
-    /// A unit vector across a unit vector, leaning away from the axis that it is nearest to.
+    /// A unit vector perpendicular to the unit vector n: along n x e_x, or n x e_z where n is close to the x axis.
     template <class Real>
     static Vec3<Real> across(const Vec3<Real>& n)
     {
@@ -318,7 +322,8 @@ struct Manifold : ConstraintTraits {
                            select(leans_from_x, -n.y, Real(0))};
         return Real(1) / square_root(dot(v, v)) * v;
     }
-    /// The inverse of a block of two rows; between planar bodies one of them may not move, and the other is alone.
+    /// The inverse of a block of two rows. Between planar bodies one of them may be unable to move; then only the other
+    /// is inverted.
     template <class Real>
     static Sym2<Real> inverse_of_what_moves(const Sym2<Real>& k, const Real& floor)
     {

@@ -3,7 +3,8 @@
 //   C = |s_a| + ratio |s_b|, s = p - wheel, u = s / |s|     J = [u_a, r_a x u_a, ratio u_b, ratio r_b x u_b]
 //   min <= C <= max as inequalities, C = min where they are equal
 //
-// lambda lengthens the rope: taut, it is negative and both bodies are pulled to their wheels, b `ratio` times as hard.
+// p: anchors; r: their arms. A positive lambda lengthens the rope. That of a taut rope is negative: both bodies are
+// pulled to their wheels, b with `ratio` times the force.
 #pragma once
 
 #include <cmath>
@@ -39,7 +40,7 @@ struct Pulley : ConstraintTraits {
     };
     template <class Vector>
     struct EndNow {
-        Vector arm, axis;  ///< b's axis is ratio u_b
+        Vector arm, axis;  ///< axis: u_a or ratio u_b
     };
     /// What a sweep reads of a row.
     template <class Real>
@@ -148,7 +149,7 @@ struct Pulley : ConstraintTraits {
         return {to_three(impulse.lambda * substep.b_end.axis), {Real(0), Real(0), Real(0)}};
     }
 
-    /// How much too short or too long the rope is, from the poses now, in double.
+    /// Errors: how far the rope is too short or too long, from the present poses, in double.
     static JointReport report(const Definition& pulley, const Memory<float>& memory, const BodyState& a,
                               const BodyState& b)
     {
@@ -171,7 +172,8 @@ struct Pulley : ConstraintTraits {
     }
 
   private:
-    /// The rope now and its direction, none where the anchor is in the wheel; adds what it resists to k.
+    /// Arm, direction (zero where the anchor is at the wheel) and length of one end of the rope now, times `ratio`.
+    /// Adds the response of its body to k.
     template <class Real, class Vector, class Body>
     static Real build_end(const End<Vector>& end, const Real& ratio, const Body& body, EndNow<Vector>& now,
                           Real& k)

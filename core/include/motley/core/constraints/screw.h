@@ -1,10 +1,11 @@
-// Screw: what b slides along an axis x of a follows what it turns about it.
+// Screw: the motion of b along an axis x of a follows its rotation about that axis.
 //
 //   dC/dt = d(x . d)/dt - p x . (w_b - w_a),   d = p_b - p_a,  p = pitch / (2 pi)
 //   J     = [-x, -(r_a + d) x x + p x, x, r_b x x - p x]
 //
-// Both anchors' impulses meet in one point and both turns are about one axis, so both momenta are kept. No function of the poses
-// counts turns, so C is what has piled up, as in transmission.h.
+// p_a, p_b: anchors; r: their arms; w: angular velocities. The impulses on both bodies act at one point and along one
+// axis, so linear and angular momentum are kept. No function of the poses counts turns, so C is accumulated from step
+// to step, as in transmission.h.
 #pragma once
 
 #include <cmath>
@@ -129,7 +130,7 @@ struct Screw : ConstraintTraits {
         return {push, -(row.metres_a_radian * push)};
     }
 
-    /// By how much b is ahead of its thread.
+    /// Errors: by how much b is ahead of its thread.
     static JointReport report(const Definition&, const Memory<float>& memory, const BodyState&,
                               const BodyState&)
     {
@@ -148,7 +149,7 @@ struct Screw : ConstraintTraits {
         substep.axis = x;
         substep.lever_a = cross(arm_a + row.start_separation + gone, x) - turn;
         substep.lever_b = cross(arm_b, x) - turn;
-        // Differences of small things: neither how far b has slid nor how often it has turned is rounded.
+        // Sums of small numbers only: precision does not depend on how far b has slid or how often it has turned.
         substep.error = row.start_error + dot(x, gone) + dot(x - row.start_axis, row.start_separation) -
                         row.metres_a_radian * (turn_about(b, row.start_axis) - turn_about(a, row.start_axis));
         const Real k = dot(x, over_mass(a, x) + over_mass(b, x)) +

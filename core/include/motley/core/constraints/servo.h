@@ -1,13 +1,15 @@
-// Servos: a bounded, soft pull of a point to a point, or turn of a frame into a frame, in all directions at once.
+// Servos: a bounded, soft pull of a point to a point, or rotation of a frame into a frame, in all directions at once.
 //
 //   point    C = p_b - p_a            J = [-I, [r_a]x, I, -[r_b]x]
 //   angular  C = 2 vec(q_a* q_b)      J = [0, -G, 0, G], G = (w I - [v]x) F_a^T, w >= 0
 //
 //   lambda -= mass_scale K^-1 (J v - speed + rate C) + impulse_scale lambda, |lambda| <= h max
 //
-// Without a frequency it is a motor: rate 0, mass_scale 1, impulse_scale 0. A servo is a force, not a position:
-// relaxation and projection leave it as it is. The bound is a ball: force or torque is the same in every direction, and
-// what is held back by it points against the error that is left (bounded_impulse.h).
+// p: anchors; r: their arms; q_a, q_b: rotations of the frames; (v, w) = q_a* q_b; F_a: the matrix of q_a; speed: the
+// target velocity; rate, mass_scale and impulse_scale: see Softness. Without a frequency a servo is a motor: rate 0,
+// mass_scale 1, impulse_scale 0. A servo is a force, not a position: relaxation keeps its softness, and projection
+// skips it. The bound is on the norm of force or torque, the same in every direction; at the bound it points against
+// the error that remains (bounded_impulse.h).
 #pragma once
 
 #include <cmath>
@@ -29,7 +31,7 @@ struct ServoInSweep {
     LaneSoftness<Real> soft;
 };
 
-/// What the definitions of both servos share.
+/// Checks what the definitions of both servos have in common.
 template <class Definition>
 void validate_servo(const Definition& servo, float most, const char* bound)
 {
@@ -157,7 +159,7 @@ struct PointServo : ConstraintTraits {
         return {to_three(impulse.push), {Real(0), Real(0), Real(0)}};
     }
 
-    /// How far the anchors are apart, from the poses now, in double.
+    /// Errors: the distance of the anchors, from the present poses, in double.
     static JointReport report(const Definition& servo, const Memory<float>&, const BodyState& a,
                               const BodyState& b)
     {
@@ -191,7 +193,7 @@ struct AngularServo : ConstraintTraits {
     struct SubstepRow {
         RotationRows<Real> rows;
         SmallFactor<Real, 3> factors;  ///< of K
-        Sym3<Real> stride;             ///< of the torque: K / k_max
+        Sym3<Real> stride;             ///< I^-1 of both bodies over its k_max
         Real least_effective_mass;     ///< 1 / k_max
         Vec3<Real> half_turn;  ///< tangent of half the angle between the frames, along its axis, in frame a
         Vec3<Real> spin_bias;  ///< G^-1 bias, rad/s, world
@@ -252,7 +254,7 @@ struct AngularServo : ConstraintTraits {
         substep.least_effective_mass = inverse_or_zero(largest_response(response));
         substep.stride = substep.least_effective_mass * response;
         const Quat<Real> q = relative_rotation(frame_a, frame_b);
-        // Half a turn apart the rows are not independent, and no tangent is finite.
+        // Where the frames are half a turn apart the rows are dependent and the tangent is infinite: it is bounded.
         substep.half_turn = Real(1) / maximum(q.w, Real(0.01F)) * Vec3<Real>{q.x, q.y, q.z};
         // G^-1 C is twice that tangent.
         substep.spin_bias =
@@ -301,7 +303,7 @@ struct AngularServo : ConstraintTraits {
         return {{Real(0), Real(0), Real(0)}, torque_of(substep, impulse.turn)};
     }
 
-    /// How far the frames are turned apart, from the poses now, in double.
+    /// Errors: the angle between the frames, from the present poses, in double.
     static JointReport report(const Definition& servo, const Memory<float>&, const BodyState& a,
                               const BodyState& b)
     {
@@ -320,8 +322,8 @@ struct AngularServo : ConstraintTraits {
         return lambda.x * substep.rows.axis[0] + lambda.y * substep.rows.axis[1] +
                lambda.z * substep.rows.axis[2];
     }
-    /// The lambda of a torque, G^-T. G G^T = I - s s^T, s the vector part of the turn between the frames, so
-    /// G^-T = (G G^T)^-1 G = (I + u u^T) G with u = s / cos.
+    /// The lambda that makes a torque: G^-T times the torque. With s and c the vector and scalar part of the quaternion
+    /// between the frames, G G^T = I - s s^T, so G^-T = (G G^T)^-1 G = (I + u u^T) G with u = s / c.
     template <class Real, class Substep>
     static Vec3<Real> lambda_of(const Substep& substep, const Vec3<Real>& torque)
     {

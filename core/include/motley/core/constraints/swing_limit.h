@@ -2,7 +2,8 @@
 //
 //   C = max - angle(x_a, x_b) >= 0,   J of the angle = [0, -n, 0, n],  n = x_a x x_b / |x_a x x_b|
 //
-// Where the axes are parallel n has no direction and the limit, unless it is zero, nothing to say.
+// x_a and x_b are the x axes of the frames. Where they are parallel n has no direction; only a limit of zero is reached
+// there.
 #pragma once
 
 #include <cmath>
@@ -37,8 +38,8 @@ struct SwingLimit : ConstraintTraits {
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
-        Vec3<Real> normal;
-        Real effective_mass, room;
+        Vec3<Real> normal;          ///< n
+        Real effective_mass, room;  ///< K^-1 and C
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
@@ -114,7 +115,7 @@ struct SwingLimit : ConstraintTraits {
         return {{Real(0), Real(0), Real(0)}, -(impulse.limit * substep.normal)};
     }
 
-    /// How far beyond the cone it is, from the poses now, in double.
+    /// Errors: how far x_b is outside of the cone, from the present poses, in double.
     static JointReport report(const Definition& limit, const Memory<float>& memory, const BodyState& a,
                               const BodyState& b)
     {
@@ -141,7 +142,8 @@ struct SwingLimit : ConstraintTraits {
         const Real scale =
             select(has_direction, Real(1) / square_root(select(has_direction, sine2, Real(1))), Real(0));
         substep.normal = scale * n;
-        // Half the angle between unit vectors: exact at both ends, where sine and cosine each lose digits.
+        // The angle between unit vectors as twice the arc tangent of |x_a - x_b| / |x_a + x_b|: accurate also near 0
+        // and pi, where its sine or its cosine alone loses digits.
         substep.room = row.max_angle - Real(2) * arc_tangent2(square_root(dot(difference, difference)),
                                                               square_root(dot(sum, sum)));
         const Real k = dot(substep.normal, over_inertia(a, substep.normal) + over_inertia(b, substep.normal));
@@ -149,7 +151,7 @@ struct SwingLimit : ConstraintTraits {
         substep.effective_mass = select(usable, inverse_or_zero(k), Real(0));
     }
 
-    /// Against the swing.
+    /// A positive lambda acts against the swing.
     template <class Real, class Substep, class A, class B>
     static void push(const Substep& substep, const Real& lambda, A& a, B& b)
     {

@@ -1,12 +1,13 @@
-// What a host says of a swing limit.
+// The definition of a swing limit.
 #pragma once
 
 #include "motley/core/constraints/frame_joint_definition.h"
 
 namespace motley {
 
-/// Keeps the x axis of frame b within a cone about the x axis of frame a: the reach of a shoulder or hip, beside a
-/// ball-socket and perhaps a twist drive. Positions of the frames do not matter. Bodies that turn; no particles.
+/// Keeps the x axis of frame b within a cone about the x axis of frame a: the range of a shoulder or hip, used together
+/// with a ball-socket and perhaps a twist drive. Only the rotations of the frames matter. Not for particles, which do
+/// not turn.
 struct SwingLimitDefinition {
     BodyId body_a{};
     BodyId body_b{};

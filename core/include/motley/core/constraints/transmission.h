@@ -1,10 +1,11 @@
-// Transmissions: what b does follows what a turns. Gears (b turns), rack and pinion (b slides).
+// Transmissions: the motion of b follows the rotation of a. Gears (b turns), rack and pinion (b slides). With
+// velocities v, angular velocities w and the unit axes e_a and e_b:
 //
 //   gear  dC/dt = w_b . e_b - ratio w_a . e_a       J = [0, -ratio e_a, 0, e_b]
 //   rack  dC/dt = v_b . e_b - travel w_a . e_a      J = [0, -travel e_a, e_b, 0]
 //
-// No function of the poses has this derivative over more than a turn, so C is what has piled up: kept in the memory of
-// the joint from step to step, to which a step adds how far each body has gone since it began. Only this small number is
+// No function of the poses has this derivative over more than a turn, so C is accumulated: the memory of the joint
+// keeps it from step to step, and each step adds the motion of both bodies since it began. Only this small number is
 // rounded, however many turns there were.
 #pragma once
 
@@ -18,7 +19,7 @@
 
 namespace motley {
 
-/// Where a transmission's definition keeps its ratio.
+/// The ratio of a definition.
 inline float ratio_of(const GearDefinition& gear)
 {
     return gear.ratio;
@@ -142,7 +143,7 @@ struct Transmission : ConstraintTraits {
         return slides ? Wrench<Real>{effort, none} : Wrench<Real>{none, effort};
     }
 
-    /// By how much b is ahead of a.
+    /// Errors: by how much b is ahead of a.
     static JointReport report(const Definition&, const Memory<float>& memory, const BodyState&,
                               const BodyState&)
     {
