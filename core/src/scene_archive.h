@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "motley/core/joint_store.h"
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 
 namespace motley {
 
@@ -81,12 +81,12 @@ struct SceneArchive {
     template <class Archive, class S>
     static void visit(Archive& archive, S& scene)
     {
-        visit_bodies(archive, scene.bodies_);
-        visit_joints(archive, *scene.joints_);
-        visit_contacts(archive, scene.contacts_);
-        archive(scene.island_iterations_);
-        archive(scene.ground_);
-        archive(scene.body_count_);
+        visit_bodies(archive, scene.bodies);
+        visit_joints(archive, *scene.joints);
+        visit_contacts(archive, scene.contacts);
+        archive(scene.island_iterations);
+        archive(scene.ground);
+        archive(scene.body_count);
         archive(scene.last_substep);
         archive(scene.last_step);
         if constexpr (Archive::reads) {
@@ -98,11 +98,11 @@ struct SceneArchive {
   private:
     /// Throws unless the scene is one that its host could have made: every index leads somewhere, and what its door
     /// refuses is refused here, by the same checks.
-    static void check(const Scene& scene);
-    static void check_bodies(const Scene& scene);
-    static void check_joints(const Scene& scene);
+    static void check(const SceneCore& scene);
+    static void check_bodies(const SceneCore& scene);
+    static void check_joints(const SceneCore& scene);
     /// What is in no file.
-    static void derive(Scene& scene);
+    static void derive(SceneCore& scene);
 
     template <class Archive, class Store>
     static void visit_bodies(Archive& archive, Store& bodies)

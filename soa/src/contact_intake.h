@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "batches.h"
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 #include "patches.h"
 
 namespace motley {
@@ -17,13 +17,13 @@ namespace motley {
 class ContactIntake {
   public:
     /// Makes room for a list of so many contacts.
-    void begin(Scene& scene, std::size_t count);
+    void begin(SceneCore& scene, std::size_t count);
     /// Checks a part of the list, and finds again what lies about where it lay in the last one.
-    void check_and_match(Scene& scene, std::span<const Contact> contacts, std::int64_t part);
+    void check_and_match(SceneCore& scene, std::span<const Contact> contacts, std::int64_t part);
     /// Looks up what that missed, once ContactCache has entered what the last list has lost.
     void look_up(ContactCache& cache, std::int64_t part);
     /// What is wrong with the first bad contact; empty when all are good, but for keys that come twice.
-    [[nodiscard]] std::string first_error(const Scene& scene, std::span<const Contact> contacts) const;
+    [[nodiscard]] std::string first_error(const SceneCore& scene, std::span<const Contact> contacts) const;
 
     /// When all have colours: marks those of a patch's stretch of the list that are inside it, and lists its bodies.
     void fill_patch(std::int64_t patch);

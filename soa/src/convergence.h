@@ -10,7 +10,7 @@
 
 #include "batches.h"
 #include "body_sets.h"
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 
 namespace motley {
 
@@ -30,7 +30,7 @@ class Convergence {
     void find_islands(const KernelContext& context, std::span<const Placement> joints,
                       std::span<const Placement> contacts, const SweepLists& sweeps);
     /// After find_islands: how many sweeps the host asked for, by joint and by island.
-    void take_wishes(const Scene& scene, const SweepLists& sweeps);
+    void take_wishes(const SceneCore& scene, const SweepLists& sweeps);
     /// The most that anybody asked for; 0 when nobody did.
     [[nodiscard]] int most_wanted() const { return most_wanted_; }
     /// Every island wants sweeps again: another substep.

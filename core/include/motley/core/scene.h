@@ -6,10 +6,8 @@
 #include <vector>
 
 #include "motley/core/body.h"
-#include "motley/core/body_store.h"
 #include "motley/core/boxed.h"
-#include "motley/core/busy_flag.h"
-#include "motley/core/contact_cache.h"
+#include "motley/core/constraints/contact_definition.h"
 #include "motley/core/ids.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_definitions.h"
@@ -19,9 +17,8 @@
 
 namespace motley {
 
-struct JointBodies;
-struct JointStores;
-extern template class Boxed<JointStores>;
+struct SceneCore;
+extern template class Boxed<SceneCore>;
 
 /// Holds everything that decides what the next step computes. Every call that is refused throws
 /// InvalidInput and changes nothing; so does one for which memory runs out, which throws std::bad_alloc. A scene that was
@@ -47,9 +44,9 @@ class Scene {
     void remove_bodies(std::span<const BodyId> bodies);
     [[nodiscard]] bool is_alive(BodyId body) const;
     /// The static body at the origin to which joints to "the world" are tied.
-    [[nodiscard]] BodyId ground() const { return ground_; }
+    [[nodiscard]] BodyId ground() const;
     /// Bodies alive, the ground not counted.
-    [[nodiscard]] std::size_t body_count() const { return body_count_; }
+    [[nodiscard]] std::size_t body_count() const;
 
     [[nodiscard]] BodyModel model(BodyId body) const;
     [[nodiscard]] BodyMotion motion(BodyId body) const;
@@ -97,7 +94,7 @@ class Scene {
     /// breaks, the host decides, by removing it. Refuses limits that are not above 0.
     void set_break_limit(ConstraintId joint, const BreakLimit& limit);
     /// Joints that bore more than their limit on average over the last step, in the order in which they were first watched.
-    [[nodiscard]] std::span<const BreakEvent> break_events() const { return break_events_; }
+    [[nodiscard]] std::span<const BreakEvent> break_events() const;
 
     // ---- memory -------------------------------------------------------------------------------------------
     /// Puts bodies that are near each other near each other in memory. Handles and results stay what they are, to the bit;
@@ -113,16 +110,13 @@ class Scene {
 
     // ---- contacts -----------------------------------------------------------------------------------------
     /// What the contacts of the last step did in all its substeps together, in the order of its list: what changed the
-    /// bodies' momentum. Divided by last_step it is the mean force.
-    [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const
-    {
-        return contacts_.step_impulses();
-    }
-    /// What they did in its last substep alone, which takes last_substep.
-    [[nodiscard]] std::span<const ContactImpulse> last_substep_impulses() const
-    {
-        return contacts_.impulses();
-    }
+    /// bodies' momentum. Divided by last_step() it is the mean force.
+    [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const;
+    /// What they did in its last substep alone, which takes last_substep().
+    [[nodiscard]] std::span<const ContactImpulse> last_substep_impulses() const;
+    /// Seconds of the last step, and of its last substep: they turn impulses into forces. 0 before the first step.
+    [[nodiscard]] float last_step() const;
+    [[nodiscard]] float last_substep() const;
 
     /// What contact `index` of the list of the last step did, as a joint tells it: the force on b at the point, the depth
     /// that the host gave, active when it pushed. Refuses an index beyond the last list, or another contact's.
@@ -139,58 +133,9 @@ class Scene {
     [[nodiscard]] std::uint64_t state_hash() const;
     [[nodiscard]] SceneErrors errors() const;
 
-    // ---- for the solver
-    // ------------------------------------------------------------------------------------
-    [[nodiscard]] bool asks_for_iterations() const;
-    struct IslandIterations {
-        BodyId body;
-        int at_least;
-    };
-    [[nodiscard]] std::span<const IslandIterations> island_iterations() const { return island_iterations_; }
-    [[nodiscard]] const BodyStore& bodies() const { return bodies_; }
-    [[nodiscard]] BodyStore& bodies() { return bodies_; }
-    [[nodiscard]] const JointStores& joints() const { return *joints_; }
-    [[nodiscard]] JointStores& joints() { return *joints_; }
-    [[nodiscard]] ContactCache& contact_cache() { return contacts_; }
-    [[nodiscard]] const ContactCache& contact_cache() const { return contacts_; }
-    /// Room for a break event of each watched joint; then looking for them allocates nothing.
-    void make_room_for_break_events();
-    /// Looks for joints that bore more than their limit, once a step is done.
-    void find_break_events() noexcept;
-    /// Taken by a step for as long as it lasts.
-    [[nodiscard]] BusyFlag& busy() { return busy_; }
-    /// Seconds of the last step and of its last substep: they turn impulses into forces. 0 before the first step.
-    float last_step = 0, last_substep = 0;
-
   private:
-    friend struct SceneArchive;
-    BodyStore bodies_;
-    Boxed<JointStores> joints_;
-    ContactCache contacts_;
-    std::vector<BreakEvent> break_events_;             ///< with room for every watched joint
-    std::vector<IslandIterations> island_iterations_;  ///< of bodies alive
-    BodyId ground_{};
-    std::size_t body_count_ = 0;
-    BusyFlag busy_;
-
-    void require_alive(BodyId body, const char* what) const
-    {
-        if (!bodies_.is_alive(body)) refuse_dead(body, what);
-    }
-    [[noreturn]] static void refuse_dead(BodyId body, const char* what);
-    void require_alive(std::span<const BodyId> bodies, const char* what) const;
-    JointBodies check_joint_bodies(int type, BodyId a, BodyId b) const;
-    static void check_break_limit(const BreakLimit& limit);
-    static void check_wish(const char* field, int at_least);
-    void check_island_wish(const IslandIterations& asked) const;
-    ConstraintId take_joint_slot(int type, std::size_t index);
-    std::size_t index_of_joint(ConstraintId joint, int type) const;
-    void remove_joints_of(std::span<const BodyId> bodies);
-    void remove_joint_at(int type, std::size_t index);
-    void require_list_of_last_step(std::span<const Contact> contacts, const char* what) const;
-    [[nodiscard]] Vec3<float> force_of(const Vec3<float>& impulse) const;
-    void write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular);
-    void check_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular) const;
+    friend struct SceneAccess;
+    Boxed<SceneCore> core_;
 };
 
 }  // namespace motley
