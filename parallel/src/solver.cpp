@@ -15,12 +15,12 @@
 #include "motley/core/joint_store.h"
 #include "motley/core/scene_core.h"
 #include "motley/core/step_constants.h"
+#include "own_executor.h"
 #include "plan.h"
 #include "plan_runner.h"
 #include "stage_runner.h"
 #include "step_clock.h"
 #include "sweeper.h"
-#include "tbb_executor.h"
 
 namespace motley {
 namespace {

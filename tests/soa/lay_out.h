@@ -6,7 +6,7 @@
 #include "contact_pipeline.h"
 #include "layout.h"
 #include "motley/core/scene_core.h"
-#include "tbb_executor.h"
+#include "own_executor.h"
 
 namespace motley::testing {
 
