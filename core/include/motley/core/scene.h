@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "motley/core/body.h"
@@ -18,6 +19,8 @@
 namespace motley {
 
 struct SceneCore;
+struct SixDofDefinition;
+struct WheelDefinition;
 extern template class Boxed<SceneCore>;
 
 /// Holds everything that decides what the next step computes. Every call that is refused throws
@@ -79,6 +82,17 @@ class Scene {
     /// Adds a joint of any type of joint_definitions.h: add_joint(BallSocketDefinition{...}).
     template <class Definition>
     ConstraintId add_joint(const Definition& definition);
+    /// What makes several joints is added by a function of its own, which this names.
+    template <class Definition>
+    requires(std::is_same_v<Definition, SixDofDefinition> ||
+             std::is_same_v<Definition, WheelDefinition>) ConstraintId add_joint(const Definition&)
+    {
+        static_assert(!std::is_same_v<Definition, SixDofDefinition>,
+                      "a SixDofDefinition makes several joints: call add_six_dof(scene, definition)");
+        static_assert(!std::is_same_v<Definition, WheelDefinition>,
+                      "a WheelDefinition makes several joints: call add_wheel(scene, definition)");
+        return {};
+    }
     /// Says a joint anew: a motor's speed, a servo's target, a limit. Type and bodies stay as they are, and so does what
     /// the joint remembers from the last step. Refuses what add_joint refuses, and a definition of another type or of
     /// other bodies.
