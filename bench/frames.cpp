@@ -165,7 +165,7 @@ void FrameWriter::write(const Crowd& crowd, const Scene& scene)
     std::vector<double> load(crowd.agents.size(), 0.0);
     const auto impulses = scene.contact_impulses();
     const auto pairs = crowd.pairs();
-    const double per_second = scene.last_step > 0 ? 1 / static_cast<double>(scene.last_step) : 0;
+    const double per_second = scene.last_step() > 0 ? 1 / static_cast<double>(scene.last_step()) : 0;
     for (std::size_t i = 0; i < impulses.size() && i < pairs.size(); ++i) {
         const double force = static_cast<double>(impulses[i].normal) * per_second;
         load[static_cast<std::size_t>(pairs[i].a)] += force;

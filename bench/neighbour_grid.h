@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "motley/core/aligned_vector.h"
 #include "motley/motley.h"
 
 namespace motley::bench {

@@ -12,6 +12,7 @@
 #include "clock.h"
 #include "frames.h"
 #include "median.h"
+#include "motley/core/scene_core.h"
 #include "trajectories.h"
 
 namespace motley::bench {
@@ -96,9 +97,9 @@ class DirectComparison {
     }
     void compare(const Scene& after)
     {
-        for (std::uint32_t slot = 1; slot < after.bodies().slot_count(); ++slot) {
-            if (!after.bodies().is_slot_live(slot)) continue;
-            const BodyId body = after.bodies().id_of_slot(slot);
+        for (std::uint32_t slot = 1; slot < core_of(after).bodies.slot_count(); ++slot) {
+            if (!core_of(after).bodies.is_slot_live(slot)) continue;
+            const BodyId body = core_of(after).bodies.id_of_slot(slot);
             const Vec3<float> off = after.state(body).linear_velocity - copy_.state(body).linear_velocity;
             const auto length2 = static_cast<double>(dot(off, off));
             squares_ += length2;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mixed_scene.h"
+#include "motley/core/scene_core.h"
 #include "rig.h"
 
 namespace motley::testing {
@@ -95,8 +96,9 @@ struct HeapOfBoxes {
     }
     [[nodiscard]] double mass_of(BodyId body) const
     {
-        return body == scene.ground() ? 1e30
-                                      : 1 / static_cast<double>(scene.bodies().inverse_masses[body.slot]);
+        return body == scene.ground()
+                   ? 1e30
+                   : 1 / static_cast<double>(core_of(scene).bodies.inverse_masses[body.slot]);
     }
     [[nodiscard]] Vector speed(const Contact& c) const
     {

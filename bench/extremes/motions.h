@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "motley/core/joint_store.h"
+#include "motley/core/scene_core.h"
 #include "trial.h"
 
 namespace motley::bench {
@@ -92,10 +93,10 @@ inline double fast_travel(const ExtremeRun& run)
     post.linear_velocity = {1e4F, 0, 0};
     const BodyId carrier = scene.add_body(post);
     for (const BodyId id : trial.bodies()) scene.set_velocity(id, {1e4F, 0, 0}, {});
-    scene.joints().for_each([&](auto& store, int) {
+    core_of(scene).joints->for_each([&](auto& store, int) {
         using Store = std::remove_cvref_t<decltype(store)>;
         if constexpr (std::is_same_v<typename Store::Type, BallSocket>) {
-            const ConstraintId first{store.slots[0], scene.joints().slots[store.slots[0]].generation};
+            const ConstraintId first{store.slots[0], core_of(scene).joints->slots[store.slots[0]].generation};
             const BallSocketDefinition hook = store.definitions[0];
             scene.remove_joint(first);
             scene.add_joint(BallSocketDefinition{carrier, hook.body_b, {}, hook.local_anchor_b});

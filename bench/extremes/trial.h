@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../extremes.h"
+#include "motley/core/scene_core.h"
 
 namespace motley::bench {
 
@@ -85,7 +86,7 @@ class Trial {
         double sum = scene.errors().kinetic_energy;
         const Vec3<double> pull = convert<double>(settings.gravity);
         for (const BodyId id : bodies_) {
-            const auto inverse = scene.bodies().inverse_masses[id.slot];
+            const auto inverse = core_of(scene).bodies.inverse_masses[id.slot];
             if (inverse > 0) sum -= dot(pull, scene.state(id).position) / static_cast<double>(inverse);
         }
         return sum;

@@ -48,7 +48,7 @@ class Push final : public CrowdScene {
         const auto impulses = scene.contact_impulses();
         const auto contacts = people.contacts();
         const auto pairs = people.pairs();
-        const double per_second = 1 / static_cast<double>(scene.last_step);
+        const double per_second = 1 / static_cast<double>(scene.last_step());
         std::vector<double> bands(static_cast<std::size_t>(width), 0.0);
         double total = 0;  // N
         for (std::size_t i = 0; i < contacts.size(); ++i) {

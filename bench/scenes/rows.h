@@ -120,7 +120,7 @@ class Lean final : public Rows {
             const auto place = static_cast<int>(contacts_[i].key % static_cast<std::size_t>(length_));
             const double behind = at_wall ? length_ : length_ - 1 - place;
             const double off =
-                (static_cast<double>(impulses[i].normal) / static_cast<double>(scene.last_step) -
+                (static_cast<double>(impulses[i].normal) / static_cast<double>(scene.last_step()) -
                  behind * force) /
                 (length_ * force);
             off_.add(off);

@@ -11,10 +11,10 @@
 namespace motley::reference {
 namespace {
 
-Body body_of(const Scene& scene, BodyId id)
+Body body_of(const SceneCore& scene, BodyId id)
 {
     const BodyState state = scene.state(id);
-    const BodyStore& store = scene.bodies();
+    const BodyStore& store = scene.bodies;
     const BodyRow where = store.row_of(id);
     BodyDefinition definition;
     definition.model = store.model(id);
@@ -46,9 +46,9 @@ Body body_of(const Scene& scene, BodyId id)
 }
 
 /// Writes velocities in any case, poses only where they are finite.
-void write_back(Scene& scene, BodyId id, const Body& body)
+void write_back(SceneCore& scene, BodyId id, const Body& body)
 {
-    BodyStore& store = scene.bodies();
+    BodyStore& store = scene.bodies;
     const BodyRow where = store.row_of(id);
     if (store.contained[id.slot] != 0) return;
     BodyRows& rows = store.rows(where.kind());
@@ -75,23 +75,23 @@ void write_back(Scene& scene, BodyId id, const Body& body)
 
 }  // namespace
 
-DirectResult step_directly(Scene& scene, float dt, const SolverSettings& settings,
+DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& settings,
                            std::span<const Contact> contacts)
 {
     World world;
-    std::vector<int> index_of_slot(scene.bodies().slot_count(), -1);
+    std::vector<int> index_of_slot(scene.bodies.slot_count(), -1);
     std::vector<BodyId> ids;
-    for (std::uint32_t slot = 1; slot < scene.bodies().slot_count(); ++slot) {
-        if (!scene.bodies().is_slot_live(slot)) continue;
+    for (std::uint32_t slot = 1; slot < scene.bodies.slot_count(); ++slot) {
+        if (!scene.bodies.is_slot_live(slot)) continue;
         index_of_slot[slot] = static_cast<int>(ids.size());
-        ids.push_back(scene.bodies().id_of_slot(slot));
+        ids.push_back(scene.bodies.id_of_slot(slot));
         world.bodies.push_back(body_of(scene, ids.back()));
     }
-    const BodyStore& bodies = scene.bodies();
+    const BodyStore& bodies = scene.bodies;
     const auto is_left_out = [&](BodyId a, BodyId b) {
         return bodies.is_contained(bodies.row_of(a)) || bodies.is_contained(bodies.row_of(b));
     };
-    scene.joints().for_each([&](const auto& store, int) {
+    scene.joints->for_each([&](const auto& store, int) {
         using Store = std::remove_cvref_t<decltype(store)>;
         for (std::size_t i = 0; i < store.size(); ++i) {
             const auto& definition = store.definitions[i];
@@ -107,11 +107,11 @@ DirectResult step_directly(Scene& scene, float dt, const SolverSettings& setting
     std::vector<ContactPoint> points;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const Contact& contact = contacts[i];
-        if (scene.contact_cache().staged().colours[i] == no_colour) continue;  // left out by the layout
+        if (scene.contacts.staged().colours[i] == no_colour) continue;  // left out by the layout
         points.push_back({index_of_slot[contact.body_a.slot], index_of_slot[contact.body_b.slot], contact});
     }
 
-    const ContactList& before = scene.contact_cache().current();
+    const ContactList& before = scene.contacts.current();
     std::map<std::uint64_t, World::ContactResult> recalled;
     for (std::size_t i = 0; i < before.count; ++i) {
         const ContactImpulse& impulse = before.impulses[i + 1];
@@ -133,7 +133,7 @@ DirectResult step_directly(Scene& scene, float dt, const SolverSettings& setting
     const auto narrow = [](double value) { return std::isfinite(value) ? static_cast<float>(value) : 0.0F; };
     auto next = memories.begin();
     auto joint = world.joints.begin();
-    scene.joints().for_each([&](auto& store, int) {
+    scene.joints->for_each([&](auto& store, int) {
         using Store = std::remove_cvref_t<decltype(store)>;
         constexpr std::size_t stride = quad_floats<typename Store::Memory>;
         for (std::size_t i = 0; i < store.size(); ++i) {
@@ -148,7 +148,7 @@ DirectResult step_directly(Scene& scene, float dt, const SolverSettings& setting
             for (const double part : (joint++)->wrench) *wrench++ = narrow(part);
         }
     });
-    ContactList& staged = scene.contact_cache().staged();
+    ContactList& staged = scene.contacts.staged();
     const auto result_of = [&](const World::ContactResults& results, std::uint64_t key) -> ContactImpulse {
         const auto found = results.find(key);
         if (found == results.end()) return {};

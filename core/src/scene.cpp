@@ -1,5 +1,5 @@
 // Adding and removing bodies. Nothing is changed before everything is checked.
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 
 #include "motley/core/body_checks.h"
 #include "motley/core/invalid_input.h"
@@ -7,11 +7,13 @@
 
 namespace motley {
 
+template class Boxed<SceneCore>;
+
 Scene::Scene()
 {
     BodyDefinition world;
     world.motion = BodyMotion::static_body;
-    ground_ = bodies_.add(world);
+    core_->ground = core_->bodies.add(world);
 }
 
 BodyId Scene::add_body(const BodyDefinition& definition)
@@ -27,9 +29,9 @@ void Scene::add_bodies(std::span<const BodyDefinition> definitions, std::span<Bo
         refuse("add_bodies.ids.size()", static_cast<double>(ids.size()), "the size of definitions");
     }
     for (const BodyDefinition& definition : definitions) check_definition(definition);
-    bodies_.make_room(definitions);
-    for (std::size_t i = 0; i < definitions.size(); ++i) ids[i] = bodies_.add(definitions[i]);
-    body_count_ += definitions.size();
+    core_->bodies.make_room(definitions);
+    for (std::size_t i = 0; i < definitions.size(); ++i) ids[i] = core_->bodies.add(definitions[i]);
+    core_->body_count += definitions.size();
 }
 
 void Scene::remove_body(BodyId body)
@@ -39,39 +41,40 @@ void Scene::remove_body(BodyId body)
 
 void Scene::remove_bodies(std::span<const BodyId> bodies)
 {
-    require_alive(bodies, "remove_bodies.bodies");
+    core_->require_alive(bodies, "remove_bodies.bodies");
     for (const BodyId body : bodies) {
-        if (body == ground_) refuse("remove_bodies.bodies", "the ground", "a body that the host added");
+        if (body == core_->ground) refuse("remove_bodies.bodies", "the ground", "a body that the host added");
     }
     // `contained` also holds a mark for bodies that were seen, which is removed before this call returns.
     constexpr std::uint8_t mark = 0x80;
     bool twice = false;
     for (const BodyId body : bodies) {
-        twice = twice || (bodies_.contained[body.slot] & mark) != 0;
-        bodies_.contained[body.slot] |= mark;
+        twice = twice || (core_->bodies.contained[body.slot] & mark) != 0;
+        core_->bodies.contained[body.slot] |= mark;
     }
-    for (const BodyId body : bodies) bodies_.contained[body.slot] &= static_cast<std::uint8_t>(~mark);
+    for (const BodyId body : bodies) core_->bodies.contained[body.slot] &= static_cast<std::uint8_t>(~mark);
     if (twice) refuse("remove_bodies.bodies", "a list with a body named twice", "each body once");
 
-    bodies_.make_room_to_remove(bodies);
-    remove_joints_of(bodies);
-    for (const BodyId body : bodies) bodies_.remove(body);
-    std::erase_if(island_iterations_, [&](const IslandIterations& asked) { return !is_alive(asked.body); });
-    body_count_ -= bodies.size();
+    core_->bodies.make_room_to_remove(bodies);
+    core_->remove_joints_of(bodies);
+    for (const BodyId body : bodies) core_->bodies.remove(body);
+    std::erase_if(core_->island_iterations,
+                  [&](const IslandIterations& asked) { return !is_alive(asked.body); });
+    core_->body_count -= bodies.size();
 }
 
 void Scene::renumber_bodies()
 {
-    bodies_.renumber();
-    joints_->version.reset();  // blocks refer to rows
+    core_->bodies.renumber();
+    core_->joints->version.reset();  // blocks refer to rows
 }
 
 bool Scene::is_alive(BodyId body) const
 {
-    return bodies_.is_alive(body);
+    return core_->bodies.is_alive(body);
 }
 
-void Scene::refuse_dead(BodyId body, const char* what)
+void SceneCore::refuse_dead(BodyId body, const char* what)
 {
     const std::string value = body == BodyId{} ? std::string("the null handle")
                                                : "slot " + std::to_string(body.slot) + " generation " +
@@ -79,21 +82,62 @@ void Scene::refuse_dead(BodyId body, const char* what)
     refuse(what, value, "a body of this scene");
 }
 
-void Scene::require_alive(std::span<const BodyId> bodies, const char* what) const
+void SceneCore::require_alive(std::span<const BodyId> named, const char* what) const
 {
-    for (const BodyId body : bodies) require_alive(body, what);
+    for (const BodyId body : named) require_alive(body, what);
 }
 
 BodyModel Scene::model(BodyId body) const
 {
-    require_alive(body, "model.body");
-    return bodies_.model(body);
+    core_->require_alive(body, "model.body");
+    return core_->bodies.model(body);
 }
 
 BodyMotion Scene::motion(BodyId body) const
 {
-    require_alive(body, "motion.body");
-    return bodies_.motion(body);
+    core_->require_alive(body, "motion.body");
+    return core_->bodies.motion(body);
+}
+
+BodyId Scene::ground() const
+{
+    return core_->ground;
+}
+std::size_t Scene::body_count() const
+{
+    return core_->body_count;
+}
+BodyState Scene::state(BodyId body) const
+{
+    return core_->state(body);
+}
+bool Scene::is_alive(ConstraintId joint) const
+{
+    return core_->is_alive(joint);
+}
+JointReport Scene::joint_report(ConstraintId joint) const
+{
+    return core_->joint_report(joint);
+}
+std::span<const BreakEvent> Scene::break_events() const
+{
+    return core_->break_events;
+}
+std::span<const ContactImpulse> Scene::contact_impulses() const
+{
+    return core_->contacts.step_impulses();
+}
+std::span<const ContactImpulse> Scene::last_substep_impulses() const
+{
+    return core_->contacts.impulses();
+}
+float Scene::last_step() const
+{
+    return core_->last_step;
+}
+float Scene::last_substep() const
+{
+    return core_->last_substep;
 }
 
 }  // namespace motley

@@ -70,9 +70,9 @@ void check_state(const BodyRows& rows, BodyKind kind, std::uint32_t row, BodyMod
 
 }  // namespace
 
-void SceneArchive::check_bodies(const Scene& scene)
+void SceneArchive::check_bodies(const SceneCore& scene)
 {
-    const BodyStore& bodies = scene.bodies_;
+    const BodyStore& bodies = scene.bodies;
     const std::size_t slots = bodies.slots_.size();
     demand(slots > 0 && bodies.live_.size() == slots && bodies.models_.size() == slots &&
                bodies.motions_.size() == slots && bodies.contained.size() == slots &&
@@ -121,17 +121,17 @@ void SceneArchive::check_bodies(const Scene& scene)
     check_free_list(
         bodies.free_slots_, slots, [&](std::uint32_t slot) { return bodies.live_[slot] != 0; },
         "a free handle that is taken");
-    demand(alive == scene.body_count_ + 1, "bodies that are not counted");
-    demand(bodies.is_alive(scene.ground_) && bodies.motion(scene.ground_) == BodyMotion::static_body,
+    demand(alive == scene.body_count + 1, "bodies that are not counted");
+    demand(bodies.is_alive(scene.ground) && bodies.motion(scene.ground) == BodyMotion::static_body,
            "no ground to stand on");
-    const Vec3<double> origin = scene.state(scene.ground_).position;
+    const Vec3<double> origin = scene.state(scene.ground).position;
     demand(dot(origin, origin) == 0, "a ground that is not at the origin");
 }
 
-void SceneArchive::check_joints(const Scene& scene)
+void SceneArchive::check_joints(const SceneCore& scene)
 {
-    const BodyStore& bodies = scene.bodies_;
-    const JointStores& joints = *scene.joints_;
+    const BodyStore& bodies = scene.bodies;
+    const JointStores& joints = *scene.joints;
     demand(!joints.slots.empty() && joints.slots[0].live == 0, "a joint of the null handle");
     std::vector<std::uint32_t> colours(bodies.slots_.size(), 0);  // by body, a bit for each colour
     std::size_t count = 0;
@@ -167,8 +167,8 @@ void SceneArchive::check_joints(const Scene& scene)
         if (slot.live == 0) continue;
         ++alive;
         watched += slot.watched;
-        Scene::check_wish("iterations", slot.iterations);
-        Scene::check_break_limit(slot.break_limit);
+        SceneCore::check_wish("iterations", slot.iterations);
+        SceneCore::check_break_limit(slot.break_limit);
     }
     demand(alive == count, "a handle of no joint");
     check_free_list(
@@ -180,22 +180,22 @@ void SceneArchive::check_joints(const Scene& scene)
     demand(watched == 0, "a watch on no joint");
 }
 
-void SceneArchive::check(const Scene& scene)
+void SceneArchive::check(const SceneCore& scene)
 {
     check_bodies(scene);
     check_joints(scene);
-    for (const Scene::IslandIterations& asked : scene.island_iterations_) scene.check_island_wish(asked);
-    const ContactList& list = scene.contacts_.current();
+    for (const IslandIterations& asked : scene.island_iterations) scene.check_island_wish(asked);
+    const ContactList& list = scene.contacts.current();
     for (std::size_t i = 0; i < list.count; ++i)
         demand(list.colours[i] <= overflow_colour || list.colours[i] == no_colour, "a contact of no colour");
     demand(scene.last_substep >= 0 && scene.last_substep <= scene.last_step && scene.last_step <= 1,
            "a step of no length");
 }
 
-void SceneArchive::derive(Scene& scene)
+void SceneArchive::derive(SceneCore& scene)
 {
-    BodyStore& bodies = scene.bodies_;
-    JointStores& joints = *scene.joints_;
+    BodyStore& bodies = scene.bodies;
+    JointStores& joints = *scene.joints;
     bodies.derive();
     bodies.first_ends.assign(bodies.slots_.size(), 0);
     joints.ends.assign(2 * joints.slots.size(), {});

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "motley/core/joint_store.h"
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 
 namespace motley {
 
@@ -82,12 +82,12 @@ struct SceneArchive {
     template <class Archive, class S>
     static void visit(Archive& archive, S& scene)
     {
-        visit_bodies(archive, scene.bodies_);
-        visit_joints(archive, *scene.joints_);
-        visit_contacts(archive, scene.contacts_);
-        archive(scene.island_iterations_);
-        archive(scene.ground_);
-        archive(scene.body_count_);
+        visit_bodies(archive, scene.bodies);
+        visit_joints(archive, *scene.joints);
+        visit_contacts(archive, scene.contacts);
+        archive(scene.island_iterations);
+        archive(scene.ground);
+        archive(scene.body_count);
         archive(scene.last_substep);
         archive(scene.last_step);
         if constexpr (Archive::reads) {
@@ -99,11 +99,11 @@ struct SceneArchive {
   private:
     /// Throws unless the scene is one that a host could have made: every index is valid, and bad input is refused here
     /// by the same checks as in Scene.
-    static void check(const Scene& scene);
-    static void check_bodies(const Scene& scene);
-    static void check_joints(const Scene& scene);
+    static void check(const SceneCore& scene);
+    static void check_bodies(const SceneCore& scene);
+    static void check_joints(const SceneCore& scene);
     /// Computes what is not stored in files.
-    static void derive(Scene& scene);
+    static void derive(SceneCore& scene);
 
     template <class Archive, class Store>
     static void visit_bodies(Archive& archive, Store& bodies)

@@ -1,6 +1,6 @@
 // Adding, changing and removing joints, and reports on joints and contacts.
 #include "motley/core/joint_store.h"
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,36 +14,36 @@ namespace motley {
 
 template class Boxed<JointStores>;
 
-bool Scene::asks_for_iterations() const
+bool SceneCore::asks_for_iterations() const
 {
-    return joints_->with_iterations > 0 || !island_iterations_.empty();
+    return joints->with_iterations > 0 || !island_iterations.empty();
 }
 
-JointBodies Scene::check_joint_bodies(int type, BodyId a, BodyId b) const
+JointBodies SceneCore::check_joint_bodies(int type, BodyId a, BodyId b) const
 {
     check_joint_is_built(type);
     require_alive(a, "joint.body_a");
     require_alive(b, "joint.body_b");
     if (a == b) refuse("joint.body_b", "the same body as body_a", "two different bodies");
-    const bool fixed_a = bodies_.row_of(a).kind() == BodyKind::fixed;
-    const bool fixed_b = bodies_.row_of(b).kind() == BodyKind::fixed;
+    const bool fixed_a = bodies.row_of(a).kind() == BodyKind::fixed;
+    const bool fixed_b = bodies.row_of(b).kind() == BodyKind::fixed;
     if (fixed_a && fixed_b)
         refuse("joint.body_b", "a second body that cannot move", "at least one dynamic body");
-    return {bodies_.model(a), bodies_.model(b), fixed_a, fixed_b};
+    return {bodies.model(a), bodies.model(b), fixed_a, fixed_b};
 }
 
-ConstraintId Scene::take_joint_slot(int type, std::size_t index)
+ConstraintId SceneCore::take_joint_slot(int type, std::size_t index)
 {
     std::uint32_t slot;
-    if (joints_->free_slots.empty()) {
-        slot = static_cast<std::uint32_t>(joints_->slots.size());
-        joints_->slots.emplace_back();
-        joints_->ends.resize(2 * joints_->slots.size());
+    if (joints->free_slots.empty()) {
+        slot = static_cast<std::uint32_t>(joints->slots.size());
+        joints->slots.emplace_back();
+        joints->ends.resize(2 * joints->slots.size());
     } else {
-        slot = joints_->free_slots.back();
-        joints_->free_slots.pop_back();
+        slot = joints->free_slots.back();
+        joints->free_slots.pop_back();
     }
-    JointStores::Slot& entry = joints_->slots[slot];
+    JointStores::Slot& entry = joints->slots[slot];
     if (++entry.generation == 0) entry.generation = 1;
     entry.index = static_cast<std::uint32_t>(index);
     entry.type = static_cast<std::uint8_t>(type);
@@ -54,44 +54,43 @@ ConstraintId Scene::take_joint_slot(int type, std::size_t index)
     return {slot, entry.generation};
 }
 
-std::size_t Scene::index_of_joint(ConstraintId joint, int type) const
+std::size_t SceneCore::index_of_joint(ConstraintId joint, int type) const
 {
     if (!is_alive(joint))
         refuse("joint", joint.generation == 0 ? "null" : "removed", "a joint of this scene");
-    const JointStores::Slot& slot = joints_->slots[joint.slot];
+    const JointStores::Slot& slot = joints->slots[joint.slot];
     if (slot.type != type) refuse("set_joint.definition", "of another type", "the type of the joint");
     return slot.index;
 }
 
-bool Scene::is_alive(ConstraintId joint) const
+bool SceneCore::is_alive(ConstraintId joint) const
 {
-    return joint.slot < joints_->slots.size() && joints_->slots[joint.slot].live != 0 &&
-           joints_->slots[joint.slot].generation == joint.generation;
+    return joint.slot < joints->slots.size() && joints->slots[joint.slot].live != 0 &&
+           joints->slots[joint.slot].generation == joint.generation;
 }
 
 std::size_t Scene::joint_count() const
 {
     std::size_t count = 0;
-    joints_->for_each([&](const auto& store, int) { count += store.size(); });
+    core_->joints->for_each([&](const auto& store, int) { count += store.size(); });
     return count;
 }
 
-void Scene::remove_joint_at(int type, std::size_t index)
+void SceneCore::remove_joint_at(int type, std::size_t index)
 {
-    joints_->for_each([&](auto& store, int t) {
+    joints->for_each([&](auto& store, int t) {
         if (t != type) return;
-        JointStores::Slot& entry = joints_->slots[store.slots[index]];
+        JointStores::Slot& entry = joints->slots[store.slots[index]];
         entry.live = 0;
-        if (entry.iterations != 0) --joints_->with_iterations;
+        if (entry.iterations != 0) --joints->with_iterations;
         const std::uint32_t slot = store.slots[index];
-        joints_->free_slots.push_back(slot);
-        joints_->unlink(2 * slot, bodies_.first_ends[store.definitions[index].body_a.slot]);
-        joints_->unlink(2 * slot + 1, bodies_.first_ends[store.definitions[index].body_b.slot]);
+        joints->free_slots.push_back(slot);
+        joints->unlink(2 * slot, bodies.first_ends[store.definitions[index].body_a.slot]);
+        joints->unlink(2 * slot + 1, bodies.first_ends[store.definitions[index].body_b.slot]);
         store.swap_remove(index);
-        if (index < store.size())
-            joints_->slots[store.slots[index]].index = static_cast<std::uint32_t>(index);
+        if (index < store.size()) joints->slots[store.slots[index]].index = static_cast<std::uint32_t>(index);
     });
-    joints_->version.reset();
+    joints->version.reset();
 }
 
 void Scene::remove_joint(ConstraintId joint)
@@ -100,14 +99,14 @@ void Scene::remove_joint(ConstraintId joint)
         refuse("remove_joint.joint", "slot " + std::to_string(joint.slot) + ", not alive",
                "a joint of this scene");
     }
-    remove_joint_at(joints_->slots[joint.slot].type, joints_->slots[joint.slot].index);
+    core_->remove_joint_at(core_->joints->slots[joint.slot].type, core_->joints->slots[joint.slot].index);
 }
 
-void Scene::remove_joints_of(std::span<const BodyId> bodies)
+void SceneCore::remove_joints_of(std::span<const BodyId> removed)
 {
     std::vector<std::pair<int, std::uint32_t>> going;  // type and index
-    for (const BodyId body : bodies) {
-        joints_->for_each_on(bodies_.first_ends[body.slot], [&](const JointStores::Slot& joint) {
+    for (const BodyId body : removed) {
+        joints->for_each_on(bodies.first_ends[body.slot], [&](const JointStores::Slot& joint) {
             going.emplace_back(joint.type, joint.index);
         });
     }
@@ -119,21 +118,21 @@ void Scene::remove_joints_of(std::span<const BodyId> bodies)
     for (const auto& [type, index] : going) remove_joint_at(type, index);
 }
 
-void Scene::check_break_limit(const BreakLimit& limit)
+void SceneCore::check_break_limit(const BreakLimit& limit)
 {
     if (!(limit.force > 0)) refuse("BreakLimit.force", limit.force, "> 0 (N), infinite for none");
     if (!(limit.torque > 0)) refuse("BreakLimit.torque", limit.torque, "> 0 (N m), infinite for none");
 }
 
-void Scene::check_wish(const char* field, int at_least)
+void SceneCore::check_wish(const char* field, int at_least)
 {
     if (at_least < 0 || at_least > 10000) refuse(field, at_least, "0 to 10000");
 }
 
-void Scene::check_island_wish(const IslandIterations& asked) const
+void SceneCore::check_island_wish(const IslandIterations& asked) const
 {
     require_alive(asked.body, "set_island_iterations.body");
-    if (bodies_.row_of(asked.body).kind() == BodyKind::fixed)
+    if (bodies.row_of(asked.body).kind() == BodyKind::fixed)
         refuse("set_island_iterations.body", "a body that nothing moves", "a dynamic body");
     check_wish("set_island_iterations.at_least", asked.at_least);
 }
@@ -144,9 +143,9 @@ void Scene::set_break_limit(ConstraintId joint, const BreakLimit& limit)
         refuse("set_break_limit.joint", "slot " + std::to_string(joint.slot) + ", not alive",
                "a joint of this scene");
     }
-    check_break_limit(limit);
-    JointStores::Slot& slot = joints_->slots[joint.slot];
-    if (slot.watched == 0) joints_->watched.push_back(joint);
+    core_->check_break_limit(limit);
+    JointStores::Slot& slot = core_->joints->slots[joint.slot];
+    if (slot.watched == 0) core_->joints->watched.push_back(joint);
     slot.watched = 1;
     slot.break_limit = limit;
 }
@@ -157,59 +156,60 @@ void Scene::set_iterations(ConstraintId joint, int at_least)
         refuse("set_iterations.joint", "slot " + std::to_string(joint.slot) + ", not alive",
                "a joint of this scene");
     }
-    check_wish("set_iterations.at_least", at_least);
-    std::uint16_t& iterations = joints_->slots[joint.slot].iterations;
-    joints_->with_iterations += (at_least != 0 ? 1U : 0U) - (iterations != 0 ? 1U : 0U);
+    core_->check_wish("set_iterations.at_least", at_least);
+    std::uint16_t& iterations = core_->joints->slots[joint.slot].iterations;
+    core_->joints->with_iterations += (at_least != 0 ? 1U : 0U) - (iterations != 0 ? 1U : 0U);
     iterations = static_cast<std::uint16_t>(at_least);
 }
 
 void Scene::set_island_iterations(BodyId body, int at_least)
 {
-    check_island_wish({body, at_least});
-    make_room_for(island_iterations_, 1);
-    std::erase_if(island_iterations_, [&](const IslandIterations& asked) { return asked.body == body; });
-    if (at_least > 0) island_iterations_.push_back({body, at_least});
+    core_->check_island_wish({body, at_least});
+    make_room_for(core_->island_iterations, 1);
+    std::erase_if(core_->island_iterations,
+                  [&](const IslandIterations& asked) { return asked.body == body; });
+    if (at_least > 0) core_->island_iterations.push_back({body, at_least});
 }
 
-void Scene::make_room_for_break_events()
+void SceneCore::make_room_for_break_events()
 {
-    break_events_.reserve(joints_->watched.size());
+    break_events.reserve(joints->watched.size());
 }
 
-void Scene::find_break_events() noexcept
+void SceneCore::find_break_events() noexcept
 {
-    break_events_.clear();
-    std::erase_if(joints_->watched, [&](ConstraintId joint) {
+    break_events.clear();
+    std::erase_if(joints->watched, [&](ConstraintId joint) {
         if (!is_alive(joint)) return true;
-        JointStores::Slot& slot = joints_->slots[joint.slot];
+        JointStores::Slot& slot = joints->slots[joint.slot];
         const bool asks = !std::isinf(slot.break_limit.force) || !std::isinf(slot.break_limit.torque);
         slot.watched = asks ? 1 : 0;
         return !asks;
     });
-    for (const ConstraintId joint : joints_->watched) {
-        const BreakLimit& limit = joints_->slots[joint.slot].break_limit;
+    for (const ConstraintId joint : joints->watched) {
+        const BreakLimit& limit = joints->slots[joint.slot].break_limit;
         const JointReport report = joint_report(joint);
         const float force = std::sqrt(dot(report.force, report.force));
         const float torque = std::sqrt(dot(report.torque, report.torque));
-        if (force > limit.force || torque > limit.torque) break_events_.push_back({joint, force, torque});
+        if (force > limit.force || torque > limit.torque) break_events.push_back({joint, force, torque});
     }
 }
 
 /// The mean force over the last step that an impulse of that step makes.
-Vec3<float> Scene::force_of(const Vec3<float>& impulse) const
+Vec3<float> SceneCore::force_of(const Vec3<float>& impulse) const
 {
     return last_step > 0 ? 1 / last_step * impulse : Vec3<float>{};
 }
 
-JointReport Scene::joint_report(ConstraintId joint) const
+JointReport SceneCore::joint_report(ConstraintId joint) const
 {
     if (!is_alive(joint)) {
         refuse("joint_report.joint", "slot " + std::to_string(joint.slot) + ", not alive",
                "a joint of this scene");
     }
-    const JointStores::Slot& entry = joints_->slots[joint.slot];
+    const JointStores::Slot& entry = joints->slots[joint.slot];
     JointReport result;
-    joints_->for_each([&](const auto& store, int type) {
+    joints->for_each([&](const auto& store, int type) {
         if (type != entry.type) return;
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         const auto& definition = store.definitions[entry.index];
@@ -224,7 +224,7 @@ JointReport Scene::joint_report(ConstraintId joint) const
 
 JointReport Scene::contact_report(std::span<const Contact> contacts, std::size_t index) const
 {
-    const ContactList& list = contacts_.current();
+    const ContactList& list = core_->contacts.current();
     if (index >= list.count || index >= contacts.size()) {
         refuse("contact_report.index", static_cast<double>(index),
                "below the length of the last step's list and of `contacts`");
@@ -234,7 +234,7 @@ JointReport Scene::contact_report(std::span<const Contact> contacts, std::size_t
         refuse("contact_report.contacts", "another list", "the list of the last step");
     const ContactImpulse& impulse = contact_impulses()[index];
     JointReport report;
-    report.force = force_of(impulse.normal * contact.normal + impulse.friction);
+    report.force = core_->force_of(impulse.normal * contact.normal + impulse.friction);
     report.error = std::fmax(0.0F, -contact.separation);
     report.state = impulse.normal > 0 ? JointState::active : JointState::inactive;
     return report;
@@ -244,16 +244,16 @@ template <class Definition>
 ConstraintId Scene::add_joint(const Definition& definition)
 {
     constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
-    auto& store = std::get<static_cast<std::size_t>(type)>(joints_->stores);
+    auto& store = std::get<static_cast<std::size_t>(type)>(core_->joints->stores);
     using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-    Type::validate(definition, check_joint_bodies(type, definition.body_a, definition.body_b));
-    joints_->make_room();
+    Type::validate(definition, core_->check_joint_bodies(type, definition.body_a, definition.body_b));
+    core_->joints->make_room();
     store.make_room();
-    const ConstraintId id = take_joint_slot(type, store.size());
+    const ConstraintId id = core_->take_joint_slot(type, store.size());
     store.push_back(definition, id.slot);
-    joints_->link(2 * id.slot, bodies_.first_ends[definition.body_a.slot]);
-    joints_->link(2 * id.slot + 1, bodies_.first_ends[definition.body_b.slot]);
-    joints_->version.reset();
+    core_->joints->link(2 * id.slot, core_->bodies.first_ends[definition.body_a.slot]);
+    core_->joints->link(2 * id.slot + 1, core_->bodies.first_ends[definition.body_b.slot]);
+    core_->joints->version.reset();
     return id;
 }
 
@@ -261,15 +261,15 @@ template <class Definition>
 void Scene::set_joint(ConstraintId joint, const Definition& definition)
 {
     constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
-    auto& store = std::get<static_cast<std::size_t>(type)>(joints_->stores);
+    auto& store = std::get<static_cast<std::size_t>(type)>(core_->joints->stores);
     using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-    const std::size_t index = index_of_joint(joint, type);
+    const std::size_t index = core_->index_of_joint(joint, type);
     const Definition& now = store.definitions[index];
     if (definition.body_a != now.body_a || definition.body_b != now.body_b)
         refuse("set_joint.definition", "other bodies", "the bodies of the joint");
-    Type::validate(definition, check_joint_bodies(type, definition.body_a, definition.body_b));
+    Type::validate(definition, core_->check_joint_bodies(type, definition.body_a, definition.body_b));
     // Locks and other joints are laid out differently.
-    if (Type::is_equality(definition) != Type::is_equality(now)) joints_->version.reset();
+    if (Type::is_equality(definition) != Type::is_equality(now)) core_->joints->version.reset();
     store.define(index, definition);
 }
 

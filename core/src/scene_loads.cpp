@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "motley/core/invalid_input.h"
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 
 namespace motley {
 namespace {
@@ -17,11 +17,11 @@ struct Borne {
 
 }  // namespace
 
-void Scene::require_list_of_last_step(std::span<const Contact> contacts, const char* what) const
+void SceneCore::require_list_of_last_step(std::span<const Contact> list, const char* what) const
 {
-    const ContactList& list = contacts_.current();
-    bool same = contacts.size() == list.count;
-    for (std::size_t i = 0; same && i < list.count; ++i) same = list.entries[i].key == contacts[i].key;
+    const ContactList& last = contacts.current();
+    bool same = list.size() == last.count;
+    for (std::size_t i = 0; same && i < last.count; ++i) same = last.entries[i].key == list[i].key;
     if (!same) refuse(what, "another list", "the list of the last step");
 }
 
@@ -40,16 +40,16 @@ void Scene::read_loads(std::span<const BodyId> bodies, std::span<const Contact> 
                    "above 0, to 1e9 (m)");
         }
     }
-    require_alive(bodies, "read_loads.bodies");
-    require_list_of_last_step(contacts, "read_loads.contacts");
-    std::vector<Borne> borne(bodies_.slot_count());
+    core_->require_alive(bodies, "read_loads.bodies");
+    core_->require_list_of_last_step(contacts, "read_loads.contacts");
+    std::vector<Borne> borne(core_->bodies.slot_count());
     const std::span<const ContactImpulse> impulses = contact_impulses();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const auto normal = static_cast<double>(impulses[i].normal);
         const Vec3<double> on_b =
             normal * convert<double>(contacts[i].normal) + convert<double>(impulses[i].friction);
         const auto bear = [&](BodyId body, const Vec3<double>& push) {
-            if (!bodies_.is_alive(body)) return;  // removed since
+            if (!core_->bodies.is_alive(body)) return;  // removed since
             Borne& all = borne[body.slot];
             all.normal += normal;
             all.largest = std::max(all.largest, normal);
@@ -58,7 +58,7 @@ void Scene::read_loads(std::span<const BodyId> bodies, std::span<const Contact> 
         bear(contacts[i].body_a, -on_b);
         bear(contacts[i].body_b, on_b);
     }
-    const double per_second = last_step > 0 ? 1 / static_cast<double>(last_step) : 0;
+    const double per_second = core_->last_step > 0 ? 1 / static_cast<double>(core_->last_step) : 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const Borne& all = borne[bodies[i].slot];
         const double force = per_second * all.normal;

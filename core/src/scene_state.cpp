@@ -1,6 +1,6 @@
 // The state of bodies, read and written by the host one at a time and in bulk. Nothing is changed before everything
 // is checked.
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 
 #include <cmath>
 
@@ -10,11 +10,11 @@
 
 namespace motley {
 
-BodyState Scene::state(BodyId body) const
+BodyState SceneCore::state(BodyId body) const
 {
     require_alive(body, "state.body");
-    const BodyRow where = bodies_.row_of(body);
-    const BodyRows& rows = bodies_.rows(where.kind());
+    const BodyRow where = bodies.row_of(body);
+    const BodyRows& rows = bodies.rows(where.kind());
     const std::size_t row = where.row();
     BodyState state;
     state.position = convert<double>(rows.pose[row].position);
@@ -41,43 +41,43 @@ BodyState Scene::state(BodyId body) const
 
 void Scene::set_pose(BodyId body, const Vec3<double>& position, const Quat<double>& orientation, double yaw)
 {
-    require_alive(body, "set_pose.body");
-    if (body == ground_) refuse("set_pose.body", "the ground", "a body that the host added");
+    core_->require_alive(body, "set_pose.body");
+    if (body == core_->ground) refuse("set_pose.body", "the ground", "a body that the host added");
     check_position("set_pose.position", position);
     check("set_pose.yaw", yaw, -1e9, 1e9, "a finite value from -1e9 to 1e9 (rad)");
     const Quat<double>& q = orientation;
     const double length2 = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
     check("set_pose.orientation", length2, 1e-12, 1e12,
           "a quaternion with a length from 1e-6 to 1e6 (squared shown)");
-    const BodyRow where = bodies_.row_of(body);
-    BodyRows& rows = bodies_.rows(where.kind());
+    const BodyRow where = core_->bodies.row_of(body);
+    BodyRows& rows = core_->bodies.rows(where.kind());
     rows.pose[where.row()] = {convert<PoseReal>(position), static_cast<PoseReal>(yaw)};
     if (quads_of(where.kind()) == 2) {
         const double length = std::sqrt(length2);
         rows.orientation[where.row()] =
             convert<PoseReal>(Quat<double>{q.x / length, q.y / length, q.z / length, q.w / length});
-        if (where.kind() == BodyKind::rigid && bodies_.contained[body.slot] == 0)
-            bodies_.refresh_world_inertia(where.row());
+        if (where.kind() == BodyKind::rigid && core_->bodies.contained[body.slot] == 0)
+            core_->bodies.refresh_world_inertia(where.row());
     }
     // A teleport makes the cached impulses meaningless.
-    joints_->for_each_on(bodies_.first_ends[body.slot], [&](const JointStores::Slot& joint) {
-        joints_->for_each([&](auto& store, int type) {
+    core_->joints->for_each_on(core_->bodies.first_ends[body.slot], [&](const JointStores::Slot& joint) {
+        core_->joints->for_each([&](auto& store, int type) {
             if (type == joint.type) store.forget_impulse(joint.index);
         });
     });
 }
 
-void Scene::check_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular) const
+void SceneCore::check_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular) const
 {
-    check_velocity_of(bodies_.model(body), bodies_.motion(body), linear, angular);
+    check_velocity_of(bodies.model(body), bodies.motion(body), linear, angular);
 }
 
-void Scene::write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular)
+void SceneCore::write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular)
 {
-    if (bodies_.contained[body.slot] != 0) return;  // frozen where it is
-    const BodyRow where = bodies_.row_of(body);
+    if (bodies.contained[body.slot] != 0) return;  // frozen where it is
+    const BodyRow where = bodies.row_of(body);
     float* v =
-        &bodies_.rows(where.kind())
+        &bodies.rows(where.kind())
              .velocity[std::size_t{4} * where.row() * static_cast<std::size_t>(quads_of(where.kind()))];
     if (linear) {
         v[0] = linear->x;
@@ -95,9 +95,9 @@ void Scene::write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<fl
 
 void Scene::set_velocity(BodyId body, const Vec3<float>& linear, const Vec3<float>& angular)
 {
-    require_alive(body, "set_velocity.body");
-    check_velocity(body, &linear, &angular);
-    write_velocity(body, &linear, &angular);
+    core_->require_alive(body, "set_velocity.body");
+    core_->check_velocity(body, &linear, &angular);
+    core_->write_velocity(body, &linear, &angular);
 }
 
 void Scene::set_velocities(std::span<const BodyId> bodies, StridedSpan<const Vec3<float>> linear,
@@ -111,11 +111,11 @@ void Scene::set_velocities(std::span<const BodyId> bodies, StridedSpan<const Vec
                "0 or the size of bodies");
     }
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        require_alive(bodies[i], "set_velocities.bodies");
-        check_velocity(bodies[i], &linear[i], angular.empty() ? nullptr : &angular[i]);
+        core_->require_alive(bodies[i], "set_velocities.bodies");
+        core_->check_velocity(bodies[i], &linear[i], angular.empty() ? nullptr : &angular[i]);
     }
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        write_velocity(bodies[i], &linear[i], angular.empty() ? nullptr : &angular[i]);
+        core_->write_velocity(bodies[i], &linear[i], angular.empty() ? nullptr : &angular[i]);
     }
 }
 
@@ -134,8 +134,8 @@ void Scene::set_forces(std::span<const BodyId> bodies, StridedSpan<const Vec3<fl
         refuse("set_forces.torques.size()", static_cast<double>(torques.size()), "0 or the size of bodies");
     }
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        require_alive(bodies[i], "set_forces.bodies");
-        if (bodies_.motion(bodies[i]) != BodyMotion::dynamic_body) {
+        core_->require_alive(bodies[i], "set_forces.bodies");
+        if (core_->bodies.motion(bodies[i]) != BodyMotion::dynamic_body) {
             refuse("set_forces.bodies", "a static or kinematic body", "dynamic bodies");
         }
         if (!is_finite(forces[i]))
@@ -145,16 +145,17 @@ void Scene::set_forces(std::span<const BodyId> bodies, StridedSpan<const Vec3<fl
         }
     }
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const BodyRow where = bodies_.row_of(bodies[i]);
-        BodyRows& rows = bodies_.rows(where.kind());
+        const BodyRow where = core_->bodies.row_of(bodies[i]);
+        BodyRows& rows = core_->bodies.rows(where.kind());
         float* a = &rows.acceleration[std::size_t{4} * where.row() *
                                       static_cast<std::size_t>(quads_of(where.kind()))];
-        const float inverse_mass = bodies_.inverse_masses[bodies[i].slot];
+        const float inverse_mass = core_->bodies.inverse_masses[bodies[i].slot];
         a[0] = inverse_mass * forces[i].x;
         a[1] = inverse_mass * forces[i].y;
         if (where.kind() != BodyKind::planar) a[2] = inverse_mass * forces[i].z;
         if (torques.empty()) continue;
-        if (where.kind() == BodyKind::planar) a[2] = bodies_.inverse_inertias[bodies[i].slot] * torques[i].z;
+        if (where.kind() == BodyKind::planar)
+            a[2] = core_->bodies.inverse_inertias[bodies[i].slot] * torques[i].z;
         if (where.kind() == BodyKind::rigid) {
             a[4] = torques[i].x;
             a[5] = torques[i].y;
@@ -165,21 +166,22 @@ void Scene::set_forces(std::span<const BodyId> bodies, StridedSpan<const Vec3<fl
 
 void Scene::revive(BodyId body, const Vec3<double>& position, const Vec3<float>& linear)
 {
-    require_alive(body, "revive.body");
-    if (bodies_.contained[body.slot] == 0) refuse("revive.body", "a body that moves", "a contained body");
+    core_->require_alive(body, "revive.body");
+    if (core_->bodies.contained[body.slot] == 0)
+        refuse("revive.body", "a body that moves", "a contained body");
     check_position("revive.position", position);
-    check_velocity(body, &linear, nullptr);
-    bodies_.revive(body);
-    joints_->version.reset();
-    bodies_.rows(bodies_.row_of(body).kind()).pose[bodies_.row_of(body).row()].position =
+    core_->check_velocity(body, &linear, nullptr);
+    core_->bodies.revive(body);
+    core_->joints->version.reset();
+    core_->bodies.rows(core_->bodies.row_of(body).kind()).pose[core_->bodies.row_of(body).row()].position =
         convert<PoseReal>(position);
-    write_velocity(body, &linear, nullptr);
+    core_->write_velocity(body, &linear, nullptr);
 }
 
 bool Scene::is_contained(BodyId body) const
 {
-    require_alive(body, "is_contained.body");
-    return bodies_.contained[body.slot] != 0;
+    core_->require_alive(body, "is_contained.body");
+    return core_->bodies.contained[body.slot] != 0;
 }
 
 void Scene::read_positions(std::span<const BodyId> bodies, StridedSpan<Vec3<double>> positions) const
@@ -188,10 +190,10 @@ void Scene::read_positions(std::span<const BodyId> bodies, StridedSpan<Vec3<doub
         refuse("read_positions.positions.size()", static_cast<double>(positions.size()),
                "the size of bodies");
     }
-    require_alive(bodies, "read_positions.bodies");
+    core_->require_alive(bodies, "read_positions.bodies");
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const BodyRow where = bodies_.row_of(bodies[i]);
-        positions[i] = convert<double>(bodies_.rows(where.kind()).pose[where.row()].position);
+        const BodyRow where = core_->bodies.row_of(bodies[i]);
+        positions[i] = convert<double>(core_->bodies.rows(where.kind()).pose[where.row()].position);
     }
 }
 
@@ -206,11 +208,11 @@ void Scene::read_velocities(std::span<const BodyId> bodies, StridedSpan<Vec3<flo
         refuse("read_velocities.angular.size()", static_cast<double>(angular.size()),
                "0 or the size of bodies");
     }
-    require_alive(bodies, "read_velocities.bodies");
+    core_->require_alive(bodies, "read_velocities.bodies");
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const BodyRow where = bodies_.row_of(bodies[i]);
+        const BodyRow where = core_->bodies.row_of(bodies[i]);
         const float* v =
-            &bodies_.rows(where.kind())
+            &core_->bodies.rows(where.kind())
                  .velocity[std::size_t{4} * where.row() * static_cast<std::size_t>(quads_of(where.kind()))];
         const bool planar = where.kind() == BodyKind::planar;
         if (!linear.empty()) linear[i] = {v[0], v[1], planar ? 0.0F : v[2]};
@@ -226,10 +228,10 @@ void Scene::read_yaws(std::span<const BodyId> bodies, StridedSpan<double> yaws) 
     if (yaws.size() != bodies.size()) {
         refuse("read_yaws.yaws.size()", static_cast<double>(yaws.size()), "the size of bodies");
     }
-    require_alive(bodies, "read_yaws.bodies");
+    core_->require_alive(bodies, "read_yaws.bodies");
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const BodyRow where = bodies_.row_of(bodies[i]);
-        yaws[i] = static_cast<double>(bodies_.rows(where.kind()).pose[where.row()].yaw);
+        const BodyRow where = core_->bodies.row_of(bodies[i]);
+        yaws[i] = static_cast<double>(core_->bodies.rows(where.kind()).pose[where.row()].yaw);
     }
 }
 

@@ -60,7 +60,7 @@ std::uint32_t layout_of_numbers()
     mix(sizeof(Contact));
     mix(sizeof(SolverSettings));
     mix(sizeof(std::size_t));
-    Scene().joints().for_each([&](const auto& store, int) {
+    JointStores().for_each([&](const auto& store, int) {
         using Store = std::remove_cvref_t<decltype(store)>;
         mix(sizeof(store.definitions[0]));
         mix(quad_floats<typename Store::Parameters>);
@@ -166,21 +166,22 @@ SolverSettings read_settings(ArchiveReader& archive)
 void save_scene(const Scene& scene, const std::string& file)
 {
     ArchiveWriter archive;
-    SceneArchive::visit(archive, scene);
+    SceneArchive::visit(archive, core_of(scene));
     write_archive(file, scene_name, archive);
 }
 
 Scene load_scene(const std::string& file)
 {
     Scene scene;
-    read_archive(file, scene_name, [&](ArchiveReader& archive) { SceneArchive::visit(archive, scene); });
+    read_archive(file, scene_name,
+                 [&](ArchiveReader& archive) { SceneArchive::visit(archive, core_of(scene)); });
     return scene;
 }
 
 void save_problem(const StepProblem& problem, const std::string& file)
 {
     ArchiveWriter archive;
-    SceneArchive::visit(archive, problem.scene);
+    SceneArchive::visit(archive, core_of(problem.scene));
     archive(problem.settings);
     archive(problem.dt);
     archive(problem.contacts);
@@ -191,7 +192,7 @@ StepProblem load_problem(const std::string& file)
 {
     StepProblem problem;
     read_archive(file, problem_name, [&](ArchiveReader& archive) {
-        SceneArchive::visit(archive, problem.scene);
+        SceneArchive::visit(archive, core_of(problem.scene));
         problem.settings = read_settings(archive);
         archive(problem.dt);
         archive(problem.contacts);

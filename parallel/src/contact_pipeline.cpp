@@ -3,30 +3,31 @@
 
 namespace motley {
 
-std::string ContactPipeline::take_in(Scene& scene, std::span<const Contact> contacts,
+std::string ContactPipeline::take_in(SceneCore& scene, std::span<const Contact> contacts,
                                      BadContacts bad_contacts)
 {
     check_and_match(scene, contacts);
     std::string error = layout_.intake.first_error(scene, contacts);
-    if (error.empty() || bad_contacts == BadContacts::skip) look_up_unmatched(scene.contact_cache());
+    if (error.empty() || bad_contacts == BadContacts::skip) look_up_unmatched(scene.contacts);
     return error;
 }
 
-std::string ContactPipeline::lay_out(Scene& scene, std::span<const Contact> contacts, const Wanted& wanted)
+std::string ContactPipeline::lay_out(SceneCore& scene, std::span<const Contact> contacts,
+                                     const Wanted& wanted)
 {
     layout_.begin(scene, contacts.size(), wanted.figures);
     colour_and_verify_keys(scene);
-    if (scene.contact_cache().has_repeated_key()) return ContactIntake::repeated_key(contacts);
+    if (scene.contacts.has_repeated_key()) return ContactIntake::repeated_key(contacts);
     sort_into_blocks(wanted.adds_up);
     layout_.cut(scene, contacts, wanted.tells_apart);
     return {};
 }
 
 /// Checks each contact, and matches it with the contact at about the same place of the last list.
-void ContactPipeline::check_and_match(Scene& scene, std::span<const Contact> contacts)
+void ContactPipeline::check_and_match(SceneCore& scene, std::span<const Contact> contacts)
 {
     layout_.intake.begin(scene, contacts.size());
-    runner_.run(scene.contact_cache().part_count(),
+    runner_.run(scene.contacts.part_count(),
                 [&](std::int64_t part) { layout_.intake.check_and_match(scene, contacts, part); });
 }
 
@@ -41,12 +42,12 @@ void ContactPipeline::look_up_unmatched(ContactCache& cache)
 }
 
 /// One thread colours the contacts; the others meanwhile look for repeated keys.
-void ContactPipeline::colour_and_verify_keys(Scene& scene)
+void ContactPipeline::colour_and_verify_keys(SceneCore& scene)
 {
-    ContactCache& cache = scene.contact_cache();
+    ContactCache& cache = scene.contacts;
     runner_.run(1 + cache.part_count(), [&](std::int64_t chunk) {
         if (chunk == 0) {
-            layout_.colour_contacts(scene.bodies(), cache.staged());
+            layout_.colour_contacts(scene.bodies, cache.staged());
         } else {
             cache.verify(chunk - 1);
         }

@@ -18,7 +18,7 @@ class ContactPipeline {
     /// Makes placements from the list, with the colours and impulses of the last step. Returns what is wrong with the
     /// first bad contact, or empty; repeated keys are found only by lay_out(). Unless bad contacts are skipped, none
     /// is taken in if one is bad.
-    std::string take_in(Scene& scene, std::span<const Contact> contacts, BadContacts bad_contacts);
+    std::string take_in(SceneCore& scene, std::span<const Contact> contacts, BadContacts bad_contacts);
     /// How the step wants its constraints laid out.
     struct Wanted {
         FigureUse figures;
@@ -26,15 +26,15 @@ class ContactPipeline {
         bool adds_up = false;      ///< contacts have space for sums over several substeps
     };
     /// Makes chunks from the placements, joints included. Returns what is wrong when a key is repeated, or empty.
-    std::string lay_out(Scene& scene, std::span<const Contact> contacts, const Wanted& wanted);
+    std::string lay_out(SceneCore& scene, std::span<const Contact> contacts, const Wanted& wanted);
 
   private:
     StageRunner& runner_;
     Layout& layout_;
 
-    void check_and_match(Scene& scene, std::span<const Contact> contacts);
+    void check_and_match(SceneCore& scene, std::span<const Contact> contacts);
     void look_up_unmatched(ContactCache& cache);
-    void colour_and_verify_keys(Scene& scene);
+    void colour_and_verify_keys(SceneCore& scene);
     void sort_into_blocks(bool adds_up);
 };
 

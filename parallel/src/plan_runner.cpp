@@ -212,14 +212,14 @@ void PlanRunner::measure_residual(const Step& step)
 
 void PlanRunner::move_bodies(const Step& step)
 {
-    Scene& scene = step.scene;
+    SceneCore& scene = step.scene;
     std::uint32_t first_slot = 0;
-    step.report.bodies_contained = sweeper_.commit(scene.bodies(), first_slot);
-    if (layout_.is_overloaded()) scene.bodies().restore_planar_inertia();
+    step.report.bodies_contained = sweeper_.commit(scene.bodies, first_slot);
+    if (layout_.is_overloaded()) scene.bodies.restore_planar_inertia();
     if (step.report.bodies_contained == 0) return;
-    step.report.first_contained = scene.bodies().id_of_slot(first_slot);
-    scene.bodies().contained_count += static_cast<std::size_t>(step.report.bodies_contained);
-    scene.joints().version.reset();  // joints of contained bodies are left out from now on
+    step.report.first_contained = scene.bodies.id_of_slot(first_slot);
+    scene.bodies.contained_count += static_cast<std::size_t>(step.report.bodies_contained);
+    scene.joints->version.reset();  // joints of contained bodies are left out from now on
 }
 
 bool PlanRunner::sweeps_long(const SolverSettings& settings)

@@ -22,7 +22,7 @@ class PlanRunner {
 
     /// What a step needs in addition to its plan.
     struct Step {
-        Scene& scene;
+        SceneCore& scene;
         std::span<const Contact> contacts;
         float dt;  ///< s
         const SolverSettings& settings;

@@ -13,13 +13,14 @@
 #include "layout.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_store.h"
+#include "motley/core/scene_core.h"
 #include "motley/core/step_constants.h"
+#include "own_executor.h"
 #include "plan.h"
 #include "plan_runner.h"
 #include "stage_runner.h"
 #include "step_clock.h"
 #include "sweeper.h"
-#include "tbb_executor.h"
 
 namespace motley {
 namespace {
@@ -72,7 +73,7 @@ void measure_start(const Scene& scene, std::span<const Contact> contacts, StepMe
     measures.before = scene.errors();
     double squares = 0;
     std::int64_t overlapping = 0;
-    const ContactList& list = scene.contact_cache().staged();
+    const ContactList& list = core_of(scene).contacts.staged();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const Contact& contact = contacts[i];
         if (list.colours[i] == no_colour || contact.separation >= 0) continue;  // left out, or apart
@@ -116,20 +117,20 @@ struct Solver::Impl {
     {
     }
 
-    void step(Scene& scene, float dt, std::span<const Contact> contacts, StepReport& report);
+    void step(Scene& host_scene, float dt, std::span<const Contact> contacts, StepReport& report);
     [[nodiscard]] bool runs_alone(const Scene& scene, std::span<const Contact> contacts) const;
     void pick_settings();
-    void take_in(Scene& scene, std::span<const Contact> contacts, StepReport& report);
-    void lay_out(Scene& scene, std::span<const Contact> contacts, StepReport& report);
-    void plan_step(const Scene& scene);
-    void finish(Scene& scene, float dt, StepReport& report);
+    void take_in(SceneCore& scene, std::span<const Contact> contacts, StepReport& report);
+    void lay_out(SceneCore& scene, std::span<const Contact> contacts, StepReport& report);
+    void plan_step(const SceneCore& scene);
+    void finish(SceneCore& scene, float dt, StepReport& report);
     void learn_times(const StepReport& report);
     // What the settings and the scene ask of a step:
-    [[nodiscard]] bool picks_islands(const Scene& scene) const;
-    [[nodiscard]] bool tells_blocks_apart(const Scene& scene) const;
-    [[nodiscard]] FigureUse use_of_figures(const Scene& scene) const;
-    [[nodiscard]] bool can_visit_patches_once(const Scene& scene) const;
-    [[nodiscard]] bool anything_bounces(const Scene& scene) const;
+    [[nodiscard]] bool picks_islands(const SceneCore& scene) const;
+    [[nodiscard]] bool tells_blocks_apart(const SceneCore& scene) const;
+    [[nodiscard]] FigureUse use_of_figures(const SceneCore& scene) const;
+    [[nodiscard]] bool can_visit_patches_once(const SceneCore& scene) const;
+    [[nodiscard]] bool anything_bounces(const SceneCore& scene) const;
 };
 
 Solver::Solver(const SolverSettings& settings, const SolverOptions& options)
@@ -183,9 +184,10 @@ StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contact
     return report;
 }
 
-void Solver::Impl::step(Scene& scene, float dt, std::span<const Contact> contacts, StepReport& report)
+void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> contacts, StepReport& report)
 {
-    const BusyFlag::Hold own(busy), scenes(scene.busy());
+    SceneCore& scene = core_of(host_scene);
+    const BusyFlag::Hold own(busy), scenes(scene.busy);
     if (!own.holds()) refuse("step", "called while the solver is in a step", "one step at a time");
     if (!scenes.holds()) refuse("step.scene", "in another step", "one step at a time");
     if (!(dt >= 0 && dt <= 1)) refuse("step.dt", dt, "0 to 1 (s)");
@@ -193,7 +195,7 @@ void Solver::Impl::step(Scene& scene, float dt, std::span<const Contact> contact
         refuse("step.contacts.size()", static_cast<double>(contacts.size()), "at most 2^31 - 1");
     const auto began = std::chrono::steady_clock::now();
     pick_settings();
-    const std::exception_ptr late = runner.with_workers(runs_alone(scene, contacts), [&] {
+    const std::exception_ptr late = runner.with_workers(runs_alone(host_scene, contacts), [&] {
         StepClock clock(report);
         clock.enter(Stage::intake);
         take_in(scene, contacts, report);
@@ -205,12 +207,12 @@ void Solver::Impl::step(Scene& scene, float dt, std::span<const Contact> contact
         layout.point_at(scene, step_constants(settings, dt, scene.last_substep));
         plan_step(scene);
         clock.leave();
-        if (settings.measures) measure_start(scene, contacts, report.measures);
+        if (settings.measures) measure_start(host_scene, contacts, report.measures);
         plan_runner.run(plan, figure_plan, {scene, contacts, dt, settings, picks_islands(scene), report},
                         clock);
         finish(scene, dt, report);
         clock.leave();
-        if (settings.measures) report.measures.after = scene.errors();
+        if (settings.measures) report.measures.after = host_scene.errors();
         learn_times(report);
     });
     if (!report.error.empty()) {
@@ -250,7 +252,7 @@ void Solver::Impl::learn_times(const StepReport& report)
                  asked.method == Method::soft_step ? settings.substeps : settings.iterations);
 }
 
-void Solver::Impl::take_in(Scene& scene, std::span<const Contact> contacts, StepReport& report)
+void Solver::Impl::take_in(SceneCore& scene, std::span<const Contact> contacts, StepReport& report)
 {
     std::string error = pipeline.take_in(scene, contacts, settings.bad_contacts);
     if (settings.bad_contacts == BadContacts::refuse) {
@@ -261,7 +263,7 @@ void Solver::Impl::take_in(Scene& scene, std::span<const Contact> contacts, Step
     }
 }
 
-void Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contacts, StepReport& report)
+void Solver::Impl::lay_out(SceneCore& scene, std::span<const Contact> contacts, StepReport& report)
 {
     scene.make_room_for_break_events();
     report.error = pipeline.lay_out(scene, contacts,
@@ -272,7 +274,7 @@ void Solver::Impl::lay_out(Scene& scene, std::span<const Contact> contacts, Step
 }
 
 /// Plans what this step does, in which order, and what of it is fused.
-void Solver::Impl::plan_step(const Scene& scene)
+void Solver::Impl::plan_step(const SceneCore& scene)
 {
     const StepNeeds needs{.solves_trees = use_of_figures(scene).exactly,
                           .bounces = anything_bounces(scene),
@@ -287,9 +289,9 @@ void Solver::Impl::plan_step(const Scene& scene)
 }
 
 /// After the bodies have moved: updates the scene and fills in the report.
-void Solver::Impl::finish(Scene& scene, float dt, StepReport& report)
+void Solver::Impl::finish(SceneCore& scene, float dt, StepReport& report)
 {
-    scene.contact_cache().accept_staged();
+    scene.contacts.accept_staged();
     scene.last_substep = layout.context.step.substep;
     scene.last_step = dt;
     scene.find_break_events();
@@ -297,30 +299,30 @@ void Solver::Impl::finish(Scene& scene, float dt, StepReport& report)
     report.substeps = settings.substeps;
 }
 
-bool Solver::Impl::anything_bounces(const Scene& scene) const
+bool Solver::Impl::anything_bounces(const SceneCore& scene) const
 {
     bool any = layout.intake.bounces();
-    scene.joints().for_each([&](const auto& store, int) {
+    scene.joints->for_each([&](const auto& store, int) {
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         if constexpr (Type::has_restitution) any = any || store.size() > 0;
     });
     return any;
 }
 
-bool Solver::Impl::picks_islands(const Scene& scene) const
+bool Solver::Impl::picks_islands(const SceneCore& scene) const
 {
     return settings.tolerance > 0 || scene.asks_for_iterations();
 }
 
 /// Whether blocks have space for residuals and for the number of sweeps that their islands asked for.
-bool Solver::Impl::tells_blocks_apart(const Scene& scene) const
+bool Solver::Impl::tells_blocks_apart(const SceneCore& scene) const
 {
     return picks_islands(scene) || settings.measures || settings.budget_ms > 0;
 }
 
 /// How this step may use figures: not at all with the direct method or where positions are projected, and not in
 /// lockstep where blocks are told apart.
-FigureUse Solver::Impl::use_of_figures(const Scene& scene) const
+FigureUse Solver::Impl::use_of_figures(const SceneCore& scene) const
 {
     const bool projects = settings.method == Method::sequential_impulse &&
                           settings.drift_correction == DriftCorrection::projection;
@@ -333,7 +335,7 @@ FigureUse Solver::Impl::use_of_figures(const Scene& scene) const
 
 /// Whether visit_patches_once() may rewrite the plan. Not where residuals are measured, by island or of the whole
 /// scene, nor with trees: both need all bodies solved before the first one is relaxed.
-bool Solver::Impl::can_visit_patches_once(const Scene& scene) const
+bool Solver::Impl::can_visit_patches_once(const SceneCore& scene) const
 {
     return layout.intake.patches.are_wanted() && settings.method == Method::soft_step &&
            settings.relaxations > 0 && !PlanRunner::sweeps_long(settings) && !tells_blocks_apart(scene) &&

@@ -1,5 +1,5 @@
 // oneTBB behind the executor interface.
-#include "tbb_executor.h"
+#include "own_executor.h"
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -10,12 +10,6 @@
 
 namespace motley {
 namespace {
-
-class InlineExecutor final : public Executor {
-  public:
-    [[nodiscard]] int concurrency() const override { return 1; }
-    void run(int, const std::function<void(int)>& job) override { job(0); }
-};
 
 class TbbExecutor final : public Executor {
   public:
@@ -50,9 +44,8 @@ class TbbExecutor final : public Executor {
 
 }  // namespace
 
-std::unique_ptr<Executor> make_executor(int threads)
+std::unique_ptr<Executor> make_tbb_executor(int threads)
 {
-    if (threads == 1) return std::make_unique<InlineExecutor>();
     return std::make_unique<TbbExecutor>(threads);
 }
 

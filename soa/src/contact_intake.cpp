@@ -58,13 +58,13 @@ bool is_planar(BodyRow a, BodyRow b)
 
 }  // namespace
 
-void ContactIntake::begin(Scene& scene, std::size_t count)
+void ContactIntake::begin(SceneCore& scene, std::size_t count)
 {
     grow_to(placements, count);
     grow_to(memory_index, count);
     count_ = count;
-    patches.begin(scene.bodies(), count);
-    scene.contact_cache().begin(count);
+    patches.begin(scene.bodies, count);
+    scene.contacts.begin(count);
     first_bad_.store(none, std::memory_order_relaxed);
     bad_contacts_.store(0, std::memory_order_relaxed);
     bounces_.store(false, std::memory_order_relaxed);
@@ -106,9 +106,9 @@ void ContactIntake::remember(ContactCache& cache, std::uint32_t i, std::uint32_t
     memory_index[i] = same_bodies ? static_cast<std::int32_t>(before) + 1 : 0;
 }
 
-void ContactIntake::check_and_match(Scene& scene, std::span<const Contact> contacts, std::int64_t part)
+void ContactIntake::check_and_match(SceneCore& scene, std::span<const Contact> contacts, std::int64_t part)
 {
-    ContactCache& cache = scene.contact_cache();
+    ContactCache& cache = scene.contacts;
     ContactCache::Walk walk(cache, part);
     const auto [begin, end] = cache.part(part);
     bool bounces = false;
@@ -117,11 +117,11 @@ void ContactIntake::check_and_match(Scene& scene, std::span<const Contact> conta
         // Contacts are consecutive in memory; their bodies are scattered, so they are prefetched.
         constexpr std::uint32_t ahead = 8;
         if (i + ahead < end) {
-            scene.bodies().prefetch(contacts[i + ahead].body_a);
-            scene.bodies().prefetch(contacts[i + ahead].body_b);
+            scene.bodies.prefetch(contacts[i + ahead].body_a);
+            scene.bodies.prefetch(contacts[i + ahead].body_b);
         }
         placements[i].constraint = static_cast<std::int32_t>(i);
-        placements[i].is_bad = !place(scene.bodies(), contact, placements[i]);
+        placements[i].is_bad = !place(scene.bodies, contact, placements[i]);
         if (placements[i].is_bad) {
             mark_bad(i);
             // If it is skipped, it gets fixed bodies, and keeps its place in the list and its key.
@@ -176,9 +176,9 @@ namespace {
     refuse("contacts[" + std::to_string(index) + "]." + std::string(field), value, expected);
 }
 
-void check_body(const Scene& scene, std::size_t index, const char* field, BodyId body)
+void check_body(const SceneCore& scene, std::size_t index, const char* field, BodyId body)
 {
-    if (scene.is_alive(body)) return;
+    if (scene.bodies.is_alive(body)) return;
     refuse("contacts[" + std::to_string(index) + "]." + field,
            body == BodyId{} ? std::string("the null handle")
                             : "slot " + std::to_string(body.slot) + ", not alive",
@@ -198,7 +198,7 @@ void check_arm(std::size_t index, const std::string& field, const Vec3<float>& a
 
 }  // namespace
 
-std::string ContactIntake::first_error(const Scene& scene, std::span<const Contact> contacts) const
+std::string ContactIntake::first_error(const SceneCore& scene, std::span<const Contact> contacts) const
 {
     const std::size_t bad = first_bad_.load(std::memory_order_relaxed);
     if (bad == none) return {};
@@ -222,7 +222,7 @@ std::string ContactIntake::first_error(const Scene& scene, std::span<const Conta
             refuse("contacts[" + std::to_string(bad) + "].body_b", "the same body as body_a",
                    "two different bodies");
         }
-        const BodyRow row_a = scene.bodies().row_of(c.body_a), row_b = scene.bodies().row_of(c.body_b);
+        const BodyRow row_a = scene.bodies.row_of(c.body_a), row_b = scene.bodies.row_of(c.body_b);
         if (row_a.kind() == BodyKind::fixed && row_b.kind() == BodyKind::fixed) {
             refuse("contacts[" + std::to_string(bad) + "].body_b", "a second body that cannot move",
                    "at least one dynamic body");

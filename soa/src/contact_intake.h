@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "batches.h"
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 #include "patches.h"
 
 namespace motley {
@@ -17,13 +17,13 @@ namespace motley {
 class ContactIntake {
   public:
     /// Starts a list of `count` contacts.
-    void begin(Scene& scene, std::size_t count);
+    void begin(SceneCore& scene, std::size_t count);
     /// Checks a part of the list, and matches the contacts that are at about the same place as in the last list.
-    void check_and_match(Scene& scene, std::span<const Contact> contacts, std::int64_t part);
+    void check_and_match(SceneCore& scene, std::span<const Contact> contacts, std::int64_t part);
     /// Looks up by key the contacts that check_and_match() did not match. Runs after ContactCache::enter_lost().
     void look_up(ContactCache& cache, std::int64_t part);
     /// What is wrong with the first bad contact; empty when there is none. Does not look for repeated keys.
-    [[nodiscard]] std::string first_error(const Scene& scene, std::span<const Contact> contacts) const;
+    [[nodiscard]] std::string first_error(const SceneCore& scene, std::span<const Contact> contacts) const;
 
     /// After all contacts are coloured: marks those of a patch's stretch of the list that are inside the patch, and
     /// lists its bodies.

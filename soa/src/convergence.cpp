@@ -118,17 +118,17 @@ void Convergence::name_islands(const SweepLists& sweeps)
     }
 }
 
-void Convergence::take_wishes(const Scene& scene, const SweepLists& sweeps)
+void Convergence::take_wishes(const SceneCore& scene, const SweepLists& sweeps)
 {
     most_wanted_ = 0;
     wanted_.assign(bodies_.size(), 0);
-    for (const Scene::IslandIterations& asked : scene.island_iterations()) {
-        const std::int32_t island = bodies_.root(scene.bodies().row_of(asked.body));
+    for (const IslandIterations& asked : scene.island_iterations) {
+        const std::int32_t island = bodies_.root(scene.bodies.row_of(asked.body));
         std::int32_t& wanted = wanted_[static_cast<std::size_t>(island)];
         wanted = std::max(wanted, asked.at_least);
     }
     std::array<const std::uint32_t*, constraint_type_count> slots{};
-    scene.joints().for_each([&](const auto& store, int type) {
+    scene.joints->for_each([&](const auto& store, int type) {
         slots[static_cast<std::size_t>(contact_type_count + type)] = store.slots.data();
     });
     for (const auto& chunks : sweeps.lists) {
@@ -141,7 +141,7 @@ void Convergence::take_wishes(const Scene& scene, const SweepLists& sweeps)
                         std::max(wanted, wanted_[static_cast<std::size_t>(island_of(chunk, block, lane))]);
                     if (slot_of == nullptr) continue;  // contacts ask for no sweeps
                     const std::uint32_t slot = slot_of[chunk.streams.constraints[block].lane[lane]];
-                    wanted = std::max<std::int32_t>(wanted, scene.joints().slots[slot].iterations);
+                    wanted = std::max<std::int32_t>(wanted, scene.joints->slots[slot].iterations);
                 }
                 chunk.wanted[block] = wanted;
                 most_wanted_ = std::max(most_wanted_, wanted);

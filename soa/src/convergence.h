@@ -11,7 +11,7 @@
 
 #include "batches.h"
 #include "body_sets.h"
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 
 namespace motley {
 
@@ -31,7 +31,7 @@ class Convergence {
     void find_islands(const KernelContext& context, std::span<const Placement> joints,
                       std::span<const Placement> contacts, const SweepLists& sweeps);
     /// After find_islands: looks up how many sweeps the host asked for, by joint and by island.
-    void take_wishes(const Scene& scene, const SweepLists& sweeps);
+    void take_wishes(const SceneCore& scene, const SweepLists& sweeps);
     /// The largest number of sweeps that the host asked for; 0 when it asked for none.
     [[nodiscard]] int most_wanted() const { return most_wanted_; }
     /// For another substep: no island is finished any more.

@@ -41,34 +41,34 @@ std::int64_t swept_bytes(BodyKind kind)
 
 }  // namespace
 
-void Layout::begin(Scene& scene, std::size_t contact_count, const FigureUse& use)
+void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse& use)
 {
     const bool plants_trees = std::exchange(use_, use).exactly != use.exactly;
-    if (!scene.joints().version || scene.joints().version != joint_version_ || plants_trees) {
+    if (!scene.joints->version || scene.joints->version != joint_version_ || plants_trees) {
         // The old layout is marked invalid until all of the new one is made, because an allocation may fail in
         // between.
         joint_version_.reset();
         cut_.reset();
         place_joints(scene);
-        if (!scene.joints().version) scene.joints().version = std::make_shared<const char>('\0');
-        joint_version_ = scene.joints().version;
+        if (!scene.joints->version) scene.joints->version = std::make_shared<const char>('\0');
+        joint_version_ = scene.joints->version;
     }
     for (std::size_t kind = 0; kind < body_kind_count; ++kind) {
         // Bodies that were added since the joints changed have no joints.
-        const std::size_t rows = scene.bodies().rows(static_cast<BodyKind>(kind)).size();
+        const std::size_t rows = scene.bodies.rows(static_cast<BodyKind>(kind)).size();
         grow_to(is_jointed_[kind], rows);
         grow_to(start_along_[kind], rows);
     }
-    if (contact_count > 0) masks_.copy(joint_masks_, scene.bodies());
+    if (contact_count > 0) masks_.copy(joint_masks_, scene.bodies);
     grow_to(uncoloured_, contact_count);
     contacts.begin({intake.placements.data(), contact_count}, intake.patches.are_wanted());
 }
 
-void Layout::place_joints(Scene& scene)
+void Layout::place_joints(SceneCore& scene)
 {
-    const BodyStore& bodies = scene.bodies();
+    const BodyStore& bodies = scene.bodies;
     joint_masks_.reset(bodies);
-    scene.joints().for_each([&](auto& store, int) {
+    scene.joints->for_each([&](auto& store, int) {
         for (std::size_t i = 0; i < store.size(); ++i) {
             if (store.colours[i] == no_colour) continue;
             joint_masks_.try_take(bodies.row_of(store.definitions[i].body_a),
@@ -77,7 +77,7 @@ void Layout::place_joints(Scene& scene)
     });
     candidates_.clear();
     ties_.clear();
-    scene.joints().for_each([&](auto& store, int type) {
+    scene.joints->for_each([&](auto& store, int type) {
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         for (std::size_t i = 0; i < store.size(); ++i) {
             const BodyRow a = bodies.row_of(store.definitions[i].body_a);
@@ -147,13 +147,13 @@ void Layout::count_contacts(std::int64_t chunk)
     contacts.count(chunk);
 }
 
-void Layout::cut(Scene& scene, std::span<const Contact> list, bool tells_apart)
+void Layout::cut(SceneCore& scene, std::span<const Contact> list, bool tells_apart)
 {
     point_at_data(scene, list);
     // Without contacts, and with the joints of the step before, the chunks are still valid.
     Cut wanted{{}, use_.in_lockstep, tells_apart};
     for (int kind = 0; kind < body_kind_count; ++kind)
-        wanted.rows[static_cast<std::size_t>(kind)] = scene.bodies().rows(static_cast<BodyKind>(kind)).size();
+        wanted.rows[static_cast<std::size_t>(kind)] = scene.bodies.rows(static_cast<BodyKind>(kind)).size();
     if (contacts.is_empty() && cut_ == wanted) return;
     cut_.reset();
     sweeps_.clear();
@@ -166,11 +166,11 @@ void Layout::cut(Scene& scene, std::span<const Contact> list, bool tells_apart)
     if (contacts.is_empty()) cut_ = wanted;
 }
 
-void Layout::list_rows(const Scene& scene)
+void Layout::list_rows(const SceneCore& scene)
 {
     for (int kind = 0; kind < body_kind_count; ++kind) {
         std::vector<RowRange>& ranges = rows_[static_cast<std::size_t>(kind)];
-        const auto size = static_cast<std::int32_t>(scene.bodies().rows(static_cast<BodyKind>(kind)).size());
+        const auto size = static_cast<std::int32_t>(scene.bodies.rows(static_cast<BodyKind>(kind)).size());
         const bool has_lone = static_cast<BodyKind>(kind) == BodyKind::rigid && !figures.lone().empty();
         ranges.clear();
         if (size == 1) continue;  // the null row alone
@@ -211,7 +211,7 @@ std::span<const BodyRow> Layout::beside_patches(BodyKind kind, std::int64_t i) c
             static_cast<std::size_t>(range.beside)};
 }
 
-void Layout::point_at_data(Scene& scene, std::span<const Contact> list)
+void Layout::point_at_data(SceneCore& scene, std::span<const Contact> list)
 {
     static_assert(sizeof(Contact) % sizeof(float) == 0);
     static_assert(offsetof(Contact, restitution) - offsetof(Contact, normal) == 11 * sizeof(float),
@@ -220,15 +220,15 @@ void Layout::point_at_data(Scene& scene, std::span<const Contact> list)
     if (!list.empty()) {
         contact.parameters = &list[0].normal.x;
         contact.parameter_stride = sizeof(Contact) / sizeof(float);
-        contact.memory_in = &scene.contact_cache().current().impulses[0].normal;
+        contact.memory_in = &scene.contacts.current().impulses[0].normal;
         contact.memory_index = intake.memory_index.data();
-        contact.memory_out = &scene.contact_cache().staged().impulses[1].normal;
+        contact.memory_out = &scene.contacts.staged().impulses[1].normal;
         contact.memory_stride = sizeof(ContactImpulse) / sizeof(float);
-        contact.step_out = &scene.contact_cache().staged().step_impulses[0].normal;
+        contact.step_out = &scene.contacts.staged().step_impulses[0].normal;
         contact.step_stride = contact.memory_stride;
     }
     for (int type = 0; type < contact_type_count; ++type) data_[static_cast<std::size_t>(type)] = contact;
-    scene.joints().for_each([&](auto& store, int type) {
+    scene.joints->for_each([&](auto& store, int type) {
         using Store = std::remove_cvref_t<decltype(store)>;
         ConstraintData& data = data_[static_cast<std::size_t>(contact_type_count + type)];
         data.parameters = store.parameters.data();
@@ -242,13 +242,13 @@ void Layout::point_at_data(Scene& scene, std::span<const Contact> list)
     });
 }
 
-void Layout::point_at(Scene& scene, const StepConstants& step)
+void Layout::point_at(SceneCore& scene, const StepConstants& step)
 {
     context.step = step;
     context.relaxing = relaxing(step);
     std::int64_t swept = 0;
     for (int kind = 0; kind < body_kind_count; ++kind) {
-        BodyRows& rows = scene.bodies().rows(static_cast<BodyKind>(kind));
+        BodyRows& rows = scene.bodies.rows(static_cast<BodyKind>(kind));
         swept += swept_bytes(static_cast<BodyKind>(kind)) * static_cast<std::int64_t>(rows.size());
         context.bodies[kind] = {rows.velocity.data(),
                                 rows.delta.data(),

@@ -13,7 +13,7 @@
 #include "contact_intake.h"
 #include "figures.h"
 #include "free_groups.h"
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 #include "motley/core/step_report.h"
 
 namespace motley {
@@ -39,18 +39,18 @@ class Layout {
     /// First the host's contacts are taken in...
     ContactIntake intake;
     /// ...then space is made, and the joints are coloured and placed if they have changed...
-    void begin(Scene& scene, std::size_t contact_count, const FigureUse& use);
+    void begin(SceneCore& scene, std::size_t contact_count, const FigureUse& use);
     /// ...then every contact gets a colour, in order, by one thread, without allocating...
     void colour_contacts(const BodyStore& bodies, ContactList& list);
     /// ...then the contacts are sorted into blocks (count_contacts, and its own open and fill)...
     void count_contacts(std::int64_t chunk);
     BatchSet contacts{0, contact_type_count};
     /// ...and the blocks are cut into work.
-    void cut(Scene& scene, std::span<const Contact> list, bool tells_apart);
+    void cut(SceneCore& scene, std::span<const Contact> list, bool tells_apart);
 
     /// The step's constants and the rows of the bodies.
     KernelContext context;
-    void point_at(Scene& scene, const StepConstants& step);
+    void point_at(SceneCore& scene, const StepConstants& step);
     /// After the joints are prepared: whether one of them pulls harder than a substep can follow (tension.h).
     [[nodiscard]] bool is_overloaded() const { return overloaded_; }
 
@@ -110,10 +110,10 @@ class Layout {
     TransferList transfers_;
     std::array<ConstraintData, constraint_type_count> data_;
 
-    void place_joints(Scene& scene);
+    void place_joints(SceneCore& scene);
     void find_groups(const BodyStore& bodies);
-    void list_rows(const Scene& scene);
-    void point_at_data(Scene& scene, std::span<const Contact> contacts);
+    void list_rows(const SceneCore& scene);
+    void point_at_data(SceneCore& scene, std::span<const Contact> contacts);
 };
 
 }  // namespace motley

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "motley/core/joint_store.h"
+#include "motley/core/scene_core.h"
 
 namespace motley::bench {
 namespace {
@@ -15,7 +16,7 @@ TEST(TieNets, EveryTypeOfJointIsInOne)
     std::array<bool, JointTypes::size> is_in_one{};
     for (const NamedTie& named : every_tie()) {
         const auto net = make_net(named.tie, named.model, 2, BodyOrder::in_line);
-        net->scene.joints().for_each([&](const auto& store, int type) {
+        core_of(net->scene).joints->for_each([&](const auto& store, int type) {
             if (store.size() > 0) is_in_one[static_cast<std::size_t>(type)] = true;
         });
     }

@@ -7,6 +7,7 @@
 
 #include "mixed_scene.h"
 #include "motley/core/joint_store.h"
+#include "motley/core/scene_core.h"
 
 namespace motley {
 namespace {
@@ -16,9 +17,9 @@ using Found = std::vector<std::pair<int, std::uint32_t>>;  // types and indices
 Found by_the_list(const Scene& scene, BodyId body)
 {
     Found found;
-    scene.joints().for_each_on(scene.bodies().first_ends[body.slot], [&](const JointStores::Slot& joint) {
-        found.emplace_back(joint.type, joint.index);
-    });
+    core_of(scene).joints->for_each_on(
+        core_of(scene).bodies.first_ends[body.slot],
+        [&](const JointStores::Slot& joint) { found.emplace_back(joint.type, joint.index); });
     std::sort(found.begin(), found.end());
     return found;
 }
@@ -26,7 +27,7 @@ Found by_the_list(const Scene& scene, BodyId body)
 Found by_the_definitions(const Scene& scene, BodyId body)
 {
     Found found;
-    scene.joints().for_each([&](const auto& store, int type) {
+    core_of(scene).joints->for_each([&](const auto& store, int type) {
         for (std::uint32_t i = 0; i < store.size(); ++i) {
             if (store.definitions[i].body_a == body || store.definitions[i].body_b == body)
                 found.emplace_back(type, i);
@@ -75,9 +76,9 @@ TEST(JointLists, ATeleportForgetsTheImpulsesOfItsOwnJointsAlone)
     const BodyId a = scene.add_body({.position = {0, -1, 0}}), b = scene.add_body({.position = {5, -1, 0}});
     const ConstraintId of_a = scene.add_joint(BallSocketDefinition{scene.ground(), a, {}, {0, 1, 0}});
     const ConstraintId of_b = scene.add_joint(BallSocketDefinition{b, scene.ground(), {0, 1, 0}, {5, 0, 0}});
-    auto& store = std::get<0>(scene.joints().stores);
+    auto& store = std::get<0>(core_of(scene).joints->stores);
     for (float& impulse : store.wrenches) impulse = 1;
-    scene.last_step = 1;
+    core_of(scene).last_step = 1;
     scene.set_pose(a, {0, -1, 0}, {0, 0, 0, 1}, 0);
     EXPECT_EQ(scene.joint_report(of_a).force.y, 0);
     EXPECT_NE(scene.joint_report(of_b).force.y, 0);

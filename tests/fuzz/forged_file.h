@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "motley/core/joint_store.h"
+#include "motley/core/scene_core.h"
 #include "motley/core/snapshot.h"
 #include "motley/motley.h"
 
@@ -139,7 +140,7 @@ inline void live_on(Scene& scene)
 {
     for (const bool exact : {false, true}) Solver({.exact_joints = exact}).step(scene, 1.0F / 60);
     std::vector<BodyId> going;
-    const BodyStore& bodies = scene.bodies();
+    const BodyStore& bodies = core_of(scene).bodies;
     for (std::uint32_t slot = 1; slot < bodies.slot_count(); ++slot) {
         const BodyId body = bodies.id_of_slot(slot);
         if (bodies.is_slot_live(slot) && slot % 2 == 0 && body != scene.ground()) going.push_back(body);

@@ -130,7 +130,7 @@ TEST(DirectMethod, ABallRollsDownASlopeWithoutSlipping)
     const BodyState state = scene.state(body);
     EXPECT_NEAR(std::hypot(state.linear_velocity.x, state.linear_velocity.y), 5.0 / 7 * g * std::sin(angle),
                 1e-4);
-    EXPECT_NEAR(scene.contact_impulses()[0].normal / scene.last_step, 2 * g * std::cos(angle), 1e-3);
+    EXPECT_NEAR(scene.contact_impulses()[0].normal / scene.last_step(), 2 * g * std::cos(angle), 1e-3);
 }
 
 /// A heap of balls, some of which slide and some of which stick, pushed from the side.

@@ -6,6 +6,7 @@
 
 #include "joint_cases.h"
 #include "motley/core/joint_store.h"
+#include "motley/core/scene_core.h"
 #include "rig.h"
 
 namespace motley {
@@ -326,7 +327,7 @@ TEST(ExactJoints, ASwingingChainKeepsItsEnergy)
     // loss is bounded by a share of what the fall gives (the chain's weight times half its length).
     Scene scene = loaded_chain(1, true);
     std::vector<BodyId> ids;
-    scene.joints().for_each([&](const auto& store, int) {
+    core_of(scene).joints->for_each([&](const auto& store, int) {
         for (const auto& joint : store.definitions) ids.push_back(joint.body_b);
     });
     const auto energy = [&] {

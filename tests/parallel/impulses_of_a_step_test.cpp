@@ -5,6 +5,7 @@
 
 #include "joint_scene.h"
 #include "lattice_crowd.h"
+#include "motley/core/scene_core.h"
 #include "rig.h"
 
 namespace motley {
@@ -58,11 +59,11 @@ class Ledger {
     {
         for (const BodyId body : bodies) {
             if (scene.motion(body) != BodyMotion::dynamic_body) continue;
-            Account account{body, 1 / static_cast<double>(scene.bodies().inverse_masses[body.slot])};
+            Account account{body, 1 / static_cast<double>(core_of(scene).bodies.inverse_masses[body.slot])};
             account.before = convert<double>(scene.state(body).linear_velocity);
             accounts_.push_back(account);
         }
-        by_slot_.resize(scene.bodies().slot_count());
+        by_slot_.resize(core_of(scene).bodies.slot_count());
     }
     void note(BodyId body, Vector push)
     {
@@ -83,11 +84,11 @@ class Ledger {
     /// For pulleys and racks only the impulse on b is reported.
     void note_joints()
     {
-        scene_.joints().for_each([&](const auto& store, int) {
+        core_of(scene_).joints->for_each([&](const auto& store, int) {
             using Definition = typename std::remove_cvref_t<decltype(store)>::Type::Definition;
             for (std::size_t i = 0; i < store.size(); ++i) {
                 const std::uint32_t slot = store.slots[i];
-                const ConstraintId id{slot, scene_.joints().slots[slot].generation};
+                const ConstraintId id{slot, core_of(scene_).joints->slots[slot].generation};
                 const Vector push =
                     static_cast<double>(frame_time) * convert<double>(scene_.joint_report(id).force);
                 note(store.definitions[i].body_b, push);

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "joint_scene.h"
+#include "motley/core/scene_core.h"
 #include "rig.h"
 
 namespace motley {
@@ -281,7 +282,7 @@ std::vector<double> pair_positions(const Scene& scene, int pairs)
 {
     std::vector<double> values;
     for (std::uint32_t slot = 14; slot < 14 + static_cast<std::uint32_t>(pairs); ++slot) {
-        const BodyState s = scene.state(scene.bodies().id_of_slot(slot));
+        const BodyState s = scene.state(core_of(scene).bodies.id_of_slot(slot));
         values.insert(values.end(), {s.position.x, s.position.y, static_cast<double>(s.linear_velocity.y)});
     }
     return values;
@@ -375,7 +376,7 @@ TEST(Iterations, OfOneIslandLeaveTheOthersBitsAlone)
 {
     const auto pairs_when = [](bool asks) {
         WhipAndPairs whip(32);
-        if (asks) whip.scene.set_island_iterations(whip.scene.bodies().id_of_slot(5), 50);
+        if (asks) whip.scene.set_island_iterations(core_of(whip.scene).bodies.id_of_slot(5), 50);
         SolverSettings settings;
         settings.gravity = {1, -9.81F, 0};
         Solver solver(settings, {});
@@ -395,17 +396,17 @@ TEST(Iterations, RemovedBodiesAndJointsTakeTheirWishesWithThem)
     const ConstraintId joint = scene.add_joint(BallSocketDefinition{a, b});
     scene.set_iterations(joint, 7);
     scene.set_island_iterations(a, 9);
-    EXPECT_TRUE(scene.asks_for_iterations());
+    EXPECT_TRUE(core_of(scene).asks_for_iterations());
     scene.remove_joint(joint);
-    EXPECT_TRUE(scene.asks_for_iterations());
+    EXPECT_TRUE(core_of(scene).asks_for_iterations());
     scene.remove_body(a);
-    EXPECT_FALSE(scene.asks_for_iterations());
+    EXPECT_FALSE(core_of(scene).asks_for_iterations());
     EXPECT_THROW(scene.set_iterations(joint, 7), InvalidInput);
     EXPECT_THROW(scene.set_island_iterations(a, 7), InvalidInput);
     EXPECT_THROW(scene.set_island_iterations(scene.ground(), 7), InvalidInput);
     EXPECT_THROW(scene.set_island_iterations(b, -1), InvalidInput);
     EXPECT_THROW(scene.set_island_iterations(b, 10001), InvalidInput);
-    EXPECT_FALSE(scene.asks_for_iterations());
+    EXPECT_FALSE(core_of(scene).asks_for_iterations());
 }
 
 TEST(Measures, WhatIsNotANumberIsNotSolved)

@@ -199,7 +199,7 @@ TEST(Contact, AStandingBallIsHeldByItsWeight)
                 contact = on_floor(scene, body, 0.5);
                 solver.step(scene, 1.0F / 60, {&contact, 1});
             }
-            EXPECT_NEAR(scene.contact_impulses()[0].normal / scene.last_step, 40, 0.4);
+            EXPECT_NEAR(scene.contact_impulses()[0].normal / scene.last_step(), 40, 0.4);
             const JointReport report = scene.contact_report({&contact, 1}, 0);
             EXPECT_NEAR(dot(report.force, contact.normal), 40, 0.4);
             EXPECT_EQ(report.state, JointState::active);
@@ -449,7 +449,7 @@ TEST(Chain, APushedRowCarriesEachDriveToTheWall)
     for (int i = 0; i < n; ++i) {
         const double force =
             static_cast<double>(scene.contact_impulses()[static_cast<std::size_t>(i)].normal) /
-            static_cast<double>(scene.last_step);
+            static_cast<double>(scene.last_step());
         EXPECT_NEAR(force, 50.0 * (n - i), 0.01 * 50 * n) << "contact " << i;
         EXPECT_GT(contacts[static_cast<std::size_t>(i)].separation, -0.01 * radius);
     }

@@ -10,6 +10,7 @@
 
 #include "fuzz/forged_file.h"
 #include "joint_scene.h"
+#include "motley/core/scene_core.h"
 
 namespace motley {
 namespace {
@@ -122,8 +123,8 @@ TEST(Snapshot, KeepsWishesAndBreakLimits)
     save_scene(scene, file.path());
     Scene back = load_scene(file.path());
     EXPECT_TRUE(back.is_alive(rope));
-    ASSERT_EQ(back.island_iterations().size(), 1U);
-    EXPECT_TRUE(back.asks_for_iterations());
+    ASSERT_EQ(core_of(back).island_iterations.size(), 1U);
+    EXPECT_TRUE(core_of(back).asks_for_iterations());
     Solver solver(settings_of(Method::soft_step));
     for (int step = 0; step < 5; ++step) solver.step(back, dt);
     ASSERT_EQ(back.break_events().size(), 1U);
@@ -264,7 +265,7 @@ TEST(Snapshot, RefusesWhatTheSceneWouldHaveRefused)
     BallSocketDefinition fixed = socket;
     fixed.body_a = scene.ground();
     EXPECT_NE(refusal_of(socket, fixed).find("the same body as body_a"), std::string::npos) << refusal(file);
-    const Scene::IslandIterations wish{box, 77}, of_the_ground{scene.ground(), 77};
+    const IslandIterations wish{box, 77}, of_the_ground{scene.ground(), 77};
     EXPECT_NE(refusal_of(wish, of_the_ground).find("a body that nothing moves"), std::string::npos)
         << refusal(file);
     EXPECT_NE(refusal_of(definition.inertia, Sym3<float>{0.5F, 0, 0, 0.5F, 0, 7}).find("triangle inequality"),

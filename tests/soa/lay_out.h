@@ -5,18 +5,20 @@
 
 #include "contact_pipeline.h"
 #include "layout.h"
-#include "tbb_executor.h"
+#include "motley/core/scene_core.h"
+#include "own_executor.h"
 
 namespace motley::testing {
 
-inline void lay_out(Layout& layout, Scene& scene, std::span<const Contact> contacts)
+inline void lay_out(Layout& layout, Scene& host_scene, std::span<const Contact> contacts)
 {
+    SceneCore& scene = core_of(host_scene);
     const std::unique_ptr<Executor> executor = make_executor(1);
     StageRunner runner(executor.get());
     ContactPipeline pipeline(runner, layout);
     ASSERT_EQ(pipeline.take_in(scene, contacts, BadContacts::refuse), "");
     ASSERT_EQ(pipeline.lay_out(scene, contacts, {.figures = {}, .adds_up = true}), "");
-    scene.contact_cache().accept_staged();
+    scene.contacts.accept_staged();
 }
 
 }  // namespace motley::testing

@@ -7,6 +7,7 @@
 
 #include "lattice_crowd.h"
 #include "lay_out.h"
+#include "motley/core/scene_core.h"
 
 namespace motley {
 namespace {
@@ -68,7 +69,7 @@ void check_bodies(const Layout& layout, const Scene& scene, const std::map<Mover
     }
     EXPECT_EQ(touched.size(), listed.size());
     for (const BodyKind kind : {BodyKind::planar, BodyKind::rigid}) {
-        for (std::uint32_t row = 1; row < scene.bodies().rows(kind).size(); ++row)
+        for (std::uint32_t row = 1; row < core_of(scene).bodies.rows(kind).size(); ++row)
             EXPECT_EQ(patches.lists(BodyRow(kind, row)),
                       touched.contains(Mover{kind, offset_of(BodyRow(kind, row))}));
     }
@@ -148,7 +149,7 @@ TEST(Patches, LeaveAloneWhatNoContactTouches)
     check(layout, crowd.scene, crowd.pairs.size());
     std::size_t beside = 0;
     for (const BodyId body : crowd.bodies) {
-        const BodyRow row = crowd.scene.bodies().row_of(body);
+        const BodyRow row = core_of(crowd.scene).bodies.row_of(body);
         beside += row.kind() != BodyKind::fixed && !layout.intake.patches.lists(row) ? 1 : 0;
     }
     EXPECT_GT(beside, 1000U);
@@ -170,7 +171,7 @@ TEST(Patches, AreNotMadeOfSmallListsNorLeftOverFromLargeOnes)
 TEST(Patches, StayTheSameWhenListsAreCountedAnew)
 {
     LatticeCrowd crowd;
-    const BodyStore& bodies = crowd.scene.bodies();
+    const BodyStore& bodies = core_of(crowd.scene).bodies;
     Patches patches;
     const auto insides = [&] {
         std::size_t inside = 0;

@@ -4,13 +4,12 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "motley/core/body.h"
-#include "motley/core/body_store.h"
 #include "motley/core/boxed.h"
-#include "motley/core/busy_flag.h"
-#include "motley/core/contact_cache.h"
+#include "motley/core/constraints/contact_definition.h"
 #include "motley/core/ids.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_definitions.h"
@@ -20,9 +19,10 @@
 
 namespace motley {
 
-struct JointBodies;
-struct JointStores;
-extern template class Boxed<JointStores>;
+struct SceneCore;
+struct SixDofDefinition;
+struct WheelDefinition;
+extern template class Boxed<SceneCore>;
 
 /// Holds everything that decides what the next step computes. A refused call throws InvalidInput and changes nothing. A
 /// call that runs out of memory throws std::bad_alloc and changes nothing either. A scene that was moved from, or whose
@@ -51,9 +51,9 @@ class Scene {
     void remove_bodies(std::span<const BodyId> bodies);
     [[nodiscard]] bool is_alive(BodyId body) const;
     /// The static body at the origin of the world, to which joints with the world are attached.
-    [[nodiscard]] BodyId ground() const { return ground_; }
+    [[nodiscard]] BodyId ground() const;
     /// Number of bodies alive, without the ground.
-    [[nodiscard]] std::size_t body_count() const { return body_count_; }
+    [[nodiscard]] std::size_t body_count() const;
 
     [[nodiscard]] BodyModel model(BodyId body) const;
     [[nodiscard]] BodyMotion motion(BodyId body) const;
@@ -94,6 +94,17 @@ class Scene {
     /// Adds a joint of any type of joint_definitions.h: add_joint(BallSocketDefinition{...}).
     template <class Definition>
     ConstraintId add_joint(const Definition& definition);
+    /// Definitions that make several joints have functions of their own; the error names them.
+    template <class Definition>
+    requires(std::is_same_v<Definition, SixDofDefinition> ||
+             std::is_same_v<Definition, WheelDefinition>) ConstraintId add_joint(const Definition&)
+    {
+        static_assert(!std::is_same_v<Definition, SixDofDefinition>,
+                      "a SixDofDefinition makes several joints: call add_six_dof(scene, definition)");
+        static_assert(!std::is_same_v<Definition, WheelDefinition>,
+                      "a WheelDefinition makes several joints: call add_wheel(scene, definition)");
+        return {};
+    }
     /// Replaces the definition of a joint: the speed of a motor, the target of a servo, a limit. Its accumulated
     /// impulses are kept. Refuses what add_joint refuses, and a definition of another type or of other bodies.
     template <class Definition>
@@ -110,7 +121,7 @@ class Scene {
     void set_break_limit(ConstraintId joint, const BreakLimit& limit);
     /// Joints whose mean force or torque over the last step exceeded their break limit, in the order in which they were
     /// first given one.
-    [[nodiscard]] std::span<const BreakEvent> break_events() const { return break_events_; }
+    [[nodiscard]] std::span<const BreakEvent> break_events() const;
 
     // ---- memory -------------------------------------------------------------------------------------------
     /// Reorders the bodies so that neighbours in space are neighbours in memory. Handles stay valid and results keep
@@ -128,16 +139,13 @@ class Scene {
 
     // ---- contacts -----------------------------------------------------------------------------------------
     /// The impulses of the contacts of the last step, summed over its substeps, in the order of the host's list. They
-    /// are what changed the momentum of the bodies. Divided by last_step they are mean forces.
-    [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const
-    {
-        return contacts_.step_impulses();
-    }
-    /// Their impulses in the last substep alone, which lasted last_substep.
-    [[nodiscard]] std::span<const ContactImpulse> last_substep_impulses() const
-    {
-        return contacts_.impulses();
-    }
+    /// are what changed the momentum of the bodies. Divided by last_step() they are mean forces.
+    [[nodiscard]] std::span<const ContactImpulse> contact_impulses() const;
+    /// Their impulses in the last substep alone, which lasted last_substep().
+    [[nodiscard]] std::span<const ContactImpulse> last_substep_impulses() const;
+    /// Seconds that the last step took, and its last substep: an impulse divided by them is a mean force. 0 before the first step.
+    [[nodiscard]] float last_step() const;
+    [[nodiscard]] float last_substep() const;
 
     /// A report on contact `index` of the last step in the form of a joint's: the mean force on b at the contact point,
     /// the depth that the host gave as the error, and active if it pushed in the last substep. `contacts` is the list
@@ -156,58 +164,9 @@ class Scene {
     /// Position errors of the joints, energy and momentum of the bodies, as they are now.
     [[nodiscard]] SceneErrors errors() const;
 
-    // ---- for the solver -----------------------------------------------------------------------------------
-    [[nodiscard]] bool asks_for_iterations() const;
-    struct IslandIterations {
-        BodyId body;
-        int at_least;
-    };
-    [[nodiscard]] std::span<const IslandIterations> island_iterations() const { return island_iterations_; }
-    [[nodiscard]] const BodyStore& bodies() const { return bodies_; }
-    [[nodiscard]] BodyStore& bodies() { return bodies_; }
-    [[nodiscard]] const JointStores& joints() const { return *joints_; }
-    [[nodiscard]] JointStores& joints() { return *joints_; }
-    [[nodiscard]] ContactCache& contact_cache() { return contacts_; }
-    [[nodiscard]] const ContactCache& contact_cache() const { return contacts_; }
-    /// Reserves a break event for each joint with a break limit, so that find_break_events() allocates nothing.
-    void make_room_for_break_events();
-    /// Fills break_events(), at the end of a step.
-    void find_break_events() noexcept;
-    /// Held by a step while it runs.
-    [[nodiscard]] BusyFlag& busy() { return busy_; }
-    /// Durations of the last step and of its last substep, s; an impulse divided by one is a force. 0 before the first
-    /// step.
-    float last_step = 0, last_substep = 0;
-
   private:
-    friend struct SceneArchive;
-    BodyStore bodies_;
-    Boxed<JointStores> joints_;
-    ContactCache contacts_;
-    std::vector<BreakEvent> break_events_;             ///< with capacity for every joint with a limit
-    std::vector<IslandIterations> island_iterations_;  ///< of bodies alive
-    BodyId ground_{};
-    std::size_t body_count_ = 0;
-    BusyFlag busy_;
-
-    void require_alive(BodyId body, const char* what) const
-    {
-        if (!bodies_.is_alive(body)) refuse_dead(body, what);
-    }
-    [[noreturn]] static void refuse_dead(BodyId body, const char* what);
-    void require_alive(std::span<const BodyId> bodies, const char* what) const;
-    JointBodies check_joint_bodies(int type, BodyId a, BodyId b) const;
-    static void check_break_limit(const BreakLimit& limit);
-    static void check_wish(const char* field, int at_least);
-    void check_island_wish(const IslandIterations& asked) const;
-    ConstraintId take_joint_slot(int type, std::size_t index);
-    std::size_t index_of_joint(ConstraintId joint, int type) const;
-    void remove_joints_of(std::span<const BodyId> bodies);
-    void remove_joint_at(int type, std::size_t index);
-    void require_list_of_last_step(std::span<const Contact> contacts, const char* what) const;
-    [[nodiscard]] Vec3<float> force_of(const Vec3<float>& impulse) const;
-    void write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular);
-    void check_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular) const;
+    friend struct SceneAccess;
+    Boxed<SceneCore> core_;
 };
 
 }  // namespace motley

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "motley/core/constraints/contact_definition.h"
-#include "motley/core/scene.h"
+#include "motley/core/scene_core.h"
 #include "motley/core/settings.h"
 #include "motley/reference/direct_result.h"
 
@@ -13,7 +13,7 @@ namespace motley::reference {
 /// Advances a scene by `dt` seconds, with all constraints solved at once in double. `contacts` are those that the
 /// scene's cache has staged. Writes bodies, joint memories and staged contact impulses. Bodies whose state has become
 /// infinite or NaN are left so, for BodyStore::commit to contain.
-DirectResult step_directly(Scene& scene, float dt, const SolverSettings& settings,
+DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& settings,
                            std::span<const Contact> contacts);
 
 }  // namespace motley::reference

@@ -17,7 +17,9 @@ namespace motley {
 
 /// What a solver runs on. None of it changes a bit of the result.
 struct SolverOptions {
-    int threads = 1;  ///< >= 1; 1 starts no thread at all; ignored when `executor` is set
+    /// >= 1; 1 starts no thread at all. Ignored when `executor` is set, and taken for 1 where the library is built without
+    /// threads of its own (MOTLEY_TBB=OFF): Solver::threads() tells.
+    int threads = 1;
     /// Steps of fewer contacts (a joint counts as four, two bodies as one) run on the calling thread alone: they are
     /// done before another thread could begin.
     std::size_t alone_below = 8192;
