@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
@@ -118,8 +119,8 @@ class ContactCache {
     }
 
   private:
-    ContactList lists_[2];
-    int current_ = 0;
+    std::array<ContactList, 2> lists_;
+    std::size_t current_ = 0;
     struct Part {
         Range missed{}, lost{};  ///< in missed_ and lost_
         std::uint32_t claims = 0;
