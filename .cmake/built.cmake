@@ -1,9 +1,9 @@
 # What a scene requires: the joints and body models that kernels are compiled for. Sets
-#   motley_constraint_headers   the headers in core/include/motley/core/constraints whose kernels are compiled, contact.h always
+#   motley_constraint_headers   the headers in core/src/constraints whose kernels are compiled, contact.h always
 #   motley_built_definitions    what the sources are told of it
-set(folder ${CMAKE_CURRENT_LIST_DIR}/../core/include/motley/core/constraints)
+set(folder ${CMAKE_CURRENT_LIST_DIR}/../core/src/constraints)
 file(GLOB all_joints CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.h)
-list(FILTER all_joints EXCLUDE REGEX "_definition\\.h$|^contact\\.h$")
+list(FILTER all_joints EXCLUDE REGEX "^contact\\.h$")
 list(TRANSFORM all_joints REPLACE "\\.h$" "")
 set(all_models particle planar rigid)
 string(JOIN ", " joint_names ${all_joints})

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "mixed_scene.h"
-#include "motley/core/scene_core.h"
 #include "rig.h"
+#include "scene/scene_core.h"
 
 namespace motley::testing {
 

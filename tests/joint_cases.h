@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "mixed_scene.h"
-#include "motley/core/joint_store.h"
+#include "stores/joint_store.h"
 
 namespace motley::testing {
 

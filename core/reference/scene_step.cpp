@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motley/core/joint_store.h"
 #include "motley/reference/joint_models.h"
 #include "motley/reference/world.h"
+#include "stores/joint_store.h"
 
 namespace motley::reference {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "layout.h"
+#include "layout/layout.h"
 #include "motley/core/settings.h"
 #include "stage_runner.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "motley/core/joint_store.h"
 #include "motley/reference/scene_step.h"
+#include "stores/joint_store.h"
 
 namespace motley {
 

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <span>
 
-#include "convergence.h"
-#include "layout.h"
-#include "plan.h"
+#include "layout/layout.h"
 #include "renewal.h"
+#include "step/convergence.h"
+#include "step/plan.h"
 #include "step_clock.h"
 #include "sweeper.h"
 

@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "layout.h"
+#include "layout/layout.h"
 #include "sweeper.h"
 
 namespace motley {

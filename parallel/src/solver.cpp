@@ -10,16 +10,16 @@
 
 #include "budget.h"
 #include "contact_pipeline.h"
-#include "layout.h"
+#include "layout/layout.h"
+#include "maths/step_constants.h"
 #include "motley/core/invalid_input.h"
-#include "motley/core/joint_store.h"
-#include "motley/core/scene_core.h"
-#include "motley/core/step_constants.h"
 #include "own_executor.h"
-#include "plan.h"
 #include "plan_runner.h"
+#include "scene/scene_core.h"
 #include "stage_runner.h"
+#include "step/plan.h"
 #include "step_clock.h"
+#include "stores/joint_store.h"
 #include "sweeper.h"
 
 namespace motley {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "watched_sweep.h"
+#include "step/watched_sweep.h"
 
 namespace motley {
 namespace {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "figure_step.h"
-#include "figure_workspace.h"
-#include "layout.h"
+#include "figures/figure_step.h"
+#include "figures/figure_workspace.h"
+#include "layout/layout.h"
 #include "stage_runner.h"
 
 namespace motley {

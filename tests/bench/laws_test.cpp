@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "runner.h"
+#include "measuring/runner.h"
 
 namespace motley::bench {
 namespace {

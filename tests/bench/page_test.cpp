@@ -1,11 +1,11 @@
 // The page of `motley report`: what it says about a sweep, and that its charts have every point.
-#include "page.h"
+#include "page/page.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "plot.h"
+#include "page/plot.h"
 
 namespace motley::bench {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <set>
 
-#include "box_contacts.h"
-#include "engine.h"
-#include "rigs/mechanisms.h"
+#include "engines/engine.h"
+#include "worlds/box_contacts.h"
+#include "worlds/rigs/mechanisms.h"
 
 namespace motley::bench {
 namespace {

@@ -1,6 +1,6 @@
 // What `motley scale` measures: that its figures have plausible sizes and agree with each other. No test checks
 // speed.
-#include "scale.h"
+#include "commands/scale.h"
 
 #include <gtest/gtest.h>
 

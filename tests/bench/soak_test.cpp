@@ -1,5 +1,5 @@
 // A small soak: a town of sixty people for fifty simulated seconds, on one and on two threads.
-#include "soak.h"
+#include "commands/soak.h"
 
 #include <gtest/gtest.h>
 

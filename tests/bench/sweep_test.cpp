@@ -1,5 +1,5 @@
 // Sweeps: which points there are, which of them form the front, and what is written.
-#include "sweep.h"
+#include "commands/sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-#include "engine.h"
+#include "engines/engine.h"
 
 namespace motley::bench {
 namespace {

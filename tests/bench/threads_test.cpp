@@ -1,11 +1,11 @@
 // What `motley threads` measures: that its figures agree with each other and bits are the same. No test checks speed.
-#include "threads.h"
+#include "commands/threads.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "cores.h"
+#include "commands/cores.h"
 
 namespace motley::bench {
 namespace {

@@ -1,12 +1,12 @@
 // Every type of constraint has a net, and so a benchmark of its kernels.
-#include "tie_net.h"
+#include "worlds/tie_net.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "motley/core/joint_store.h"
-#include "motley/core/scene_core.h"
+#include "scene/scene_core.h"
+#include "stores/joint_store.h"
 
 namespace motley::bench {
 namespace {
@@ -23,7 +23,7 @@ TEST(TieNets, EveryTypeOfJointIsInOne)
     for (std::size_t type = 0; type < is_in_one.size(); ++type) {
         EXPECT_TRUE(is_in_one[type]) << "joint " << type
                                      << " of JointTypes (constraint_types.h) is in no net of "
-                                     << "every_tie(): add a line to bench/tie_net.cpp";
+                                     << "every_tie(): add a line to bench/worlds/tie_net.cpp";
     }
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mixed_scene.h"
-#include "motley/core/joint_store.h"
-#include "motley/core/scene_core.h"
+#include "scene/scene_core.h"
+#include "stores/joint_store.h"
 
 namespace motley {
 namespace {

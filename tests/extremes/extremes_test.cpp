@@ -1,6 +1,6 @@
 // Each extreme scene, under each way to solve, is within its bound and has the same bits on every instruction set.
-// bench/extremes.cpp has the bounds and the reasons for them.
-#include "extremes.h"
+// bench/commands/extremes.cpp has the bounds and the reasons for them.
+#include "commands/extremes.h"
 
 #include <gtest/gtest.h>
 

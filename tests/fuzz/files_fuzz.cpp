@@ -10,7 +10,7 @@
 
 #include "forged_file.h"
 #include "motley/motley.h"
-#include "trajectories.h"
+#include "worlds/trajectories.h"
 
 // NOLINTNEXTLINE(readability-identifier-naming): the name that libFuzzer looks for
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size)

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "motley/core/joint_store.h"
-#include "motley/core/scene_core.h"
 #include "motley/core/snapshot.h"
 #include "motley/motley.h"
+#include "scene/scene_core.h"
+#include "stores/joint_store.h"
 
 namespace motley::testing {
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "motley/core/joint_store.h"
 #include "motley/motley.h"
+#include "stores/joint_store.h"
 
 namespace motley::testing {
 

@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "joint_cases.h"
-#include "motley/core/joint_store.h"
-#include "motley/core/scene_core.h"
 #include "rig.h"
+#include "scene/scene_core.h"
+#include "stores/joint_store.h"
 
 namespace motley {
 namespace {

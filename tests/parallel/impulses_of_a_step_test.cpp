@@ -5,8 +5,8 @@
 
 #include "joint_scene.h"
 #include "lattice_crowd.h"
-#include "motley/core/scene_core.h"
 #include "rig.h"
+#include "scene/scene_core.h"
 
 namespace motley {
 namespace {

@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "joint_scene.h"
-#include "motley/core/scene_core.h"
 #include "rig.h"
+#include "scene/scene_core.h"
 
 namespace motley {
 namespace {

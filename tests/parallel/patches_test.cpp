@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "lattice_crowd.h"
-#include "patches.h"
+#include "layout/patches.h"
 
 namespace motley {
 namespace {

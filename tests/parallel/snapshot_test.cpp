@@ -10,7 +10,7 @@
 
 #include "fuzz/forged_file.h"
 #include "joint_scene.h"
-#include "motley/core/scene_core.h"
+#include "scene/scene_core.h"
 
 namespace motley {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <rapidcheck.h>
 
-#include "batches.h"
+#include "layout/batches.h"
 
 namespace motley::testing {
 

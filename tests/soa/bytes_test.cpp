@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel_table.h"
+#include "kernels/kernel_table.h"
 
 namespace motley {
 namespace {

@@ -1,5 +1,5 @@
 // Properties of colourings and blocks of random graphs, which RapidCheck generates.
-#include "colouring.h"
+#include "layout/colouring.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,8 +8,8 @@
 #include <set>
 #include <tuple>
 
-#include "batches.h"
 #include "block_walk.h"
+#include "layout/batches.h"
 
 namespace motley {
 namespace {

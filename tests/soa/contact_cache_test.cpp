@@ -1,6 +1,6 @@
 // Contacts found again from step to step, against a std::map that is updated in the same way. RapidCheck generates
 // the lists.
-#include "motley/core/contact_cache.h"
+#include "stores/contact_cache.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,6 +1,6 @@
 // Figures found in random sets of joints, and trees built for random figures. Independent evidence: properties that
 // every elimination order must have, counted over the result.
-#include "figures.h"
+#include "figures/figures.h"
 
 #include <gtest/gtest.h>
 

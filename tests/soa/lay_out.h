@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "contact_pipeline.h"
-#include "layout.h"
-#include "motley/core/scene_core.h"
+#include "layout/layout.h"
 #include "own_executor.h"
+#include "scene/scene_core.h"
 
 namespace motley::testing {
 

@@ -7,7 +7,7 @@
 
 #include "lattice_crowd.h"
 #include "lay_out.h"
-#include "motley/core/scene_core.h"
+#include "scene/scene_core.h"
 
 namespace motley {
 namespace {

@@ -1,6 +1,6 @@
 // The plan of a step for every method, in the text that the README and plan.h show. The tests of same bits and of
 // physics check that a step does what its plan says.
-#include "plan.h"
+#include "step/plan.h"
 
 #include <gtest/gtest.h>
 

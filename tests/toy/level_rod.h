@@ -8,10 +8,10 @@
 #include <cmath>
 #include <memory>
 
-#include "motley/core/constraint_type.h"
+#include "contract/constraint_type.h"
+#include "contract/type_list.h"
+#include "maths/limit.h"
 #include "motley/core/constraints/ball_socket_definition.h"
-#include "motley/core/limit.h"
-#include "motley/core/type_list.h"
 
 namespace motley {
 

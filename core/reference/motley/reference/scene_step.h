@@ -4,9 +4,9 @@
 #include <span>
 
 #include "motley/core/constraints/contact_definition.h"
-#include "motley/core/scene_core.h"
 #include "motley/core/settings.h"
 #include "motley/reference/direct_result.h"
+#include "scene/scene_core.h"
 
 namespace motley::reference {
 

@@ -1,0 +1,75 @@
+// Runs several ways side by side, interleaved so that a slowdown of the machine affects all of them.
+#include "commands/demo.h"
+
+#include <fmt/format.h>
+
+#include <thread>
+#include <vector>
+
+#include "measuring/host.h"
+#include "measuring/median.h"
+#include "measuring/runner.h"
+
+namespace motley::bench {
+namespace {
+
+struct Way {
+    Isa isa;
+    int threads;
+    std::vector<double> rates;  ///< agent-steps/s, one a round
+    std::vector<double> solver_rates;
+    RunResult last;
+};
+
+/// True when every way ended in the same bits.
+bool compare_ways(const DemoOptions& options, std::int64_t agents)
+{
+    std::vector<Way> ways;
+    for (const Isa isa : available_isas()) ways.push_back({isa, 1, {}, {}, {}});
+    ways.push_back({available_isas().back(), 2, {}, {}, {}});
+    const SceneEntry& crowd = *find_scene("crowd");
+    RunOutputs quiet;
+    quiet.progress = false;
+    for (int round = 0; round < options.rounds; ++round) {
+        for (Way& way : ways) {
+            RunOptions run;
+            run.agents = agents;
+            run.seconds = options.seconds;
+            run.solver = {.threads = way.threads, .isa = way.isa};
+            way.last = run_scene(crowd, run, quiet);
+            way.rates.push_back(way.last.bodies / way.last.median_step_seconds);
+            way.solver_rates.push_back(way.last.bodies / way.last.median_solver_seconds);
+            fmt::print(stderr, "crowd of {}: round {} of {}, {} x {}\n", agents, round + 1, options.rounds,
+                       isa_name(way.isa), way.threads);
+        }
+    }
+    fmt::print(
+        "\ncrowd of {} people, 5 per m2, {} steps of 1/60 s, 4 substeps; median step, median of {} "
+        "interleaved rounds, "
+        "host load {:.2f}\n",
+        agents, ways[0].last.steps, options.rounds, host_load());
+    fmt::print("{:<10}{:>8}{:>22}{:>22}{:>14}{:>16}  {}\n", "isa", "threads", "M agent-steps/s",
+               "solver alone", "x scalar", "overlap p99", "state hash");
+    bool same = true;
+    for (const Way& way : ways) {
+        fmt::print("{:<10}{:>8}{:>22.2f}{:>22.2f}{:>14.2f}{:>14.3f} %  {:016x}\n", isa_name(way.isa),
+                   way.threads, median(way.rates) * 1e-6, median(way.solver_rates) * 1e-6,
+                   median(way.rates) / median(ways[0].rates), 100 * way.last.overlap_p99,
+                   way.last.state_hash);
+        same = same && way.last.state_hash == ways[0].last.state_hash;
+    }
+    fmt::print("{}\n", same ? "every way ends in the same bits" : "THE WAYS END IN DIFFERENT BITS");
+    return same;
+}
+
+}  // namespace
+
+int run_demo(const DemoOptions& options)
+{
+    fmt::print("{}", table_of(run_scene(*find_scene("bottleneck"), {}, {})));
+    bool same = true;
+    for (const std::int64_t agents : {10000, 100000}) same = compare_ways(options, agents) && same;
+    return same ? 0 : 1;
+}
+
+}  // namespace motley::bench

@@ -1,0 +1,425 @@
+// The program `motley`: run a scene, list the scenes, or do the main job.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+
+#include "commands/anchors.h"
+#include "commands/demo.h"
+#include "commands/extremes.h"
+#include "commands/replay.h"
+#include "commands/scale.h"
+#include "commands/soak.h"
+#include "commands/sweep.h"
+#include "commands/threads.h"
+#include "measuring/clock.h"
+#include "measuring/runner.h"
+#include "page/page.h"
+
+namespace {
+
+using namespace motley;
+using namespace motley::bench;
+
+void write_text(const std::string& path, const std::string& text)
+{
+    std::ofstream file(path);
+    file << text;
+    file.close();
+    if (!file) throw std::runtime_error(path + ": cannot be written");
+}
+
+/// Names and values of dials, for CLI11.
+const std::map<std::string, Method> method_names{{"soft_step", Method::soft_step},
+                                                 {"sequential_impulse", Method::sequential_impulse},
+                                                 {"direct", Method::direct}};
+const std::map<std::string, DriftCorrection> drift_names{{"by_method", DriftCorrection::by_method},
+                                                         {"none", DriftCorrection::none},
+                                                         {"baumgarte", DriftCorrection::baumgarte},
+                                                         {"projection", DriftCorrection::projection}};
+
+/// The instruction set of that name. Prints an error when there is none.
+std::optional<Isa> isa_called(const std::string& name)
+{
+    const std::optional<Isa> isa = isa_from_name(name);
+    if (!isa) fmt::print(stderr, "motley: --isa is {}; expected scalar, sse2, avx2, avx512 or neon\n", name);
+    return isa;
+}
+
+/// The dials of one solver.
+struct SolverCommand {
+    std::string isa;
+    SolverSettings settings;
+    SolverOptions solver;
+
+    void declare(CLI::App& app)
+    {
+        app.add_option("--method", settings.method, "soft_step, sequential_impulse or direct")
+            ->transform(CLI::CheckedTransformer(method_names));
+        app.add_option("--drift-correction", settings.drift_correction,
+                       "sequential_impulse, direct: none, baumgarte or projection; default: the method's")
+            ->transform(CLI::CheckedTransformer(drift_names));
+        app.add_option("--substeps", settings.substeps, "substeps a step")
+            ->check(CLI::Range(1, 1024))
+            ->capture_default_str();
+        app.add_option("--iterations", settings.iterations, "sweeps a substep; 0: 1, sequential_impulse 8")
+            ->check(CLI::Range(0, 10000))
+            ->capture_default_str();
+        app.add_option("--relaxations", settings.relaxations, "soft_step: sweeps without bias a substep")
+            ->check(CLI::Range(0, 10000))
+            ->capture_default_str();
+        app.add_option("--contact-hertz", settings.contact_hertz,
+                       "soft_step: stiffness of contacts; 0: half of what a substep can follow, 30 at least")
+            ->capture_default_str();
+        app.add_option("--joint-hertz", settings.joint_hertz,
+                       "soft_step: stiffness of joints, as far as a substep can follow")
+            ->capture_default_str();
+        app.add_flag("--exact", settings.exact_joints, "soft_step: joints solved all at once");
+        app.add_option("--isa", isa,
+                       "scalar, sse2, avx2, avx512 or neon; default: MOTLEY_ISA, else the widest here");
+        app.add_option("--threads", solver.threads, "threads, the caller's counted")
+            ->check(CLI::Range(1, 1024))
+            ->capture_default_str();
+        app.add_option("--tolerance", settings.tolerance, "m/s at which an island's sweeps end; 0: never")
+            ->capture_default_str();
+        app.add_option("--budget", settings.budget_ms,
+                       "ms a step may take; substeps or iterations are then the most; 0: no budget")
+            ->capture_default_str();
+    }
+    /// False when there is no such instruction set.
+    bool pick_isa()
+    {
+        if (isa.empty()) return true;
+        solver.isa = isa_called(isa);
+        return solver.isa.has_value();
+    }
+};
+
+struct RunCommand {
+    std::string scene, json;
+    SolverCommand dials;
+    RunOptions options;
+    RunOutputs outputs;
+
+    void declare(CLI::App& app)
+    {
+        dials.declare(app);
+        app.add_option("scene", scene, "one of `motley list`")->required();
+        app.add_option("--agents", options.agents, "people or bodies; default: the scene's")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--seconds", options.seconds, "simulated time; default: the scene's")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--dt", options.dt, "s a step")->check(CLI::Range(1e-6, 1.0))->capture_default_str();
+        app.add_option("--friction", options.friction, "between people; default: the scene's")
+            ->check(CLI::Range(0.0, 1e6));
+        app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();
+        app.add_option("--data", options.data, "bottleneck: a trajectory file; default: the experiment's")
+            ->check(CLI::ExistingFile);
+        app.add_flag("--measures", dials.settings.measures, "report what each step left unsolved");
+        app.add_option("--direct-every", options.direct_every,
+                       "compare every so many steps with the simultaneous solution of the same step; slow")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--json", json, "write the figures to this file");
+        app.add_option("--trajectories", outputs.trajectories, "write PedPy text to this file");
+        app.add_option("--frames", outputs.frames, "write pictures to this folder");
+        app.add_option("--frame-every", outputs.frame_every, "steps between pictures")
+            ->check(CLI::PositiveNumber)
+            ->capture_default_str();
+        app.add_option("--hash-every", outputs.hash_every, "print the state hash every so many steps")
+            ->check(CLI::PositiveNumber);
+    }
+
+    int operator()()
+    {
+        const SceneEntry* entry = find_scene(scene);
+        if (entry == nullptr) {
+            fmt::print(stderr, "motley: no scene '{}'; `motley list` names them\n", scene);
+            return 2;
+        }
+        if (!dials.pick_isa()) return 2;
+        options.settings = dials.settings;
+        options.solver = dials.solver;
+        const RunResult result = run_scene(*entry, options, outputs);
+        fmt::print("{}", table_of(result));
+        if (!json.empty()) write_text(json, json_of(result));
+        return 0;
+    }
+};
+
+struct RecordCommand {
+    RunCommand run;
+
+    void declare(CLI::App& app)
+    {
+        run.declare(app);
+        app.add_option("file", run.outputs.problem, "where the step's problem is written to")->required();
+        app.add_option("--step", run.outputs.problem_step, "which step, the first is 0")
+            ->check(CLI::NonNegativeNumber)
+            ->capture_default_str();
+    }
+    int operator()()
+    {
+        run.outputs.hash_every = 1;
+        run.options.seconds =
+            static_cast<double>(run.options.dt) * (static_cast<double>(run.outputs.problem_step) + 0.5);
+        return run();
+    }
+};
+
+struct ReplayCommand {
+    std::string file;
+    SolverCommand dials;
+    int steps = 1;
+
+    void declare(CLI::App& app)
+    {
+        app.add_option("file", file, "a problem of `motley record`, or of save_problem()")->required();
+        app.add_option("--steps", steps, "steps to go on; the contacts are those of the first")
+            ->check(CLI::Range(1, 1000000))
+            ->capture_default_str();
+        dials.declare(app);
+    }
+    /// `parse_again` reads the command line again, so that its dials override those of the file.
+    template <class Parse>
+    int operator()(const Parse& parse_again)
+    {
+        StepProblem problem = load_problem(file);
+        dials.settings = problem.settings;
+        parse_again();
+        if (!dials.pick_isa()) return 2;
+        problem.settings = dials.settings;
+        fmt::print("{}", replay(std::move(problem), dials.solver, steps));
+        return 0;
+    }
+};
+
+struct SweepCommand {
+    std::string scene, csv, json;
+    std::vector<std::string> isas;
+    DialGrid grid;
+    SweepOptions options;
+
+    void declare(CLI::App& app)
+    {
+        app.add_option("scene", scene, "one of `motley list`")->required();
+        app.add_option("--agents", options.agents, "people or bodies; default: the scene's")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--seconds", options.seconds, "simulated time that is measured; default: the scene's")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--rounds", options.rounds, "runs of each point, in turn with the others")
+            ->check(CLI::Range(1, 100))
+            ->capture_default_str();
+        app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();
+        app.add_option("--csv", csv, "write every point to this file");
+        app.add_option("--json", json, "write every point to this file, for `motley report`");
+        const auto dial = [&](const char* name, auto& values, const char* what) {
+            app.add_option(name, values, what)->delimiter(',');
+        };
+        app.add_option("--method", grid.methods, "soft_step, sequential_impulse, direct; several: a,b")
+            ->delimiter(',')
+            ->transform(CLI::CheckedTransformer(method_names));
+        app.add_option("--drift-correction", grid.drift_corrections, "none, baumgarte, projection")
+            ->delimiter(',')
+            ->transform(CLI::CheckedTransformer(drift_names));
+        dial("--substeps", grid.substeps, "substeps a step; several: 1,2,4");
+        dial("--iterations", grid.iterations, "sweeps a substep");
+        dial("--relaxations", grid.relaxations, "soft_step: sweeps without bias a substep");
+        dial("--hertz", grid.hertz,
+             "soft_step: stiffness of joints; contacts have half of it; 0: as by default");
+        dial("--exact", grid.exact, "soft_step: joints solved all at once: 1, 0 or both: 0,1");
+        dial("--warm-start", grid.warm_starts, "1, 0 or both: 0,1");
+        dial("--tolerance", grid.tolerances, "m/s at which an island's sweeps end; 0: never");
+        dial("--threads", grid.threads, "threads");
+        dial("--isa", isas, "instruction sets; default: MOTLEY_ISA, else the widest here");
+    }
+    int operator()()
+    {
+        for (const std::string& name : isas) {
+            const std::optional<Isa> isa = isa_called(name);
+            if (!isa) return 2;
+            grid.isas.push_back(*isa);
+        }
+        const SweepResult result = sweep(scene, grid, options);
+        fmt::print("{}", table_of(result));
+        if (!csv.empty()) write_text(csv, csv_of(result));
+        if (!json.empty()) write_text(json, json_of(result));
+        return 0;
+    }
+};
+
+/// `motley threads`.
+struct ThreadsCommand {
+    ThreadsOptions options;
+    SolverCommand dials;
+
+    void declare(CLI::App& app)
+    {
+        dials.solver = options.solver;
+        dials.declare(app);
+        app.add_option("scenes", options.scenes, "of `motley list`; default: grid chains ragdolls crowd");
+        app.add_option("--agents", options.agents, "people or bodies; default: the scene's")
+            ->check(CLI::PositiveNumber);
+        app.add_option("--turns", options.turns, "of each copy")
+            ->check(CLI::Range(1, 100000))
+            ->capture_default_str();
+    }
+    int operator()()
+    {
+        if (!dials.pick_isa()) return 2;
+        options.settings = dials.settings;
+        options.solver = dials.solver;
+        const std::vector<ThreadsResult> results = measure_threads(options);
+        fmt::print("{}", table_of(results, options.solver.threads));
+        return std::ranges::all_of(results, &ThreadsResult::same_bits) ? 0 : 1;
+    }
+};
+
+/// `motley soak`.
+struct SoakCommand {
+    SoakOptions options;
+
+    void declare(CLI::App& app)
+    {
+        app.add_option("--seconds", options.seconds, "of the clock")
+            ->check(CLI::PositiveNumber)
+            ->capture_default_str();
+        app.add_option("--steps", options.steps, "so many steps instead")->check(CLI::PositiveNumber);
+        app.add_option("--people", options.people, "about how many")
+            ->check(CLI::Range(10, 1000000))
+            ->capture_default_str();
+        app.add_option("--seed", options.seed, "of the town's random numbers")->capture_default_str();
+    }
+    int operator()() const
+    {
+        const double began = now();
+        const SoakResult result = soak(options);
+        const double took = now() - began;
+        fmt::print("{}", table_of(result, took));
+        return result.failure.empty() ? 0 : 1;
+    }
+};
+
+}  // namespace
+
+int main(int count, char** arguments)
+{
+    CLI::App app{"motley: rigid-body constraints for crowds, in coloured SIMD lanes"};
+    app.require_subcommand(1);
+    RunCommand run;
+    CLI::App* run_app = app.add_subcommand("run", "run a scene and print what it cost and how well it held");
+    run.declare(*run_app);
+    RecordCommand record;
+    CLI::App* record_app = app.add_subcommand(
+        "record",
+        "run a scene up to a step and write that step's problem to a file, to send with a bug report");
+    record.declare(*record_app);
+    ReplayCommand replay_command;
+    CLI::App* replay_app =
+        app.add_subcommand("replay", "solve a recorded problem again, as it was or with other dials");
+    replay_command.declare(*replay_app);
+    CLI::App* list_app =
+        app.add_subcommand("list", "name the scenes and the instruction sets of this machine");
+    CLI::App* demo_app = app.add_subcommand(
+        "demo", "the main job: the bottleneck, then the crowd, scalar, SIMD and threads side by side");
+    SweepCommand sweep_command, compare_command;
+    compare_command.options.with_peers = true;
+    CLI::App* sweep_app =
+        app.add_subcommand("sweep", "run a scene under a grid of dials: time a step against error");
+    sweep_command.declare(*sweep_app);
+    AnchorOptions anchor_options;
+    CLI::App* anchors_app = app.add_subcommand(
+        "anchors", "the nets, chains and ragdolls that other engines were measured on, as ratios to them");
+    anchors_app->add_option("--rounds", anchor_options.rounds, "runs of each, in turn")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    anchors_app->add_flag("--quick", anchor_options.quick, "small scenes, for a look");
+    ScaleOptions scale_options;
+    CLI::App* scale_app = app.add_subcommand(
+        "scale", "the crowd from a thousand to a million: what a contact costs, and the share of bandwidth");
+    scale_app->add_option("--people", scale_options.people, "sizes; several: 1000,10000")
+        ->delimiter(',')
+        ->check(CLI::PositiveNumber);
+    scale_app->add_option("--rounds", scale_options.rounds, "runs of each, in turn")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    scale_app->add_option("--threads", scale_options.solver.threads, "threads, the caller's counted")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    ThreadsCommand threads_command;
+    CLI::App* threads_app = app.add_subcommand(
+        "threads", "what threads are worth: copies of a scene, on one thread and on several, in turn");
+    threads_command.declare(*threads_app);
+    CLI::App* compare_app =
+        app.add_subcommand("compare", "the same, with every peer that is installed, in one run");
+    compare_command.declare(*compare_app);
+    compare_app->add_option("--peer", compare_command.options.only_peer,
+                            "of peers only what has this text in its name and setting, as in 'Bullet'");
+    ReportOptions report;
+    CLI::App* report_app = app.add_subcommand(
+        "report", "sweep every scene beside the peers, price every feature, and write one page with charts");
+    report_app->add_option("--output", report.output, "the page; .csv and .json are put beside it")
+        ->capture_default_str();
+    report_app->add_option("--scenes", report.scenes, "only these; several: a,b")->delimiter(',');
+    report_app->add_option("--rounds", report.rounds, "runs of each point, in turn with the others")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    report_app->add_flag("--quick", report.quick,
+                         "small scenes, run once: a page in three minutes, for a look");
+    report_app->add_flag("!--without-peers", report.with_peers, "motley alone");
+    CLI::App* extremes_app = app.add_subcommand(
+        "extremes", "run scenes at the edge of what numbers can bear under every method: figures and bounds");
+    SoakCommand soak_command;
+    CLI::App* soak_app = app.add_subcommand(
+        "soak",
+        "a town of people who join, leave, fall and rise, checked after every step, for as long as asked");
+    soak_command.declare(*soak_app);
+    DemoOptions demo;
+    demo_app->add_option("--seconds", demo.seconds, "simulated time of each crowd run")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    demo_app->add_option("--rounds", demo.rounds, "interleaved rounds")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    try {
+        app.parse(count, arguments);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    try {
+        if (*run_app) return run();
+        if (*record_app) return record();
+        if (*replay_app) return replay_command([&] { app.parse(count, arguments); });
+        if (*sweep_app) return sweep_command();
+        if (*anchors_app) {
+            fmt::print("{}", table_of(measure_anchors(anchor_options)));
+            return 0;
+        }
+        if (*scale_app) {
+            fmt::print("{}", table_of(measure_scale(scale_options)));
+            return 0;
+        }
+        if (*threads_app) return threads_command();
+        if (*compare_app) return compare_command();
+        if (*report_app) write_report(report);
+        if (*demo_app) return run_demo(demo);
+        if (*soak_app) return soak_command();
+        if (*extremes_app) return print_extremes({}) == 0 ? 0 : 1;
+        if (*list_app) {
+            for (const SceneEntry& entry : scene_list())
+                fmt::print("{:<18}{}\n", entry.name, entry.description);
+            fmt::print("instruction sets here:");
+            for (const Isa isa : available_isas()) fmt::print(" {}", isa_name(isa));
+            fmt::print("\n");
+        }
+    } catch (const InvalidInput& error) {
+        fmt::print(stderr, "motley: {}\n", error.what());
+        return 2;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "motley: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}

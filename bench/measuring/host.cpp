@@ -1,0 +1,26 @@
+// Reads /proc.
+#include "measuring/host.h"
+
+#include <unistd.h>
+
+#include <fstream>
+
+namespace motley::bench {
+
+double host_load()
+{
+    std::ifstream file("/proc/loadavg");
+    double load = -1;
+    file >> load;
+    return load;
+}
+
+double resident_bytes()
+{
+    std::ifstream file("/proc/self/statm");
+    double all = 0, resident = 0;
+    file >> all >> resident;
+    return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace motley::bench

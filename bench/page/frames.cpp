@@ -1,0 +1,190 @@
+// Draws discs and walls as pixels.
+#include "page/frames.h"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "page/font.h"
+
+namespace motley::bench {
+namespace {
+
+constexpr int longest_side = 900;  // pixels
+constexpr int margin = 20;
+constexpr int bar_width = 14;
+constexpr int label_width = 44;
+
+struct Colour {
+    std::uint8_t r, g, b;
+};
+
+/// Blue over yellow to red.
+Colour colour_of(double share)
+{
+    constexpr double stops[4][3] = {{70, 120, 180}, {120, 190, 170}, {250, 210, 90}, {205, 40, 45}};
+    const double at = 3 * std::clamp(share, 0.0, 1.0);
+    const int i = std::min(2, static_cast<int>(at));
+    const auto mix = [&](int c) {
+        return static_cast<std::uint8_t>(stops[i][c] + (at - i) * (stops[i + 1][c] - stops[i][c]));
+    };
+    return {mix(0), mix(1), mix(2)};
+}
+
+class Picture {
+  public:
+    Picture(int width, int height)
+        : width_(width),
+          height_(height),
+          pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), Colour{250, 250, 248})
+    {
+    }
+
+    [[nodiscard]] int width() const { return width_; }
+    [[nodiscard]] int height() const { return height_; }
+    void set(int x, int y, Colour c)
+    {
+        if (x >= 0 && y >= 0 && x < width_ && y < height_)
+            pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                    static_cast<std::size_t>(x)] = c;
+    }
+    void disc(double x, double y, double radius, Colour c)
+    {
+        const Colour edge{static_cast<std::uint8_t>(c.r * 6 / 10), static_cast<std::uint8_t>(c.g * 6 / 10),
+                          static_cast<std::uint8_t>(c.b * 6 / 10)};
+        for (int py = static_cast<int>(y - radius); py <= static_cast<int>(y + radius) + 1; ++py) {
+            for (int px = static_cast<int>(x - radius); px <= static_cast<int>(x + radius) + 1; ++px) {
+                const double d = std::hypot(px + 0.5 - x, py + 0.5 - y);
+                if (d < radius) set(px, py, d > radius - 1 && radius > 3 ? edge : c);
+            }
+        }
+    }
+    void line(double x0, double y0, double x1, double y1)
+    {
+        const int steps = static_cast<int>(std::max(std::abs(x1 - x0), std::abs(y1 - y0)) * 2) + 1;
+        for (int i = 0; i <= steps; ++i) {
+            const double t = static_cast<double>(i) / steps;
+            for (int w = -1; w <= 0; ++w) {
+                set(static_cast<int>(x0 + t * (x1 - x0)) + w, static_cast<int>(y0 + t * (y1 - y0)),
+                    {50, 50, 55});
+                set(static_cast<int>(x0 + t * (x1 - x0)), static_cast<int>(y0 + t * (y1 - y0)) + w,
+                    {50, 50, 55});
+            }
+        }
+    }
+    /// Writes text with two pixels a dot; (x, y) is its upper left corner.
+    void text(int x, int y, std::string_view letters)
+    {
+        for (const char letter : letters) {
+            for (const Glyph& glyph : glyphs) {
+                if (glyph.letter != letter) continue;
+                for (int dot = 0; dot < 7 * 5 * 4; ++dot) {
+                    const int row = dot / 20, column = dot / 4 % 5;
+                    if ((glyph.rows[static_cast<std::size_t>(row)] >> (4 - column) & 1) != 0)
+                        set(x + 2 * column + dot % 2, y + 2 * row + dot / 2 % 2, {50, 50, 55});
+                }
+            }
+            x += 12;
+        }
+    }
+    void save(const std::string& path) const
+    {
+        png_image image{};
+        image.version = PNG_IMAGE_VERSION;
+        image.width = static_cast<png_uint_32>(width_);
+        image.height = static_cast<png_uint_32>(height_);
+        image.format = PNG_FORMAT_RGB;
+        if (png_image_write_to_file(&image, path.c_str(), 0, pixels_.data(), 0, nullptr) == 0) {
+            throw std::runtime_error(fmt::format("{}: {}", path, image.message));
+        }
+    }
+
+  private:
+    int width_, height_;
+    std::vector<Colour> pixels_;
+};
+
+/// The bar of colours with its numbers, in N per metre of circumference.
+void draw_legend(Picture& picture)
+{
+    const int left = picture.width() - margin / 2 - label_width - bar_width;
+    const int top = margin + 24, height = picture.height() - margin - top;
+    for (int row = 0; row < height; ++row) {
+        for (int column = 0; column < bar_width; ++column)
+            picture.set(left + column, top + row, colour_of(1 - static_cast<double>(row) / height));
+    }
+    for (int quarter = 0; quarter <= 4; ++quarter) {
+        picture.text(left + bar_width + 4, top + height - height * quarter / 4 - 7,
+                     fmt::format("{:.0f}", FrameWriter::full_pressure * quarter / 4));
+    }
+    picture.text(left, margin / 2, "N/m");
+}
+
+}  // namespace
+
+FrameWriter::FrameWriter(std::string folder) : folder_(std::move(folder))
+{
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw std::runtime_error(fmt::format("{}: {}", folder_, error.message()));
+}
+
+void FrameWriter::fit(const Crowd& crowd)
+{
+    double max_x = -1e300, max_y = -1e300;
+    min_x_ = min_y_ = 1e300;
+    const auto include = [&](double x, double y) {
+        min_x_ = std::min(min_x_, x);
+        min_y_ = std::min(min_y_, y);
+        max_x = std::max(max_x, x);
+        max_y = std::max(max_y, y);
+    };
+    for (const Vec3<double>& p : crowd.positions) include(p.x, p.y);
+    for (const Wall& wall : crowd.walls) {
+        include(wall.from.x, wall.from.y);
+        include(wall.to.x, wall.to.y);
+    }
+    if (max_x < min_x_) min_x_ = min_y_ = 0, max_x = max_y = 1;
+    min_x_ -= 0.5;
+    min_y_ -= 0.5;
+    const double wide = max_x + 0.5 - min_x_, high = max_y + 0.5 - min_y_;
+    scale_ = longest_side / std::max(wide, high);
+    width_ = static_cast<int>(wide * scale_) + 2 * margin + bar_width + label_width;
+    height_ = static_cast<int>(high * scale_) + 2 * margin;
+}
+
+void FrameWriter::write(const Crowd& crowd, const Scene& scene)
+{
+    if (count_ == 0) fit(crowd);
+    std::vector<double> load(crowd.agents.size(), 0.0);
+    const auto impulses = scene.contact_impulses();
+    const auto pairs = crowd.pairs();
+    const double per_second = scene.last_step() > 0 ? 1 / static_cast<double>(scene.last_step()) : 0;
+    for (std::size_t i = 0; i < impulses.size() && i < pairs.size(); ++i) {
+        const double force = static_cast<double>(impulses[i].normal) * per_second;
+        load[static_cast<std::size_t>(pairs[i].a)] += force;
+        if (pairs[i].b >= 0) load[static_cast<std::size_t>(pairs[i].b)] += force;
+    }
+
+    Picture picture(width_, height_);
+    const auto x = [&](double world) { return margin + (world - min_x_) * scale_; };
+    const auto y = [&](double world) { return height_ - margin - (world - min_y_) * scale_; };
+    for (const Wall& wall : crowd.walls)
+        picture.line(x(wall.from.x), y(wall.from.y), x(wall.to.x), y(wall.to.y));
+    for (std::size_t i = 0; i < crowd.positions.size() && i < load.size(); ++i) {
+        const double radius = static_cast<double>(crowd.agents[i].radius);
+        const double pressure = load[i] / (6.283185307179586 * radius);
+        picture.disc(x(crowd.positions[i].x), y(crowd.positions[i].y), radius * scale_,
+                     colour_of(pressure / full_pressure));
+    }
+    draw_legend(picture);
+    picture.save(fmt::format("{}/frame-{:05d}.png", folder_, count_++));
+}
+
+}  // namespace motley::bench

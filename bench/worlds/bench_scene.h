@@ -1,0 +1,99 @@
+// What a scene of the program is: a motley scene, the host's part around it, and the figures by which it is judged.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "motley/motley.h"
+#include "worlds/crowd.h"
+
+namespace motley::bench {
+
+/// The dials of a run as the command line gives them.
+struct RunOptions {
+    std::int64_t agents = 0;  ///< 0: the scene's default
+    double seconds = 0;       ///< 0: the scene's default
+    float dt = 1.0F / 60;
+    SolverSettings settings;
+    SolverOptions solver;
+    float friction = -1;  ///< below 0: the scene's default
+    std::uint64_t seed = 12345;
+    int direct_every =
+        0;  ///< steps between two comparisons with the simultaneous solution of the same step; 0: never
+    std::string data;  ///< bottleneck: the trajectory file; empty: the project's copy
+};
+
+/// The number by which a scene is judged when that is not overlap.
+struct SceneError {
+    const char* name;  ///< with its unit
+    double value;
+};
+
+/// A line of the table at the end of a run: a name, with its unit in brackets, and its value.
+using Figure = std::pair<std::string, double>;
+
+class BenchScene {
+  public:
+    BenchScene() = default;
+    BenchScene(const BenchScene&) = delete;
+    BenchScene& operator=(const BenchScene&) = delete;
+    virtual ~BenchScene() = default;
+
+    Scene scene;
+    /// Sets what the scene itself decides, such as gravity.
+    virtual void adjust(SolverSettings&) const {}
+    /// The host's work before a step at `time`: arrivals, departures, steering.
+    virtual void steer(double time, Executor& executor) = 0;
+    /// The host's neighbour search.
+    virtual std::span<const Contact> find_contacts(Executor& executor) = 0;
+    /// Called after each step.
+    virtual void observe(double time, const Solver& solver) = 0;
+    /// The error by which a sweep judges the scene; without one a sweep uses how deep people overlap.
+    [[nodiscard]] virtual std::optional<SceneError> error() const { return {}; }
+    /// The scene's own figures.
+    [[nodiscard]] virtual std::vector<Figure> figures() const { return {}; }
+    /// The people, for pictures and trajectories; null where there are none.
+    [[nodiscard]] virtual Crowd* crowd() { return nullptr; }
+    /// True when there is nothing left to simulate.
+    [[nodiscard]] virtual bool is_over(double) const { return false; }
+};
+
+/// A scene of people: Crowd does the steering and the search.
+class CrowdScene : public BenchScene {
+  public:
+    void steer(double, Executor& executor) override
+    {
+        people.observe(scene, executor);
+        people.steer(scene, executor);
+    }
+    std::span<const Contact> find_contacts(Executor& executor) override
+    {
+        return people.find_contacts(scene, executor);
+    }
+    void observe(double, const Solver&) override {}
+    [[nodiscard]] Crowd* crowd() override { return &people; }
+
+  protected:
+    Crowd people;
+};
+
+/// A scene in the program's list.
+struct SceneEntry {
+    const char* name;
+    const char* description;
+    std::int64_t agents;  ///< default; bodies where there are no people
+    double seconds;       ///< default
+    std::function<std::unique_ptr<BenchScene>(const RunOptions& options)> make;
+};
+
+/// All scenes; the list is in scenes.cpp.
+std::span<const SceneEntry> scene_list();
+/// Null when there is none of that name.
+const SceneEntry* find_scene(const std::string& name);
+
+}  // namespace motley::bench

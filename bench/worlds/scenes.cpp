@@ -1,0 +1,70 @@
+// The list of scenes: crowds here, rigs from rigs.cpp. To add a crowd: its header in scenes/, and its line here.
+#include "worlds/bench_scene.h"
+#include "worlds/scenes/bottleneck.h"
+#include "worlds/scenes/open_crowd.h"
+#include "worlds/scenes/push.h"
+#include "worlds/scenes/rig_scene.h"
+#include "worlds/scenes/rows.h"
+#include "worlds/scenes/wave.h"
+
+namespace motley::bench {
+namespace {
+
+template <class S>
+std::unique_ptr<BenchScene> make(const RunOptions& options)
+{
+    return std::make_unique<S>(options);
+}
+
+template <const auto& shape>
+std::unique_ptr<BenchScene> make_pulse(const RunOptions& options)
+{
+    return std::make_unique<InelasticPulse>(options, shape);
+}
+
+std::vector<SceneEntry> all_scenes()
+{
+    std::vector<SceneEntry> all{
+        {"bottleneck", "75 people through a 0.5 m door, entering where and when a real experiment has them",
+         75, 90, make<Bottleneck>},
+        {"crowd", "N people at 5 per m2, each walking from goal to goal", 10000, 10, make<OpenCrowd>},
+        {"push", "a packed slab leans on a wall with 50 N each: 4.5 kN/m", 1800, 10, make<Push>},
+        {"lean", "rows of 100 people lean on each other with 50 N each, and the first on a wall", 10000, 6,
+         make<Lean<100>>},
+        {"lean-30", "the same in rows of 30", 10000, 6, make<Lean<30>>},
+        {"lean-10", "the same in rows of 10", 10000, 6, make<Lean<10>>},
+        {"pulse", "rows of 20 people 0.1 m apart; the first runs into them and takes all along", 10000, 3,
+         make_pulse<InelasticPulse::row>},
+        {"strip", "rows of 100 people 2 cm apart, pushed with 150 N s: the wave, one row wide", 10000, 10,
+         make_pulse<InelasticPulse::strip>},
+        {"bounce", "rows of 20 people 0.1 m apart who bounce: a speed is handed on", 10000, 2,
+         make<ElasticPulse>},
+        {"wave", "a standing crowd 2 cm apart; 5 m of its edge are pushed with 150 N s each", 10000, 5,
+         make<Wave>},
+    };
+    for (const RigEntry& rig : rig_list()) {
+        all.push_back({rig.name, rig.description, rig.bodies, rig.warm_up + rig.seconds,
+                       [&rig](const RunOptions& options) -> std::unique_ptr<BenchScene> {
+                           return std::make_unique<RigScene>(rig, options);
+                       }});
+    }
+    return all;
+}
+
+}  // namespace
+
+std::span<const SceneEntry> scene_list()
+{
+    static const std::vector<SceneEntry> all = all_scenes();
+    return all;
+}
+
+const SceneEntry* find_scene(const std::string& name)
+{
+    for (const SceneEntry& entry : scene_list()) {
+        if (name == entry.name) return &entry;
+    }
+    return nullptr;
+}
+
+}  // namespace motley::bench

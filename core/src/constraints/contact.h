@@ -1,0 +1,374 @@
+// Contact: penetration as an inequality, friction in a circular cone, restitution.
+//
+//   C   = n . (p_b - p_a) >= 0,  lambda_n >= 0
+//   J   = [-n, -(r_a x n), n, r_b x n];  friction: the same rows with the tangents, |lambda_t| <= mu lambda_n
+//
+// n: normal; p: surface points; r: arms to the contact point; mu: friction coefficient. The normal and the arms stay as
+// they were when the step began, so J is constant and the separation follows from the displacement delta since then,
+// C = C_0 + J delta: exact for discs and balls, with an error of second order in the rotation for other shapes.
+#pragma once
+
+#include <type_traits>
+
+#include "contract/constraint_type.h"
+#include "contract/type_list.h"
+#include "maths/bounded_impulse.h"
+#include "maths/lever.h"
+#include "maths/limit.h"
+#include "maths/restitution.h"
+#include "motley/core/constraints/contact_definition.h"
+
+namespace motley {
+
+/// A contact's numbers as quads, in the order of Contact's members after the key.
+template <class Real>
+struct ContactParameters {
+    Vec3<Real> normal;
+    Real separation;
+    Vec3<Real> arm_a;
+    Real friction;
+    Vec3<Real> arm_b;
+    Real restitution;
+};
+
+template <class Real>
+struct ContactMemory {
+    Real normal;
+    Vec3<Real> friction;
+};
+
+/// What a contact does in addition to keeping bodies apart; each kind does what the one before does. Smooth contacts
+/// have no friction rows, and only bouncing ones store the speed of the impact.
+enum class Touch { smooth, rough, bouncing };
+
+template <Touch touch>
+struct ContactKind : ConstraintTraits {
+    static constexpr bool is_contact = true;
+    static constexpr bool smooth = touch == Touch::smooth;
+    static constexpr bool has_restitution = touch == Touch::bouncing;
+    static constexpr const char* name = smooth            ? "smooth contact"
+                                        : has_restitution ? "bouncing contact"
+                                                          : "contact";
+    template <class Real>
+    using Parameters = ContactParameters<Real>;
+    template <class Real>
+    using Memory = ContactMemory<Real>;
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+    };
+
+    template <class Real, BodyKind a, BodyKind b>
+    struct SmoothRow {
+        PairVector<Real, a, b> normal;
+        Real separation;
+        Real normal_effective_mass;
+        [[no_unique_address]] Lever<Real, a, is_planar_pair(a, b)> lever_a;
+        [[no_unique_address]] Lever<Real, b, is_planar_pair(a, b)> lever_b;
+    };
+    /// Without the two effective masses, which each sweep computes from arms and bodies: where rows come from memory
+    /// this costs no more than loading them would, where they are in cache it adds a tenth to a sweep.
+    template <class Real>
+    struct PlanarSweep {
+        Vec2<Real> normal, arm_a, arm_b;
+        Real separation;
+        Real friction;
+    };
+    template <class Real>
+    struct SpatialSweep {
+        Vec3<Real> normal, arm_a, arm_b;
+        Real separation;
+        Real normal_effective_mass;
+        Vec3<Real>
+            tangent;  ///< direction of the largest response; the second, normal x tangent, has the smallest
+        Vec2<Real>
+            tangent_effective_mass;  ///< along the two tangents, which are decoupled; the first is the smaller
+        Real friction;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    using RoughRow = std::conditional_t<is_planar_pair(a, b), PlanarSweep<Real>, SpatialSweep<Real>>;
+    template <class Real, BodyKind a, BodyKind b>
+    struct BouncingRow {
+        RoughRow<Real, a, b> in_sweep;
+        Real restitution, approach, acceleration;  ///< see opening_speed
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    using Row = std::conditional_t<
+        smooth, SmoothRow<Real, a, b>,
+        std::conditional_t<has_restitution, BouncingRow<Real, a, b>, RoughRow<Real, a, b>>>;
+
+    template <class Real>
+    struct SmoothImpulse {
+        Real normal;
+    };
+    template <class Tangent, class Real>
+    struct RoughImpulse {
+        Real normal;
+        Tangent tangent;
+    };
+    template <class Tangent, class Real>
+    struct BouncingImpulse {
+        Real normal;
+        Tangent tangent;
+        Real peak;  ///< the largest normal impulse of the step, decides restitution
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    using Tangent = std::conditional_t<is_planar_pair(a, b), Real, Vec2<Real>>;
+    template <class Real, BodyKind a, BodyKind b>
+    using Impulse =
+        std::conditional_t<smooth, SmoothImpulse<Real>,
+                           std::conditional_t<has_restitution, BouncingImpulse<Tangent<Real, a, b>, Real>,
+                                              RoughImpulse<Tangent<Real, a, b>, Real>>>;
+
+    /// A unit vector perpendicular to n: along n x e_x, or n x e_z where n is close to the x axis.
+    template <class Real>
+    static Vec3<Real> tangent_of(const Vec3<Real>& n)
+    {
+        const auto leans_from_x = absolute(n.x) < Real(0.57735F);
+        const Vec3<Real> across{select(leans_from_x, Real(0), n.y), select(leans_from_x, n.z, -n.x),
+                                select(leans_from_x, -n.y, Real(0))};
+        const Real scale = Real(1) / square_root(dot(across, across));
+        return scale * across;
+    }
+    template <class Real>
+    static Vec2<Real> tangent_of(const Vec2<Real>& n)
+    {
+        return {-n.y, n.x};
+    }
+
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const ContactParameters<Real>& contact,
+                        const ContactMemory<Real>& memory, const A& a, const B& b,
+                        Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        const StepConstants& step = start.step();
+        using Vector = PairVector<Real, A::kind, B::kind>;
+        Row<Real, A::kind, B::kind> whole;
+        auto& row = in_sweep(whole);
+        row.normal = to_space<Vector>(contact.normal);
+        row.separation = contact.separation;
+        const Vector arm_a = to_space<Vector>(contact.arm_a), arm_b = to_space<Vector>(contact.arm_b);
+        const auto k = point_response(a, arm_a, b, arm_b);
+        if constexpr (requires { row.normal_effective_mass; })
+            row.normal_effective_mass = effective_mass_along(row.normal, k);
+        const Real warm(step.warm_start_scale);
+        impulse.normal = warm * memory.normal;
+        if constexpr (smooth) {
+            row.lever_a = lever_of<decltype(row.lever_a)>(arm_a, row.normal);
+            row.lever_b = lever_of<decltype(row.lever_b)>(arm_b, row.normal);
+        } else {
+            row.arm_a = arm_a;
+            row.arm_b = arm_b;
+            row.friction = contact.friction;
+            if constexpr (has_restitution) {
+                whole.restitution = contact.restitution;
+                whole.approach = speed<Real>(row, a, b);
+                whole.acceleration = dot(contact.normal, start.acceleration(a, b));
+                impulse.peak = Real(0);
+            }
+            if constexpr (is_planar_pair(A::kind, B::kind)) {
+                impulse.tangent = warm * dot(tangent_of(row.normal), to_space<Vector>(memory.friction));
+            } else {
+                const Vector s1 = tangent_of(row.normal), s2 = cross(row.normal, s1), k1 = k * s1;
+                const Principal<Real> most = principal(Sym2<Real>{dot(s1, k1), dot(s2, k1), dot(s2, k * s2)});
+                row.tangent = most.direction.x * s1 + most.direction.y * s2;
+                row.tangent_effective_mass = {inverse_or_zero(most.largest), inverse_or_zero(most.smallest)};
+                const Vector t2 = cross(row.normal, row.tangent);
+                impulse.tangent = {warm * dot(row.tangent, memory.friction), warm * dot(t2, memory.friction)};
+            }
+        }
+        return whole;
+    }
+
+    template <class Real, class Row, class Impulse>
+    static auto total_impulse(const Row& row, const Impulse& impulse)
+    {
+        auto push = impulse.normal * row.normal;
+        if constexpr (!smooth) {
+            if constexpr (requires { row.tangent; }) {
+                push = push + impulse.tangent.x * row.tangent +
+                       impulse.tangent.y * cross(row.normal, row.tangent);
+            } else {
+                push = push + impulse.tangent * tangent_of(row.normal);
+            }
+        }
+        return push;
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row& whole, const Substep&, const Impulse& impulse, A& a, B& b)
+    {
+        const auto& row = in_sweep(whole);
+        if constexpr (smooth) {
+            push<Real>(row, impulse.normal, a, b);
+        } else {
+            const auto both = total_impulse<Real>(row, impulse);
+            apply_impulse(a, row.arm_a, -both);
+            apply_impulse(b, row.arm_b, both);
+        }
+    }
+
+    /// One sweep over this contact: friction with the bound of the normal impulse so far, then the normal.
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants& step, const Row& row, const Substep&, Impulse& impulse, A& a, B& b)
+    {
+        if constexpr (!smooth) solve_friction<Real>(row, impulse, a, b);
+
+        constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
+        const Real wanted = contact_impulse(step, on_fixed ? step.static_contact : step.contact,
+                                            row.separation + moved<Real>(row, a, b), speed<Real>(row, a, b),
+                                            normal_effective_mass<Real>(row, a, b), impulse.normal);
+        push_normal<Real>(row, wanted, impulse, a, b);
+    }
+
+    /// After the substeps: contacts that were hit fast enough leave with restitution times the speed of the impact.
+    template <class Real, class Row, class Impulse, class A, class B>
+    static void restitute(const StepConstants& step, const Row& whole, Impulse& impulse, A& a, B& b)
+    {
+        const auto& row = in_sweep(whole);
+        const Real opening = opening_speed(whole.restitution, whole.approach, whole.acceleration,
+                                           row.separation, row.separation + moved<Real>(row, a, b));
+        const Real wanted =
+            impulse.normal - normal_effective_mass<Real>(row, a, b) * (speed<Real>(row, a, b) - opening);
+        const auto bounces = (whole.approach < Real(-step.restitution_threshold)) & (impulse.peak > Real(0));
+        push_normal<Real>(row, select(bounces, maximum(wanted, Real(0)), impulse.normal), impulse, a, b);
+    }
+
+    /// A position solve: moves the bodies along J^T until `projection_rate` of the penetration is gone.
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants& step, const Row& whole, A& a, B& b)
+    {
+        const auto& row = in_sweep(whole);
+        const Real deep = minimum(row.separation + moved<Real>(row, a, b) + Real(step.slop), Real(0));
+        const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep overlap must not explode
+        const Real lambda = -(normal_effective_mass<Real>(row, a, b) * Real(step.projection_rate) * error);
+        if constexpr (smooth) {
+            displace_along(a, row.normal, row.lever_a, -lambda);
+            displace_along(b, row.normal, row.lever_b, lambda);
+        } else {
+            const auto both = lambda * row.normal;
+            apply_displacement(a, row.arm_a, -both);
+            apply_displacement(b, row.arm_b, both);
+        }
+    }
+
+    template <class Real, class Row, class Impulse, class End>
+    static ContactMemory<Real> remember(const Row& row, const Impulse& impulse, const End&)
+    {
+        ContactMemory<Real> memory{impulse.normal, {Real(0), Real(0), Real(0)}};
+        if constexpr (!smooth) {
+            const auto& swept = in_sweep(row);
+            memory.friction = to_three(total_impulse<Real>(swept, impulse) - impulse.normal * swept.normal);
+        }
+        return memory;
+    }
+
+  private:
+    template <class Row>
+    static auto& in_sweep(Row& row)
+    {
+        if constexpr (has_restitution) {
+            return row.in_sweep;
+        } else {
+            return row;
+        }
+    }
+    /// K = J M^-1 J^T of the contact point, for all directions.
+    template <class Vector, class A, class B>
+    static auto point_response(const A& a, const Vector& arm_a, const B& b, const Vector& arm_b)
+    {
+        return inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b);
+    }
+    /// 1 / (J M^-1 J^T) along a direction, from K of the point.
+    template <class Vector, class Symmetric>
+    static auto effective_mass_along(const Vector& direction, const Symmetric& k)
+    {
+        return inverse_or_zero(dot(direction, k * direction));
+    }
+    template <class Real, class Row, class A, class B>
+    static Real normal_effective_mass(const Row& row, const A& a, const B& b)
+    {
+        if constexpr (requires { row.normal_effective_mass; }) {
+            return row.normal_effective_mass;
+        } else {
+            return effective_mass_along(row.normal, point_response(a, row.arm_a, b, row.arm_b));
+        }
+    }
+    // With J the row of the normal: J v, J times the displacement since the step began, and v += M^-1 J^T lambda.
+    template <class Real, class Row, class A, class B>
+    static Real speed(const Row& row, const A& a, const B& b)
+    {
+        if constexpr (smooth) {
+            return speed_along(b, row.normal, row.lever_b) - speed_along(a, row.normal, row.lever_a);
+        } else {
+            return dot(row.normal, velocity_at(b, row.arm_b) - velocity_at(a, row.arm_a));
+        }
+    }
+    template <class Real, class Row, class A, class B>
+    static Real moved(const Row& row, const A& a, const B& b)
+    {
+        if constexpr (smooth) {
+            return moved_along(b, row.normal, row.lever_b) - moved_along(a, row.normal, row.lever_a);
+        } else {
+            return dot(row.normal, displacement_at(b, row.arm_b) - displacement_at(a, row.arm_a));
+        }
+    }
+    template <class Real, class Row, class A, class B>
+    static void push(const Row& row, const Real& lambda, A& a, B& b)
+    {
+        if constexpr (smooth) {
+            push_along(a, row.normal, row.lever_a, -lambda);
+            push_along(b, row.normal, row.lever_b, lambda);
+        } else {
+            const auto both = lambda * row.normal;
+            apply_impulse(a, row.arm_a, -both);
+            apply_impulse(b, row.arm_b, both);
+        }
+    }
+
+    template <class Real, class Row, class Impulse, class A, class B>
+    static void push_normal(const Row& row, const Real& wanted, Impulse& impulse, A& a, B& b)
+    {
+        const Real change = wanted - impulse.normal;
+        impulse.normal = wanted;
+        if constexpr (has_restitution) impulse.peak = maximum(impulse.peak, wanted);
+        push<Real>(row, change, a, b);
+    }
+
+    template <class Real, class Row, class Impulse, class A, class B>
+    static void solve_friction(const Row& row, Impulse& impulse, A& a, B& b)
+    {
+        const auto slip = velocity_at(b, row.arm_b) - velocity_at(a, row.arm_a);
+        const Real bound = row.friction * impulse.normal;
+        if constexpr (requires { row.tangent; }) {
+            const Vec3<Real> t2 = cross(row.normal, row.tangent);
+            const Vec2<Real> old = impulse.tangent;
+            const Real slip1 = dot(row.tangent, slip), slip2 = dot(t2, slip);
+            const Vec2<Real>& effective_mass = row.tangent_effective_mass;
+            const Real first = old.x - effective_mass.x * slip1;
+            impulse.tangent = bounded_impulse(Vec2<Real>{first, old.y - effective_mass.y * slip2},
+                                              Vec2<Real>{first, old.y - effective_mass.x * slip2}, bound);
+            const Vec2<Real> change = impulse.tangent - old;
+            const Vec3<Real> push = change.x * row.tangent + change.y * t2;
+            apply_impulse(a, row.arm_a, -push);
+            apply_impulse(b, row.arm_b, push);
+        } else {
+            const Vec2<Real> t = tangent_of(row.normal);
+            const Real effective_mass = effective_mass_along(t, point_response(a, row.arm_a, b, row.arm_b));
+            const Real free = impulse.tangent - effective_mass * dot(t, slip);
+            const Real held = maximum(minimum(free, bound), -bound);
+            const Vec2<Real> push = (held - impulse.tangent) * t;
+            impulse.tangent = held;
+            apply_impulse(a, row.arm_a, -push);
+            apply_impulse(b, row.arm_b, push);
+        }
+    }
+};
+
+using SmoothContact = ContactKind<Touch::smooth>;
+using RoughContact = ContactKind<Touch::rough>;
+using BouncingContact = ContactKind<Touch::bouncing>;
+
+/// The constraint types of this header, in the order of Touch.
+using ContactTypes = TypeList<SmoothContact, RoughContact, BouncingContact>;
+
+}  // namespace motley

@@ -1,0 +1,403 @@
+// A drive: limits, motor and spring on one coordinate C of two frames.
+//
+//   slide   C = x_a . d, d = p_b - p_a        row [-x_a, -(r_a + d) x x_a, x_a, r_b x x_a]
+//   twist   C = 2 atan2(v . x, w), q = q_a* q_b, w >= 0    row [0, -t, 0, t], t = (x_a + x_b) / (1 + x_a . x_b)
+//   euler   n = z_b x x_a:   x: C = atan2(-y_a . z_b, z_a . z_b),  t = n x z_b / n^2
+//                            y: C = atan2(x_a . z_b, |n|),         t = n / |n|
+//                            z: C = atan2(-x_a . y_b, x_a . x_b),  t = x_a x n / n^2
+//
+// Symbols: p, r: anchors and their arms; x, y, z: axes of the frames of a and b; q = (v, w): rotation of frame b in
+// frame a from those of the frames, q_a and q_b; t: axis of the angular row.
+//
+// A rotor of inertia I_r that is geared to C moves with the bodies along the row. With K = J M^-1 J^T and
+// s = 1 / (1 + K I_r) an impulse along the row changes the speed by K s times the impulse, and the bodies get the share
+// s of it. A change of the bodies' speed by other constraints since then is shared with the rotor first: the share s of
+// it remains.
+//
+// One row and up to three impulses along it: that of the motor, bounded by its force times the substep h; that of the
+// spring, soft; and that of the limit, >= 0 at the lower end and <= 0 at the upper. They are solved one after another
+// on a speed that each updates, so bodies are read and written once. Parts that a drive lacks are switched off by
+// masks, so that drives with and without them share a block.
+#pragma once
+
+#include <cmath>
+
+#include "contract/constraint_type.h"
+#include "contract/type_list.h"
+#include "maths/lane_softness.h"
+#include "maths/limit.h"
+#include "motley/core/constraints/drive_definition.h"
+#include "motley/core/invalid_input.h"
+#include "stores/if_needed.h"
+
+namespace motley {
+
+template <DriveAxis drive_axis>
+struct Drive : ConstraintTraits {
+    using Definition = DriveDefinition<drive_axis>;
+    static constexpr bool needs_bodies_that_turn = true;
+    static constexpr bool slides = drive_axis == DriveAxis::slide;
+    static constexpr bool is_euler = drive_axis == DriveAxis::euler;
+    /// Few joints have Euler angles.
+    static constexpr bool is_rare = is_euler;
+    /// Replaces an infinite limit: too far to be reached, small enough for results to stay finite.
+    static constexpr float far_away = 1e12F;
+    static constexpr float half_turn = 3.14159265F;
+
+    /// Only slides have positions of frames, arms and levers. Rotations act about their axis wherever that is.
+    template <class Real>
+    struct Anchors {
+        Vec3<Real> position_a, position_b;
+    };
+    template <class Real>
+    struct Arms {
+        Vec3<Real> a, b, separation;
+    };
+    template <class Real>
+    struct Levers {
+        Vec3<Real> a, b;
+    };
+
+    /// Which Euler angle the drive acts on: 1 for it, 0 for the others.
+    template <class Real>
+    struct Which {
+        Real x, y, z;
+    };
+
+    template <class Real>
+    struct Parameters {
+        Quat<Real> rotation_a, rotation_b;
+        Real lower, upper;
+        Real motor_speed, motor_max_force;
+        Real spring_hertz, spring_damping_ratio;
+        Real spring_stiffness, spring_damping;
+        Real spring_target, spring_max_force;
+        Real armature;
+        [[no_unique_address]] IfNeeded<slides, Anchors<Real>> anchors;
+        [[no_unique_address]] IfNeeded<is_euler, Which<Real>, 1> which;
+    };
+    template <class Real>
+    struct Memory {
+        Real motor, spring, limit;  ///< N s or N m s
+    };
+    /// What a sweep reads of a row.
+    template <class Real>
+    struct InSweep {
+        Real lower, upper;
+        Real motor_speed, motor_max_impulse;
+        Real spring_target, spring_max_impulse;
+        Real spring_rate;
+        Real armature;  ///< I_r
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Row {
+        [[no_unique_address]] IfNeeded<slides, Arms<Real>> start_arms;
+        Quat<Real> start_frame_a, start_frame_b;
+        [[no_unique_address]] IfNeeded<is_euler, Which<Real>, 1> which;
+        SpringSoftness<Real> spring;
+        InSweep<Real> in_sweep;
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct SubstepRow {
+        Vec3<Real> axis;  ///< x_a or t
+        [[no_unique_address]] IfNeeded<slides, Levers<Real>> levers;
+        Real response, effective_mass;            ///< K s and its inverse
+        Real share;                               ///< s
+        Real value;                               ///< C
+        Real spring_effective_mass, spring_kept;  ///< see SoftRow
+        Real start_speed;                         ///< of the rotor when the substep began
+    };
+    template <class Real, BodyKind a, BodyKind b>
+    struct Impulse {
+        Real motor, spring, limit;
+        Real rotor_speed;  ///< m/s or rad/s: not an impulse, but the speed that the last sweep left
+    };
+
+    static void validate(const Definition& drive, const JointBodies& bodies)
+    {
+        check_joint_frame("frame_a", drive.frame_a, bodies.model_a, bodies.fixed_a);
+        check_joint_frame("frame_b", drive.frame_b, bodies.model_b, bodies.fixed_b);
+        const float most = slides ? largest_length : half_turn;
+        const char* range = slides ? "-1e9 to 1e9 (m) or infinite" : "-pi to pi (rad) or infinite";
+        if (!std::isinf(drive.lower)) check_range("lower", drive.lower, -most, most, range);
+        if (!std::isinf(drive.upper)) check_range("upper", drive.upper, -most, most, range);
+        if (!(drive.lower <= drive.upper)) refuse("lower", drive.lower, "at most upper");
+        if (is_euler && !(drive.angle >= EulerAngle::x && drive.angle <= EulerAngle::z))
+            refuse("angle", static_cast<double>(drive.angle), "x, y or z");
+        check_range("motor_speed", drive.motor_speed, -1e9F, 1e9F, "a finite value from -1e9 to 1e9");
+        check_range("motor_max_force", drive.motor_max_force, 0, 1e12F, "a finite value from 0 to 1e12");
+        check_range("spring_hertz", drive.spring_hertz, 0, 1e6F, "0 (no spring) or up to 1e6 (Hz)");
+        check_range("spring_damping_ratio", drive.spring_damping_ratio, 0, 1e6F, "0 to 1e6");
+        check_range("spring_stiffness", drive.spring_stiffness, 0, 1e12F,
+                    slides ? "0 to 1e12 (N/m)" : "0 to 1e12 (N m/rad)");
+        check_range("spring_damping", drive.spring_damping, 0, 1e12F,
+                    slides ? "0 to 1e12 (N s/m)" : "0 to 1e12 (N m s/rad)");
+        if (drive.spring_hertz > 0 && (drive.spring_stiffness > 0 || drive.spring_damping > 0)) {
+            refuse("spring_hertz", drive.spring_hertz,
+                   "0 where spring_stiffness or spring_damping say what the spring is");
+        }
+        check_range("armature", drive.armature, 0, 1e10F, slides ? "0 to 1e10 (kg)" : "0 to 1e10 (kg m2)");
+        check_range("spring_target", drive.spring_target, -most, most,
+                    slides ? "-1e9 to 1e9 (m)" : "-pi to pi (rad)");
+        check_bound("spring_max_force", drive.spring_max_force);
+    }
+    static bool locks_place(const Definition& drive) { return slides && drive.lower == drive.upper; }
+    static Parameters<float> parameters(const Definition& drive)
+    {
+        Parameters<float> parameters{unit(drive.frame_a.rotation),
+                                     unit(drive.frame_b.rotation),
+                                     std::fmax(drive.lower, -far_away),
+                                     std::fmin(drive.upper, far_away),
+                                     drive.motor_speed,
+                                     drive.motor_max_force,
+                                     drive.spring_hertz,
+                                     drive.spring_damping_ratio,
+                                     drive.spring_stiffness,
+                                     drive.spring_damping,
+                                     drive.spring_target,
+                                     std::fmin(drive.spring_max_force, largest_force),
+                                     drive.armature,
+                                     {},
+                                     {}};
+        if constexpr (slides) parameters.anchors = {drive.frame_a.position, drive.frame_b.position};
+        if constexpr (is_euler) {
+            const auto share = [&](EulerAngle angle) { return drive.angle == angle ? 1.0F : 0.0F; };
+            parameters.which = {share(EulerAngle::x), share(EulerAngle::y), share(EulerAngle::z)};
+        }
+        return parameters;
+    }
+
+    template <class Start, class Real, class A, class B>
+    static auto prepare(const Start& start, const Parameters<Real>& drive, const Memory<Real>& memory,
+                        const A& a, const B& b, Impulse<Real, A::kind, B::kind>& impulse)
+    {
+        const StepConstants& step = start.step();
+        const JointPose<Real, A::kind, B::kind> pose = start.pose();
+        Row<Real, A::kind, B::kind> row;
+        if constexpr (slides) {
+            row.start_arms.a = to_world(pose.orientation_a, drive.anchors.position_a);
+            row.start_arms.b = to_world(pose.orientation_b, drive.anchors.position_b);
+            row.start_arms.separation = pose.between + row.start_arms.b - row.start_arms.a;
+        }
+        row.start_frame_a = to_world(pose.orientation_a, drive.rotation_a);
+        row.start_frame_b = to_world(pose.orientation_b, drive.rotation_b);
+        if constexpr (is_euler) row.which = drive.which;
+        row.in_sweep.lower = drive.lower;
+        row.in_sweep.upper = drive.upper;
+        row.in_sweep.motor_speed = drive.motor_speed;
+        row.in_sweep.motor_max_impulse = Real(step.substep) * drive.motor_max_force;
+        row.in_sweep.spring_target = drive.spring_target;
+        row.in_sweep.spring_max_impulse = Real(step.substep) * drive.spring_max_force;
+        row.spring = spring_softness(step, drive.spring_hertz, drive.spring_damping_ratio,
+                                     drive.spring_stiffness, drive.spring_damping);
+        row.in_sweep.spring_rate = row.spring.rate;
+        row.in_sweep.armature = drive.armature;
+        const Real warm(step.warm_start_scale);
+        impulse.motor = warm * memory.motor;
+        impulse.spring = warm * memory.spring;
+        impulse.limit = warm * memory.limit;
+        SubstepRow<Real, A::kind, B::kind> here;
+        build<Real>(row, here, a, b);
+        impulse.rotor_speed = speed_of(here, a, b);
+        return row;
+    }
+
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static void prepare_substep(const Row& row, const Impulse& impulse, Substep& substep, const A& a,
+                                const B& b)
+    {
+        build<Real>(row, substep, a, b);
+        substep.start_speed = impulse.rotor_speed;
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
+    {
+        push(substep, impulse.motor + impulse.spring + impulse.limit, a, b);
+    }
+
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static void solve(const StepConstants& step, const Row& in_sweep, const Substep& substep,
+                      Impulse& impulse, A& a, B& b)
+    {
+        const Real before = impulse.motor + impulse.spring + impulse.limit;
+        Real speed = speed_of(substep, a, b);
+        const Real excess = speed - impulse.rotor_speed;
+        const Real to_rotor = in_sweep.armature * substep.share * excess;
+        speed = select(in_sweep.armature > Real(0), impulse.rotor_speed + substep.share * excess, speed);
+
+        const auto change_to = [&](Real& held, const Real& wanted) {
+            speed = speed + substep.response * (wanted - held);
+            held = wanted;
+        };
+        change_to(
+            impulse.spring,
+            spring_impulse(
+                SoftRow<Real>{in_sweep.spring_rate, substep.spring_effective_mass, substep.spring_kept},
+                substep.value - in_sweep.spring_target, speed, impulse.spring, in_sweep.spring_max_impulse));
+        const Real motor = impulse.motor - substep.effective_mass * (speed - in_sweep.motor_speed);
+        change_to(impulse.motor,
+                  maximum(minimum(motor, in_sweep.motor_max_impulse), -in_sweep.motor_max_impulse));
+        change_to(impulse.limit, range_impulse(step, substep.value, in_sweep.lower, in_sweep.upper, speed,
+                                               substep.effective_mass, impulse.limit));
+
+        impulse.rotor_speed = speed;
+        push(substep, substep.share * (impulse.motor + impulse.spring + impulse.limit - before) - to_rotor, a,
+             b);
+    }
+
+    template <class Real, class Row, class A, class B>
+    static void project(const StepConstants&, const Row& row, A& a, B& b)
+    {
+        SubstepRow<Real, A::kind, B::kind> now;
+        build<Real>(row, now, a, b);
+        const Real lambda = -(now.share * now.effective_mass *
+                              beyond_range(now.value, row.in_sweep.lower, row.in_sweep.upper));
+        if constexpr (slides) {
+            displace(a, -(lambda * now.axis), -(lambda * now.levers.a));
+            displace(b, lambda * now.axis, lambda * now.levers.b);
+        } else {
+            const Vec3<Real> none{Real(0), Real(0), Real(0)};
+            displace(a, none, -(lambda * now.axis));
+            displace(b, none, lambda * now.axis);
+        }
+    }
+
+    template <class Real, class Row, class Impulse, class End>
+    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
+    {
+        return {impulse.motor, impulse.spring, impulse.limit};
+    }
+
+    template <class Real, class Row, class Substep, class Impulse>
+    static Wrench<Real> wrench(const Row& row, const Substep& substep, const Impulse& impulse)
+    {
+        const Vec3<Real> none{Real(0), Real(0), Real(0)};
+        const Real to_rotor = row.in_sweep.armature * (impulse.rotor_speed - substep.start_speed);
+        const Vec3<Real> effort = (impulse.motor + impulse.spring + impulse.limit - to_rotor) * substep.axis;
+        return slides ? Wrench<Real>{effort, none} : Wrench<Real>{none, effort};
+    }
+
+    /// Errors: how far C is beyond its limits, from the present poses, in double.
+    static JointReport report(const Definition& drive, const Memory<float>& memory, const BodyState& a,
+                              const BodyState& b)
+    {
+        const Quat<double> frame_a = a.orientation * unit(convert<double>(drive.frame_a.rotation));
+        const Quat<double> frame_b = b.orientation * unit(convert<double>(drive.frame_b.rotation));
+        const Vec3<double> d = anchor_separation(a, b, drive.frame_a.position, drive.frame_b.position);
+        const double value = slides     ? dot(axis_x(frame_a), d)
+                             : is_euler ? euler_angle(drive.angle, frame_a, frame_b)
+                                        : twist_of(conjugate(frame_a) * frame_b);
+        const double wrong = std::fmax(0.0, std::fmax(static_cast<double>(drive.lower) - value,
+                                                      value - static_cast<double>(drive.upper)));
+        JointReport report;
+        (slides ? report.error : report.angle_error) = static_cast<float>(wrong);
+        if (memory.limit != 0) {
+            report.state = memory.limit > 0 ? JointState::lower : JointState::upper;
+        } else if (drive.motor_max_force > 0 || drive.has_spring()) {
+            report.state = JointState::active;
+        }
+        return report;
+    }
+
+  private:
+    static double twist_of(const Quat<double>& q)
+    {
+        return 2 * std::atan2(q.w < 0 ? -q.x : q.x, std::abs(q.w));
+    }
+    static double euler_angle(EulerAngle angle, const Quat<double>& frame_a, const Quat<double>& frame_b)
+    {
+        const Vec3<double> x_a = axis_x(frame_a), z_b = axis_z(frame_b), n = cross(z_b, x_a);
+        if (angle == EulerAngle::x) return std::atan2(-dot(axis_y(frame_a), z_b), dot(axis_z(frame_a), z_b));
+        if (angle == EulerAngle::y) return std::atan2(dot(x_a, z_b), std::sqrt(dot(n, n)));
+        return std::atan2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));
+    }
+    /// t and C of the Euler angle of each lane.
+    template <class Real, class Substep>
+    static void build_euler(const Which<Real>& which, const Quat<Real>& frame_a, const Quat<Real>& frame_b,
+                            Substep& substep)
+    {
+        const Vec3<Real> x_a = axis_x(frame_a), z_b = axis_z(frame_b), n = cross(z_b, x_a);
+        // t must never be shorter than 1, or the impulse that reaches a given speed along it would grow without bound.
+        // Within 1.5 degrees of a right angle of y the length of t of x and z, 1 / |n|, is held at 38.
+        const Real over_length = Real(1) / square_root(maximum(dot(n, n), Real(1e-30F)));
+        const Real steepness = minimum(over_length, Real(38));
+        substep.axis = (which.x * steepness * over_length) * cross(n, z_b) + (which.y * over_length) * n +
+                       (which.z * steepness * over_length) * cross(x_a, n);
+        const Real x = full_arc_tangent2(-dot(axis_y(frame_a), z_b), dot(axis_z(frame_a), z_b)),
+                   y = arc_tangent2(dot(x_a, z_b), square_root(dot(n, n))),
+                   z = full_arc_tangent2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));
+        substep.value = which.x * x + which.y * y + which.z * z;
+    }
+
+    template <class Real, class Row, class Substep, class A, class B>
+    static void build(const Row& row, Substep& substep, const A& a, const B& b)
+    {
+        const Quat<Real> frame_a = turn_of(a) * row.start_frame_a;
+        if constexpr (slides) {
+            const Vec3<Real> arm_a = rotate(turn_of(a), row.start_arms.a),
+                             arm_b = rotate(turn_of(b), row.start_arms.b);
+            const Vec3<Real> d = anchor_error(row.start_arms.separation, row.start_arms.a, row.start_arms.b,
+                                              arm_a, arm_b, a, b);
+            substep.axis = axis_x(frame_a);
+            substep.levers.a = cross(arm_a + d, substep.axis);
+            substep.levers.b = cross(arm_b, substep.axis);
+            substep.value = dot(substep.axis, d);
+            substep.response = dot(substep.axis, over_mass(a, substep.axis) + over_mass(b, substep.axis)) +
+                               dot(substep.levers.a, over_inertia(a, substep.levers.a)) +
+                               dot(substep.levers.b, over_inertia(b, substep.levers.b));
+        } else {
+            const Quat<Real> frame_b = turn_of(b) * row.start_frame_b;
+            if constexpr (is_euler) {
+                build_euler(row.which, frame_a, frame_b, substep);
+            } else {
+                const Quat<Real> q = relative_rotation(frame_a, frame_b);
+                const Vec3<Real> x_a = axis_x(frame_a), x_b = axis_x(frame_b);
+                // In a hinge the axes are nearly parallel. Without one they may be opposite, where there is no twist.
+                const Real scale = Real(1) / maximum(Real(1) + dot(x_a, x_b), Real(0.01F));
+                substep.axis = scale * (x_a + x_b);
+                substep.value = Real(2) * arc_tangent2(q.x, q.w);
+            }
+            substep.response =
+                dot(substep.axis, over_inertia(a, substep.axis) + over_inertia(b, substep.axis));
+        }
+        const Real size = slides ? linear_size(a) + linear_size(b) : angular_size(a) + angular_size(b);
+        const auto usable = substep.response > Real(rounding_share) * size;
+        const Real effective_mass = select(usable, inverse_or_zero(substep.response), Real(0));
+        substep.share =
+            select(usable, Real(1) / (Real(1) + substep.response * row.in_sweep.armature), Real(1));
+        substep.response = substep.share * substep.response;
+        substep.effective_mass = select(usable, effective_mass + row.in_sweep.armature, Real(0));
+        const SoftRow<Real> spring = soft_row(row.spring, substep.response, substep.effective_mass);
+        substep.spring_effective_mass = spring.effective_mass;
+        substep.spring_kept = spring.kept;
+    }
+
+    template <class Substep, class A, class B>
+    static auto speed_of(const Substep& substep, const A& a, const B& b)
+    {
+        if constexpr (slides) {
+            return dot(substep.axis, linear_of(b) - linear_of(a)) + dot(substep.levers.b, angular_of(b)) -
+                   dot(substep.levers.a, angular_of(a));
+        } else {
+            return dot(substep.axis, angular_of(b) - angular_of(a));
+        }
+    }
+
+    template <class Real, class Substep, class A, class B>
+    static void push(const Substep& substep, const Real& lambda, A& a, B& b)
+    {
+        if constexpr (slides) {
+            apply_wrench(a, -(lambda * substep.axis), -(lambda * substep.levers.a));
+            apply_wrench(b, lambda * substep.axis, lambda * substep.levers.b);
+        } else {
+            apply_turn(a, -(lambda * substep.axis));
+            apply_turn(b, lambda * substep.axis);
+        }
+    }
+};
+
+/// The constraint types of this header.
+using DriveTypes = TypeList<Drive<DriveAxis::slide>, Drive<DriveAxis::twist>, Drive<DriveAxis::euler>>;
+
+}  // namespace motley

@@ -1,0 +1,125 @@
+// Ranges and messages for the values that a host gives for bodies.
+#include "scene/body_checks.h"
+
+#include <cmath>
+#include <string>
+
+#include "contract/built.h"
+#include "motley/core/invalid_input.h"
+
+namespace motley {
+namespace {
+
+constexpr float largest_speed = 1e9F;
+constexpr double largest_position = 1e12;
+
+void check_moment(const char* field, float moment)
+{
+    if (!(moment >= least_moment && moment <= most_moment)) refuse(field, moment, "1e-20 to 1e20 (kg m2)");
+}
+
+}  // namespace
+
+bool is_finite(const Vec3<float>& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+void check(const char* field, double value, double low, double high, const char* expected)
+{
+    if (!(value >= low && value <= high)) refuse(field, value, expected);  // NaN fails too
+}
+
+void check_position(const char* who, const Vec3<double>& p)
+{
+    const std::string name(who);
+    const char* expected = "a finite value from -1e12 to 1e12 (m)";
+    check((name + ".x").c_str(), p.x, -largest_position, largest_position, expected);
+    check((name + ".y").c_str(), p.y, -largest_position, largest_position, expected);
+    check((name + ".z").c_str(), p.z, -largest_position, largest_position, expected);
+}
+
+void check_vector(const char* who, const Vec3<float>& v, float limit, const char* expected)
+{
+    const std::string name(who);
+    check((name + ".x").c_str(), v.x, -limit, limit, expected);
+    check((name + ".y").c_str(), v.y, -limit, limit, expected);
+    check((name + ".z").c_str(), v.z, -limit, limit, expected);
+}
+
+void check_velocity_of(BodyModel model, BodyMotion motion, const Vec3<float>* linear,
+                       const Vec3<float>* angular)
+{
+    if (motion == BodyMotion::static_body) {
+        if (linear) check_vector("linear_velocity", *linear, 0, "0 of a static body (m/s)");
+        if (angular) check_vector("angular_velocity", *angular, 0, "0 of a static body (rad/s)");
+        return;
+    }
+    if (linear)
+        check_vector("linear_velocity", *linear, largest_speed, "a finite value from -1e9 to 1e9 (m/s)");
+    if (angular)
+        check_vector("angular_velocity", *angular, largest_speed, "a finite value from -1e9 to 1e9 (rad/s)");
+    if (motion == BodyMotion::kinematic_body) return;
+    if (model == BodyModel::planar) {
+        if (linear) check("linear_velocity.z", linear->z, 0, 0, "0 of a planar body (m/s)");
+        if (angular) check("angular_velocity.x", angular->x, 0, 0, "0 of a planar body (rad/s)");
+        if (angular) check("angular_velocity.y", angular->y, 0, 0, "0 of a planar body (rad/s)");
+    } else if (model == BodyModel::particle && angular) {
+        check_vector("angular_velocity", *angular, 0, "0 of a particle (rad/s)");
+    }
+}
+
+/// The principal moments of a real body, the eigenvalues of its tensor m, obey A + B >= C: none exceeds half of the
+/// trace. Checked by tr(m)/2 I - m being positive semi-definite, which needs no eigenvalues.
+void check_inertia(const Sym3<float>& inertia)
+{
+    const double xx = inertia.xx, xy = inertia.xy, xz = inertia.xz, yy = inertia.yy, yz = inertia.yz,
+                 zz = inertia.zz;
+    const double sum = xx + xy + xz + yy + yz + zz;
+    if (!std::isfinite(sum)) refuse("BodyDefinition.inertia", sum, "finite components (kg m2)");
+    check_moment("BodyDefinition.inertia.xx", inertia.xx);
+    check_moment("BodyDefinition.inertia.yy", inertia.yy);
+    check_moment("BodyDefinition.inertia.zz", inertia.zz);
+    const double trace = xx + yy + zz;
+    const double minor = xx * yy - xy * xy;
+    const double full = determinant(Sym3<double>{xx, xy, xz, yy, yz, zz});
+    if (!(minor > 0) || !(full > 0)) {
+        refuse("BodyDefinition.inertia", full, "a positive definite tensor (determinant above 0)");
+    }
+    const double half = trace / 2 * (1 + 1e-5);  // room for float rounding: a thin rod is on the boundary
+    const Sym3<double> rest{half - xx, -xy, -xz, half - yy, -yz, half - zz};
+    const double scale = trace * trace * trace;
+    const double edge = -1e-12;
+    if (rest.xx < edge * trace || rest.yy < edge * trace || rest.zz < edge * trace ||
+        rest.xx * rest.yy - rest.xy * rest.xy < edge * trace * trace || determinant(rest) < edge * scale) {
+        refuse("BodyDefinition.inertia", trace, "moments that obey the triangle inequality A + B >= C");
+    }
+}
+
+void check_definition(const BodyDefinition& d)
+{
+    if (d.model > BodyModel::rigid) {
+        refuse("BodyDefinition.model", static_cast<double>(d.model), "particle, planar or rigid");
+    }
+    if (d.motion > BodyMotion::static_body) {
+        refuse("BodyDefinition.motion", static_cast<double>(d.motion),
+               "dynamic_body, kinematic_body or static_body");
+    }
+    check_position("BodyDefinition.position", d.position);
+    check("BodyDefinition.yaw", d.yaw, -1e9, 1e9, "a finite value from -1e9 to 1e9 (rad)");
+    const bool fixed = d.motion != BodyMotion::dynamic_body;
+    const Quat<double>& q = d.orientation;
+    const double length2 = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+    if (fixed || d.model == BodyModel::rigid) {
+        check("BodyDefinition.orientation", length2, 1e-12, 1e12,
+              "a quaternion with a length from 1e-6 to 1e6 (squared shown)");
+    }
+    check_velocity_of(d.model, d.motion, &d.linear_velocity, &d.angular_velocity);
+    if (fixed) return;
+    check_model_is_built(d.model);
+    check("BodyDefinition.mass", d.mass, lightest_body, heaviest_body, "1e-10 to 1e10 (kg)");
+    if (d.model == BodyModel::planar) check_moment("BodyDefinition.inertia.zz", d.inertia.zz);
+    if (d.model == BodyModel::rigid) check_inertia(d.inertia);
+}
+
+}  // namespace motley

@@ -1,0 +1,81 @@
+// The checks that joint definitions share.
+#include "scene/joint_checks.h"
+
+#include <limits>
+#include <string>
+
+#include "motley/core/invalid_input.h"
+
+namespace motley {
+
+void check_range(std::string_view field, float value, float low, float high, std::string_view expected)
+{
+    // Written so that NaN fails.
+    if (!(value >= low && value <= high)) refuse(field, value, expected);
+}
+
+void check_bound(std::string_view field, float value)
+{
+    check_range(field, value, 0, std::numeric_limits<float>::infinity(),
+                ">= 0 (N or N m), infinite for none");
+}
+
+void check_length_range(std::string_view definition, float min_length, float max_length)
+{
+    const std::string name(definition);
+    check_range(name + ".min_length", min_length, 0, largest_length, "0 to max_length, at most 1e9 (m)");
+    if (!std::isinf(max_length))
+        check_range(name + ".max_length", max_length, 0, largest_length, "0 to 1e9 (m) or infinite");
+    if (!(min_length <= max_length)) refuse(name + ".min_length", min_length, "at most max_length");
+}
+
+void check_anchor(std::string_view field, const Vec3<float>& anchor, BodyModel model, bool fixed)
+{
+    const float components[3] = {anchor.x, anchor.y, anchor.z};
+    const char* names[3] = {".x", ".y", ".z"};
+    const bool needs_zero = model == BodyModel::particle && !fixed;
+    for (int i = 0; i < 3; ++i) {
+        const std::string name = std::string(field) + names[i];
+        if (needs_zero) {
+            check_range(name, components[i], 0, 0,
+                        "0 on a particle, which has no orientation to carry an anchor (m)");
+        } else {
+            check_range(name, components[i], -largest_length, largest_length,
+                        "a finite value from -1e9 to 1e9 (m)");
+        }
+    }
+}
+
+void check_world_point(std::string_view field, const Vec3<double>& point)
+{
+    const double components[3] = {point.x, point.y, point.z};
+    const char* names[3] = {".x", ".y", ".z"};
+    for (int i = 0; i < 3; ++i) {
+        if (!(std::abs(components[i]) <= 1e9))
+            refuse(std::string(field) + names[i], components[i], "a finite value from -1e9 to 1e9 (m)");
+    }
+}
+
+void check_direction(std::string_view field, const Vec3<float>& direction)
+{
+    check_range(field, dot(direction, direction), 1e-12F, 1e12F,
+                "a vector with a length from 1e-6 to 1e6 (squared shown)");
+}
+
+void check_turns(std::string_view field, BodyModel model, bool fixed)
+{
+    if (model == BodyModel::particle && !fixed)
+        refuse(field, "on a particle", "a body that turns: rigid, planar, static or kinematic");
+}
+
+void check_joint_frame(std::string_view field, const JointFrame& frame, BodyModel model, bool fixed)
+{
+    const std::string name(field);
+    check_turns(name, model, fixed);
+    check_anchor(name + ".position", frame.position, model, fixed);
+    const Quat<float>& q = frame.rotation;
+    check_range(name + ".rotation", q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 1e-12F, 1e12F,
+                "a quaternion with a length from 1e-6 to 1e6 (squared shown)");
+}
+
+}  // namespace motley

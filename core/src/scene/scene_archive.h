@@ -1,0 +1,176 @@
+// Every field of a scene that outlives a step and does not follow from others, named once for writing and reading
+// alike.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "scene/scene_core.h"
+#include "stores/joint_store.h"
+
+namespace motley {
+
+/// Writes fields as bytes.
+class ArchiveWriter {
+  public:
+    static constexpr bool reads = false;
+    std::vector<std::byte> bytes;
+
+    template <class T>
+    void operator()(const T& value)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        append(&value, sizeof value);
+    }
+    template <class T, class Allocator>
+    void operator()(const std::vector<T, Allocator>& values)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        (*this)(static_cast<std::uint64_t>(values.size()));
+        append(values.data(), values.size() * sizeof(T));
+    }
+
+  private:
+    void append(const void* from, std::size_t size)
+    {
+        const auto* first = static_cast<const std::byte*>(from);
+        bytes.insert(bytes.end(), first, first + size);
+    }
+};
+
+/// Reads fields from bytes. Throws std::runtime_error rather than read past the end.
+class ArchiveReader {
+  public:
+    static constexpr bool reads = true;
+    explicit ArchiveReader(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+    template <class T>
+    void operator()(T& value)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        take(&value, sizeof value);
+    }
+    template <class T, class Allocator>
+    void operator()(std::vector<T, Allocator>& values)
+    {
+        std::uint64_t count = 0;
+        (*this)(count);
+        if (count > rest_.size() / sizeof(T)) throw std::runtime_error("ends in the middle of a list");
+        values.resize(static_cast<std::size_t>(count));
+        take(values.data(), values.size() * sizeof(T));
+    }
+    [[nodiscard]] bool is_done() const { return rest_.empty(); }
+
+  private:
+    std::span<const std::byte> rest_;
+    void take(void* to, std::size_t size)
+    {
+        if (size > rest_.size()) throw std::runtime_error("ends in the middle of a field");
+        if (size > 0) std::memcpy(to, rest_.data(), size);
+        rest_ = rest_.subspan(size);
+    }
+};
+
+/// A friend of Scene and BodyStore that reads and writes their private fields.
+struct SceneArchive {
+    template <class Archive, class S>
+    static void visit(Archive& archive, S& scene)
+    {
+        visit_bodies(archive, scene.bodies);
+        visit_joints(archive, *scene.joints);
+        visit_contacts(archive, scene.contacts);
+        archive(scene.island_iterations);
+        archive(scene.ground);
+        archive(scene.body_count);
+        archive(scene.last_substep);
+        archive(scene.last_step);
+        if constexpr (Archive::reads) {
+            check(scene);
+            derive(scene);
+        }
+    }
+
+  private:
+    /// Throws unless the scene is one that a host could have made: every index is valid, and bad input is refused here
+    /// by the same checks as in Scene.
+    static void check(const SceneCore& scene);
+    static void check_bodies(const SceneCore& scene);
+    static void check_joints(const SceneCore& scene);
+    /// Computes what is not stored in files.
+    static void derive(SceneCore& scene);
+
+    template <class Archive, class Store>
+    static void visit_bodies(Archive& archive, Store& bodies)
+    {
+        for (auto& rows : bodies.rows_) {
+            archive(rows.velocity);
+            archive(rows.acceleration);
+            archive(rows.pose);
+            archive(rows.orientation);
+            archive(rows.inertia);
+            archive(rows.slot);
+            archive(rows.free_rows);
+        }
+        archive(bodies.slots_);
+        archive(bodies.live_);
+        archive(bodies.models_);
+        archive(bodies.motions_);
+        archive(bodies.free_slots_);
+        archive(bodies.contained);
+        archive(bodies.inverse_masses);
+        archive(bodies.inverse_inertias);
+    }
+    template <class Archive, class Stores>
+    static void visit_joints(Archive& archive, Stores& joints)
+    {
+        joints.for_each([&](auto& store, int) {
+            archive(store.definitions);
+            archive(store.memory);
+            archive(store.wrenches);
+            archive(store.colours);
+            archive(store.slots);
+        });
+        archive(joints.slots);
+        archive(joints.free_slots);
+        archive(joints.watched);
+    }
+    /// Only the list of the last step: the table of keys does not affect results.
+    template <class Archive, class Cache>
+    static void visit_contacts(Archive& archive, Cache& cache)
+    {
+        if constexpr (Archive::reads) {
+            std::vector<ContactList::Entry> entries;
+            std::vector<std::uint8_t> colours;
+            std::vector<ContactImpulse> impulses, step_impulses;
+            archive(entries);
+            archive(colours);
+            archive(impulses);
+            archive(step_impulses);
+            if (entries.size() > UINT32_MAX / 2) throw std::runtime_error("has more contacts than fit");
+            if (colours.size() != entries.size() || impulses.size() != entries.size() ||
+                step_impulses.size() != entries.size())
+                throw std::runtime_error("has lists of different lengths");
+            if (!cache.restore(entries, colours, impulses, step_impulses))
+                throw std::runtime_error("has a contact key twice");
+        } else {
+            const ContactList& list = cache.current();
+            const auto in_use = [&](const auto& values, std::size_t from) {
+                using Value = std::remove_cvref_t<decltype(values[0])>;
+                const auto first = values.begin() + static_cast<std::ptrdiff_t>(from);
+                return std::vector<Value>(first, first + static_cast<std::ptrdiff_t>(list.count));
+            };
+            archive(in_use(list.entries, 0));
+            archive(in_use(list.colours, 0));
+            archive(in_use(list.impulses, 1));
+            archive(in_use(list.step_impulses, 0));
+        }
+    }
+};
+
+}  // namespace motley

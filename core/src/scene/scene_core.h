@@ -1,0 +1,87 @@
+// What a scene consists of. A host sees a Scene; the solver, the files and the reference open it with core_of().
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "motley/core/boxed.h"
+#include "motley/core/scene.h"
+#include "stores/body_store.h"
+#include "stores/busy_flag.h"
+#include "stores/contact_cache.h"
+
+namespace motley {
+
+struct JointBodies;
+struct JointStores;
+extern template class Boxed<JointStores>;
+
+/// At least so many sweeps of `solve` a substep for the island of a body.
+struct IslandIterations {
+    BodyId body;
+    int at_least;
+};
+
+/// Copies with its scene. Its functions are what the calls of Scene are made of.
+struct SceneCore {
+    BodyStore bodies;
+    Boxed<JointStores> joints;
+    ContactCache contacts;
+    std::vector<BreakEvent> break_events;             ///< with room for every watched joint
+    std::vector<IslandIterations> island_iterations;  ///< of bodies alive
+    BodyId ground{};
+    std::size_t body_count = 0;  ///< alive, without the ground
+    BusyFlag busy;               ///< held by a step for as long as it lasts
+    /// Seconds of the last step and of its last substep: they turn impulses into forces. 0 before the first step.
+    float last_step = 0, last_substep = 0;
+
+    [[nodiscard]] bool is_alive(ConstraintId joint) const;
+    [[nodiscard]] BodyState state(BodyId body) const;
+    [[nodiscard]] JointReport joint_report(ConstraintId joint) const;
+    /// Whether any joint or island wants more sweeps than the settings say.
+    [[nodiscard]] bool asks_for_iterations() const;
+
+    /// Makes room for a break event of each watched joint; then find_break_events() allocates nothing.
+    void make_room_for_break_events();
+    /// Finds the joints that bore more than their limit, once a step is done.
+    void find_break_events() noexcept;
+
+    // What a call refuses. `what` names the argument in the message.
+    void require_alive(BodyId body, const char* what) const
+    {
+        if (!bodies.is_alive(body)) refuse_dead(body, what);
+    }
+    void require_alive(std::span<const BodyId> named, const char* what) const;
+    [[noreturn]] static void refuse_dead(BodyId body, const char* what);
+    JointBodies check_joint_bodies(int type, BodyId a, BodyId b) const;
+    static void check_break_limit(const BreakLimit& limit);
+    static void check_wish(const char* field, int at_least);
+    void check_island_wish(const IslandIterations& asked) const;
+    void check_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular) const;
+    void require_list_of_last_step(std::span<const Contact> list, const char* what) const;
+    [[nodiscard]] std::size_t index_of_joint(ConstraintId joint, int type) const;
+
+    ConstraintId take_joint_slot(int type, std::size_t index);
+    void remove_joints_of(std::span<const BodyId> removed);
+    void remove_joint_at(int type, std::size_t index);
+    void write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular);
+    /// The mean force or torque over the last step of an impulse of that step.
+    [[nodiscard]] Vec3<float> force_of(const Vec3<float>& impulse) const;
+};
+
+/// Opens scenes.
+struct SceneAccess {
+    static SceneCore& core(Scene& scene) { return *scene.core_; }
+    static const SceneCore& core(const Scene& scene) { return *scene.core_; }
+};
+inline SceneCore& core_of(Scene& scene)
+{
+    return SceneAccess::core(scene);
+}
+inline const SceneCore& core_of(const Scene& scene)
+{
+    return SceneAccess::core(scene);
+}
+
+}  // namespace motley

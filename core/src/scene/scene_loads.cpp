@@ -1,0 +1,72 @@
+// The loads that contacts put on bodies, in bulk.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "motley/core/invalid_input.h"
+#include "scene/scene_core.h"
+
+namespace motley {
+namespace {
+
+/// Impulses of a body's contacts, N s.
+struct Borne {
+    double normal = 0, largest = 0;
+    Vec3<double> net{};
+};
+
+}  // namespace
+
+void SceneCore::require_list_of_last_step(std::span<const Contact> list, const char* what) const
+{
+    const ContactList& last = contacts.current();
+    bool same = list.size() == last.count;
+    for (std::size_t i = 0; same && i < last.count; ++i) same = last.entries[i].key == list[i].key;
+    if (!same) refuse(what, "another list", "the list of the last step");
+}
+
+void Scene::read_loads(std::span<const BodyId> bodies, std::span<const Contact> contacts,
+                       StridedSpan<BodyLoad> loads, StridedSpan<const float> circumferences) const
+{
+    if (loads.size() != bodies.size())
+        refuse("read_loads.loads.size()", static_cast<double>(loads.size()), "the size of bodies");
+    if (!circumferences.empty() && circumferences.size() != bodies.size()) {
+        refuse("read_loads.circumferences.size()", static_cast<double>(circumferences.size()),
+               "0 or the size of bodies");
+    }
+    for (std::size_t i = 0; i < circumferences.size(); ++i) {
+        if (!(circumferences[i] > 0 && circumferences[i] <= 1e9F)) {
+            refuse("read_loads.circumferences[" + std::to_string(i) + "]", circumferences[i],
+                   "above 0, to 1e9 (m)");
+        }
+    }
+    core_->require_alive(bodies, "read_loads.bodies");
+    core_->require_list_of_last_step(contacts, "read_loads.contacts");
+    std::vector<Borne> borne(core_->bodies.slot_count());
+    const std::span<const ContactImpulse> impulses = contact_impulses();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const auto normal = static_cast<double>(impulses[i].normal);
+        const Vec3<double> on_b =
+            normal * convert<double>(contacts[i].normal) + convert<double>(impulses[i].friction);
+        const auto bear = [&](BodyId body, const Vec3<double>& push) {
+            if (!core_->bodies.is_alive(body)) return;  // removed since
+            Borne& all = borne[body.slot];
+            all.normal += normal;
+            all.largest = std::max(all.largest, normal);
+            all.net = all.net + push;
+        };
+        bear(contacts[i].body_a, -on_b);
+        bear(contacts[i].body_b, on_b);
+    }
+    const double per_second = core_->last_step > 0 ? 1 / static_cast<double>(core_->last_step) : 0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const Borne& all = borne[bodies[i].slot];
+        const double force = per_second * all.normal;
+        loads[i] = {
+            static_cast<float>(force), static_cast<float>(per_second * all.largest),
+            convert<float>(per_second * all.net),
+            circumferences.empty() ? 0 : static_cast<float>(force / static_cast<double>(circumferences[i]))};
+    }
+}
+
+}  // namespace motley

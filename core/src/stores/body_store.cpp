@@ -1,0 +1,358 @@
+// Rows of bodies: added, removed, and moved at the end of a step.
+#include "stores/body_store.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stores/growth.h"
+
+namespace motley {
+namespace {
+
+void set_quad(AlignedVector<float>& rows, std::size_t quad, float x, float y, float z, float w)
+{
+    float* q = &rows[quad * 4];
+    q[0] = x;
+    q[1] = y;
+    q[2] = z;
+    q[3] = w;
+}
+
+Sym3<float> inverse_of(const Sym3<float>& m)
+{
+    const double xx = m.xx, xy = m.xy, xz = m.xz, yy = m.yy, yz = m.yz, zz = m.zz;
+    const double d = 1 / determinant(Sym3<double>{xx, xy, xz, yy, yz, zz});
+    const auto f = [d](double v) { return static_cast<float>(d * v); };
+    return {f(yy * zz - yz * yz), f(xz * yz - xy * zz), f(xy * yz - xz * yy),
+            f(xx * zz - xz * xz), f(xz * xy - xx * yz), f(xx * yy - xy * xy)};
+}
+
+/// Whether all values are finite: infinity and NaN times zero are NaN.
+bool all_finite(const float* values, int count)
+{
+    float zero = 0;
+    for (int i = 0; i < count; ++i) zero += values[i] * 0.0F;
+    return zero == 0.0F;
+}
+
+}  // namespace
+
+BodyStore::BodyStore()
+{
+    slots_.emplace_back();
+    live_.push_back(0);
+    models_.push_back(BodyModel::rigid);
+    motions_.push_back(BodyMotion::static_body);
+    first_ends.push_back(0);
+    contained.push_back(0);
+    inverse_masses.push_back(0);
+    inverse_inertias.push_back(0);
+    for (int kind = 0; kind < body_kind_count; ++kind)
+        take_row(static_cast<BodyKind>(kind));  // the null bodies
+}
+
+namespace {
+
+BodyKind kind_of(const BodyDefinition& d)
+{
+    return d.motion == BodyMotion::dynamic_body ? static_cast<BodyKind>(d.model) : BodyKind::fixed;
+}
+
+std::size_t more_than(std::size_t wanted, const std::vector<std::uint32_t>& free)
+{
+    return wanted > free.size() ? wanted - free.size() : 0;
+}
+
+}  // namespace
+
+void BodyStore::make_room(std::span<const BodyDefinition> definitions)
+{
+    std::array<std::size_t, body_kind_count> wanted{};
+    for (const BodyDefinition& d : definitions) ++wanted[static_cast<std::size_t>(kind_of(d))];
+    for (int k = 0; k < body_kind_count; ++k) {
+        const auto kind = static_cast<BodyKind>(k);
+        BodyRows& r = rows(kind);
+        const std::size_t more = more_than(wanted[static_cast<std::size_t>(k)], r.free_rows);
+        if (more == 0) continue;
+        for (AlignedVector<float>* values : {&r.velocity, &r.delta, &r.unpushed, &r.acceleration})
+            make_room_for(*values, more * 4 * static_cast<std::size_t>(quads_of(kind)));
+        make_room_for(r.pose, more);
+        make_room_for(r.slot, more);
+        if (quads_of(kind) == 2) {
+            make_room_for(r.orientation, more);
+            make_room_for(r.world_inverse_inertia, 8 * more);
+        }
+        if (kind != BodyKind::rigid) continue;
+        make_room_for(r.start_inverse_inertia, 8 * more);
+        make_room_for(r.inertia, more);
+        make_room_for(r.inverse_inertia, more);
+    }
+    const std::size_t more = more_than(definitions.size(), free_slots_);
+    if (more == 0) return;
+    make_room_for(slots_, more);
+    make_room_for(live_, more);
+    make_room_for(models_, more);
+    make_room_for(motions_, more);
+    make_room_for(first_ends, more);
+    make_room_for(contained, more);
+    make_room_for(inverse_masses, more);
+    make_room_for(inverse_inertias, more);
+}
+
+void BodyStore::make_room_to_remove(std::span<const BodyId> bodies)
+{
+    std::array<std::size_t, body_kind_count> going{};
+    for (const BodyId body : bodies) ++going[static_cast<std::size_t>(row_of(body).kind())];
+    for (std::size_t kind = 0; kind < body_kind_count; ++kind)
+        make_room_for(rows_[kind].free_rows, going[kind]);
+    make_room_for(free_slots_, bodies.size());
+}
+
+std::uint32_t BodyStore::take_row(BodyKind kind)
+{
+    BodyRows& r = rows(kind);
+    std::uint32_t row;
+    if (r.free_rows.empty()) {
+        row = r.size();
+        const std::size_t floats = static_cast<std::size_t>(quads_of(kind)) * 4 * (row + 1);
+        r.slot.push_back(0);
+        r.velocity.resize(floats);
+        r.delta.resize(floats);
+        r.unpushed.resize(floats);
+        r.acceleration.resize(floats);
+        r.pose.resize(row + 1);
+        if (kind == BodyKind::rigid || kind == BodyKind::fixed) r.orientation.resize(row + 1, {0, 0, 0, 1});
+        if (quads_of(kind) == 2) r.world_inverse_inertia.resize(std::size_t{8} * (row + 1));
+        if (kind == BodyKind::rigid) {
+            r.start_inverse_inertia.resize(std::size_t{8} * (row + 1));
+            r.inertia.resize(row + 1);
+            r.inverse_inertia.resize(row + 1);
+        }
+    } else {
+        row = r.free_rows.back();
+        r.free_rows.pop_back();
+    }
+    if (quads_of(kind) == 2) {
+        set_quad(r.delta, std::size_t{2} * row, 0, 0, 0, 0);
+        set_quad(r.delta, std::size_t{2} * row + 1, 0, 0, 0, 1);
+    }
+    return row;
+}
+
+BodyId BodyStore::add(const BodyDefinition& d)
+{
+    const bool dynamic = d.motion == BodyMotion::dynamic_body;
+    const BodyKind kind = kind_of(d);
+    const std::uint32_t row = take_row(kind);
+
+    std::uint32_t slot;
+    if (free_slots_.empty()) {
+        slot = slot_count();
+        slots_.push_back({1, BodyRow(kind, row)});
+        live_.push_back(1);
+        models_.push_back(d.model);
+        motions_.push_back(d.motion);
+        first_ends.push_back(0);
+        contained.push_back(0);
+        inverse_masses.push_back(0);
+        inverse_inertias.push_back(0);
+    } else {
+        slot = free_slots_.back();
+        free_slots_.pop_back();
+        live_[slot] = 1;
+        slots_[slot].row = BodyRow(kind, row);
+        models_[slot] = d.model;
+        motions_[slot] = d.motion;
+        first_ends[slot] = 0;
+        contained[slot] = 0;
+    }
+
+    BodyRows& r = rows(kind);
+    r.slot[row] = slot;
+    r.pose[row] = {convert<PoseReal>(d.position), static_cast<PoseReal>(d.yaw)};
+    const float inverse_mass = dynamic ? 1 / d.mass : 0.0F;
+    inverse_masses[slot] = inverse_mass;
+    inverse_inertias[slot] = kind == BodyKind::planar ? 1 / d.inertia.zz : 0.0F;
+    const Vec3<float>& v = d.linear_velocity;
+    const Vec3<float>& w = d.angular_velocity;
+    const std::size_t quad = static_cast<std::size_t>(quads_of(kind)) * row;
+    set_quad(r.acceleration, quad, 0, 0, 0, 0);
+    switch (kind) {
+        case BodyKind::particle:
+            set_quad(r.velocity, quad, v.x, v.y, v.z, inverse_mass);
+            set_quad(r.delta, quad, 0, 0, 0, 0);
+            break;
+        case BodyKind::planar:
+            set_quad(r.velocity, quad, v.x, v.y, w.z, inverse_mass);
+            set_quad(r.delta, quad, 0, 0, 0, inverse_inertias[slot]);
+            break;
+        case BodyKind::rigid:
+        case BodyKind::fixed: {
+            set_quad(r.velocity, quad, v.x, v.y, v.z, inverse_mass);
+            set_quad(r.velocity, quad + 1, w.x, w.y, w.z, 0);
+            set_quad(r.acceleration, quad + 1, 0, 0, 0, 0);
+            const Quat<double>& q = d.orientation;
+            const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+            r.orientation[row] =
+                convert<PoseReal>(Quat<double>{q.x / length, q.y / length, q.z / length, q.w / length});
+            if (kind == BodyKind::rigid) {
+                r.inertia[row] = d.inertia;
+                r.inverse_inertia[row] = inverse_of(d.inertia);
+                refresh_world_inertia(row);
+            }
+            break;
+        }
+    }
+    return {slot, slots_[slot].generation};
+}
+
+void BodyStore::remove(BodyId body)
+{
+    const BodyRow where = row_of(body);
+    BodyRows& r = rows(where.kind());
+    const std::size_t quads = static_cast<std::size_t>(quads_of(where.kind()));
+    // A free row must not move: no mass, no speed, no force, no displacement.
+    for (std::size_t q = quads * where.row(); q < quads * (where.row() + 1); ++q) {
+        set_quad(r.velocity, q, 0, 0, 0, 0);
+        set_quad(r.delta, q, 0, 0, 0, 0);
+        set_quad(r.acceleration, q, 0, 0, 0, 0);
+        if (where.kind() == BodyKind::rigid) {
+            set_quad(r.world_inverse_inertia, q, 0, 0, 0, 0);
+            set_quad(r.start_inverse_inertia, q, 0, 0, 0, 0);
+        }
+    }
+    if (contained[body.slot] != 0) --contained_count;
+    contained[body.slot] = 0;
+    r.slot[where.row()] = 0;
+    r.free_rows.push_back(where.row());
+    live_[body.slot] = 0;
+    if (++slots_[body.slot].generation == 0) slots_[body.slot].generation = 1;  // zero is the null handle's
+    free_slots_.push_back(body.slot);
+}
+
+void BodyStore::refresh_world_inertia(std::uint32_t row)
+{
+    BodyRows& r = rows(BodyKind::rigid);
+    const Sym3<float> i = rotate_tensor(convert<float>(r.orientation[row]), r.inverse_inertia[row]);
+    for (AlignedVector<float>* tensors : {&r.world_inverse_inertia, &r.start_inverse_inertia}) {
+        set_quad(*tensors, std::size_t{2} * row, i.xx, i.xy, i.xz, i.yy);
+        set_quad(*tensors, std::size_t{2} * row + 1, i.yz, i.zz, 0, 0);
+    }
+}
+
+void BodyStore::revive(BodyId body)
+{
+    const BodyRow where = row_of(body);
+    BodyRows& r = rows(where.kind());
+    contained[body.slot] = 0;
+    --contained_count;
+    r.velocity[std::size_t{4} * static_cast<std::size_t>(quads_of(where.kind())) * where.row() + 3] =
+        inverse_masses[body.slot];
+    if (where.kind() == BodyKind::planar)
+        r.delta[std::size_t{4} * where.row() + 3] = inverse_inertias[body.slot];
+    if (where.kind() == BodyKind::rigid) refresh_world_inertia(where.row());
+}
+
+void BodyStore::derive()
+{
+    contained_count = static_cast<std::size_t>(std::count(contained.begin(), contained.end(), 1));
+    for (int k = 0; k < body_kind_count; ++k) {
+        const auto kind = static_cast<BodyKind>(k);
+        BodyRows& r = rows(kind);
+        const auto quads = static_cast<std::size_t>(quads_of(kind));
+        r.delta.assign(r.velocity.size(), 0);
+        r.unpushed.assign(r.velocity.size(), 0);
+        if (quads == 2) r.world_inverse_inertia.assign(r.velocity.size(), 0);
+        if (kind == BodyKind::rigid) {
+            r.start_inverse_inertia.assign(r.velocity.size(), 0);
+            r.inverse_inertia.assign(r.size(), {});
+        }
+        for (std::uint32_t row = 0; row < r.size(); ++row) {
+            const std::uint32_t slot = r.slot[row];
+            const bool moves = slot != 0 && contained[slot] == 0;
+            float* velocity = &r.velocity[4 * quads * row];
+            float* delta = &r.delta[4 * quads * row];
+            if (!moves) std::fill_n(velocity, 4 * quads, 0.0F);
+            if (slot == 0) std::fill_n(&r.acceleration[4 * quads * row], 4 * quads, 0.0F);
+            if (quads == 2) delta[7] = 1;
+            if (kind == BodyKind::rigid && slot != 0) r.inverse_inertia[row] = inverse_of(r.inertia[row]);
+            if (!moves) continue;
+            velocity[3] = inverse_masses[slot];
+            if (kind == BodyKind::planar) delta[3] = inverse_inertias[slot];
+            if (kind == BodyKind::rigid) refresh_world_inertia(row);
+        }
+    }
+}
+
+void BodyStore::restore_planar_inertia()
+{
+    BodyRows& r = rows(BodyKind::planar);
+    for (std::uint32_t row = 1; row < r.size(); ++row) {
+        const std::uint32_t slot = r.slot[row];
+        if (slot != 0 && contained[slot] == 0) r.delta[std::size_t{4} * row + 3] = inverse_inertias[slot];
+    }
+}
+
+int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, const Flight& flight,
+                      std::uint32_t& contained_slot)
+{
+    BodyRows& r = rows(kind);
+    const int quads = quads_of(kind);
+    int count = 0;
+    for (std::uint32_t row = begin; row < end; ++row) {
+        if (r.slot[row] == 0) continue;
+        float* velocity = &r.velocity[std::size_t{4} * quads * row];
+        float* delta = &r.delta[std::size_t{4} * quads * row];
+        if (!all_finite(velocity, 4 * quads) || !all_finite(delta, 4 * quads)) {
+            // Frozen at its last finite pose: without inverse mass nothing can move it until the host revives it.
+            for (int i = 0; i < 4 * quads; ++i) velocity[i] = 0;
+            if (kind == BodyKind::rigid) {
+                for (std::size_t q = std::size_t{2} * row; q < std::size_t{2} * row + 2; ++q) {
+                    set_quad(r.world_inverse_inertia, q, 0, 0, 0, 0);
+                    set_quad(r.start_inverse_inertia, q, 0, 0, 0, 0);
+                }
+            }
+            count += contained[r.slot[row]] == 0 ? 1 : 0;
+            contained[r.slot[row]] = 1;
+            contained_slot = std::min(contained_slot, r.slot[row]);
+        } else {
+            BodyPose& pose = r.pose[row];
+            const float* a = &r.acceleration[std::size_t{4} * quads * row];
+            const bool in_plane = kind == BodyKind::planar;
+            const Vec3<float>& g = flight.gravity;
+            const Vec3<float> acceleration{a[0] + g.x, a[1] + g.y, in_plane ? 0 : a[2] + g.z};
+            const Vec3<float> now{velocity[0], velocity[1], in_plane ? 0 : velocity[2]};
+            // Bodies without inverse mass, fixed or contained, do not fall; the acceleration of a contained one may be
+            // infinite.
+            const bool falls = velocity[3] > 0 && flight.is_jointed[row] == 0 &&
+                               flew_freely(flight.start_along[row], dot(now, acceleration),
+                                           flight.seconds * dot(acceleration, acceleration));
+            const auto moved = [&](int i, float along) {
+                const float back = falls ? flight.excess * along : 0.0F;
+                return static_cast<PoseReal>(delta[i]) - static_cast<PoseReal>(back);
+            };
+            pose.position.x += moved(0, acceleration.x);
+            pose.position.y += moved(1, acceleration.y);
+            if (in_plane) {
+                pose.yaw += moved(2, a[2]);
+            } else {
+                pose.position.z += moved(2, acceleration.z);
+            }
+            if (quads == 2) {
+                const Quat<PoseReal> turn{delta[4], delta[5], delta[6], delta[7]};
+                const Quat<PoseReal> q = normalised(turn * r.orientation[row]);
+                r.orientation[row] = normalised(q);
+                if (kind == BodyKind::rigid && contained[r.slot[row]] == 0) refresh_world_inertia(row);
+            }
+        }
+        delta[0] = delta[1] = delta[2] = 0;
+        if (quads == 2) {
+            delta[4] = delta[5] = delta[6] = 0;
+            delta[7] = 1;
+        }
+        if (kind == BodyKind::planar && contained[r.slot[row]] != 0) delta[3] = 0;
+    }
+    return count;
+}
+
+}  // namespace motley

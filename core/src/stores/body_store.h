@@ -1,0 +1,152 @@
+// Bodies as rows. What a sweep reads of a body lies together in quads of four floats, 16 bytes a row for
+// particles and planar bodies, 32 for rigid ones, because loading bodies into lanes and storing them is what costs.
+//
+//   kind      velocity                     delta since the step began       acceleration
+//   particle  vx vy vz 1/m                 dx dy dz  -                      ax ay az  -
+//   planar    vx vy w  1/m                 dx dy yaw 1/I                    ax ay alpha -
+//   rigid     vx vy vz 1/m | wx wy wz -    dx dy dz  - | qx qy qz qw        ax ay az - | tx ty tz -  (torque)
+//   fixed     as rigid with 1/m = 0        as rigid                         zero
+//
+// Positions stay in double (or, if the build says so, in float); the lanes only ever see differences and the deltas of
+// one step.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "maths/flight.h"
+#include "motley/core/body.h"
+#include "motley/core/ids.h"
+#include "stores/aligned_vector.h"
+
+namespace motley {
+
+/// Where the rows of a body are kept. Static and kinematic bodies are `fixed`: read by lanes, never written.
+enum class BodyKind : std::uint8_t { particle, planar, rigid, fixed };
+inline constexpr int body_kind_count = 4;
+
+/// Quads in the velocity, delta and acceleration rows of a kind.
+constexpr int quads_of(BodyKind kind)
+{
+    return kind == BodyKind::rigid || kind == BodyKind::fixed ? 2 : 1;
+}
+
+/// The kind of a body, in two bits, and its row, in thirty.
+struct BodyRow {
+    std::uint32_t bits = 0;
+    BodyRow() = default;
+    BodyRow(BodyKind kind, std::uint32_t row) : bits(static_cast<std::uint32_t>(kind) << 30 | row) {}
+    [[nodiscard]] BodyKind kind() const { return static_cast<BodyKind>(bits >> 30); }
+    [[nodiscard]] std::uint32_t row() const { return bits & 0x3FFFFFFFU; }
+};
+
+/// The type of positions and orientations from step to step. Floats halve their bytes, but resolve positions at 1 km
+/// from the origin only to 0.06 mm.
+#ifdef MOTLEY_FLOAT_POSITIONS
+using PoseReal = float;
+#else
+using PoseReal = double;
+#endif
+
+/// The position of a body, m, and, of a planar one, its yaw, rad. Orientations of rigid and fixed bodies are in
+/// BodyRows.
+struct BodyPose {
+    Vec3<PoseReal> position{};
+    PoseReal yaw = 0;
+};
+
+/// The rows of one kind. Row 0 is the null body of padding lanes: it cannot move and nothing is tied to it.
+struct BodyRows {
+    AlignedVector<float> velocity, delta, acceleration;
+    AlignedVector<float> unpushed;  ///< as velocity: its value in this substep before any constraint impulse
+    AlignedVector<BodyPose> pose;
+    AlignedVector<Quat<PoseReal>> orientation;   ///< rigid and fixed only
+    AlignedVector<float> world_inverse_inertia;  ///< rigid, and zero for fixed: xx xy xz yy | yz zz - -
+    AlignedVector<float> start_inverse_inertia;  ///< the same when the step began
+    AlignedVector<Sym3<float>> inertia;          ///< rigid only, body frame
+    AlignedVector<Sym3<float>> inverse_inertia;  ///< rigid only, body frame
+    std::vector<std::uint32_t> slot;             ///< the handle slot of each row, 0 for a free one
+    std::vector<std::uint32_t> free_rows;        ///< the last one is reused first
+    [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot.size()); }
+};
+
+/// The rows of every kind, and the table from handles to rows.
+class BodyStore {
+  public:
+    BodyStore();
+
+    /// Reserves room for these, so that add() cannot fail.
+    void make_room(std::span<const BodyDefinition> definitions);
+    /// Adds a checked definition.
+    BodyId add(const BodyDefinition& definition);
+    /// Reserves room in the lists of free rows and slots, so that remove() of these cannot fail.
+    void make_room_to_remove(std::span<const BodyId> bodies);
+    /// Frees the slot and row of a live body.
+    void remove(BodyId body);
+    /// Gives every body a new row, in the order of a space-filling curve, and closes the gaps of free rows.
+    void renumber();
+    [[nodiscard]] bool is_alive(BodyId body) const
+    {
+        // A removal increments the generation, so a handle that matches is alive; slot 0 is the null handle's.
+        return body.slot < slots_.size() && slots_[body.slot].generation == body.generation && body.slot != 0;
+    }
+    [[nodiscard]] BodyRow row_of(BodyId body) const { return slots_[body.slot].row; }
+    /// Prefetches what is_alive() and row_of() will read. Any handle is allowed, also of a removed body.
+    void prefetch(BodyId body) const { __builtin_prefetch(slots_.data() + body.slot); }
+    [[nodiscard]] BodyId id_of_slot(std::uint32_t slot) const { return {slot, slots_[slot].generation}; }
+    /// Slots ever used; slot 0 is never a body.
+    [[nodiscard]] std::uint32_t slot_count() const { return static_cast<std::uint32_t>(slots_.size()); }
+    [[nodiscard]] bool is_slot_live(std::uint32_t slot) const { return live_[slot] != 0; }
+
+    [[nodiscard]] BodyRows& rows(BodyKind kind) { return rows_[static_cast<std::size_t>(kind)]; }
+    [[nodiscard]] const BodyRows& rows(BodyKind kind) const { return rows_[static_cast<std::size_t>(kind)]; }
+
+    [[nodiscard]] BodyMotion motion(BodyId body) const { return motions_[body.slot]; }
+    [[nodiscard]] BodyModel model(BodyId body) const { return models_[body.slot]; }
+    /// For each slot the first end in its list of joints (JointStores::ends); 0 when there is none.
+    std::vector<std::uint32_t> first_ends;
+    /// For each slot 1 if a step froze the body because its state was not finite: its constraints are then left out.
+    std::vector<std::uint8_t> contained;
+    std::size_t contained_count = 0;
+    [[nodiscard]] bool is_contained(BodyRow where) const
+    {
+        return contained_count > 0 && contained[rows(where.kind()).slot[where.row()]] != 0;
+    }
+    /// For each slot the inverse mass, 1/kg; kept while the body is contained, for its revival.
+    AlignedVector<float> inverse_masses;
+    std::vector<float> inverse_inertias;  ///< likewise, planar only
+
+    /// Adds the deltas of a step to the poses of rows [begin, end) of a kind, minus the excess of free flight (see
+    /// Flight), and clears them. A body whose velocity or delta is not finite keeps its pose, loses its velocity and is
+    /// contained; the least slot of such bodies goes to `contained_slot`. Returns how many were contained.
+    int commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, const Flight& flight,
+               std::uint32_t& contained_slot);
+    /// After the commits of a step: gives planar bodies that were stiffened for it (tension.h) their own inertia back.
+    /// That of rigid bodies is recomputed by every commit.
+    void restore_planar_inertia();
+    /// Ends the containment of a body: gives it its mass and inertia back.
+    void revive(BodyId body);
+    /// Computes what follows from other fields and is not stored in files: displacements, inverse inertias, counts.
+    void derive();
+    /// World inverse inertia of a rigid row from its orientation, now and for the start of the next step.
+    void refresh_world_inertia(std::uint32_t row);
+
+  private:
+    friend struct SceneArchive;
+    std::array<BodyRows, body_kind_count> rows_;
+    struct Slot {
+        std::uint32_t generation = 1;
+        BodyRow row;
+    };
+    AlignedVector<Slot> slots_;
+    std::vector<std::uint8_t> live_;
+    std::vector<BodyModel> models_;
+    AlignedVector<BodyMotion> motions_;
+    std::vector<std::uint32_t> free_slots_;
+
+    std::uint32_t take_row(BodyKind kind);
+};
+
+}  // namespace motley

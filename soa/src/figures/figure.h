@@ -1,0 +1,120 @@
+// Figures: sets of bodies connected by joints, whose copies are solved in lockstep, one copy per lane.
+//
+// A crowd repeats the same figure. Joint k of sixteen copies shares one block, as any sixteen constraints of one type
+// and colour may, so a figure's block is only a list of ordinary blocks. In addition, its bodies are loaded into
+// lanes once a step, where every joint reads them with plain loads, and all substeps run in cache. Constraints touch
+// a body in the order of their colours, so the bits are those of ordinary sweeps.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "layout/block.h"
+
+namespace motley {
+
+/// A body of a block of copies in lanes: fields of sixteen consecutive floats, the fields of LaneBody first.
+struct CopyBody {
+    static constexpr int inverse_inertia = 14;  ///< first of six fields, part of LaneBody
+    static constexpr int acceleration = 20;     ///< first of three fields, followed by three of torque
+    static constexpr int start_inertia = 26;    ///< first of six fields
+    static constexpr int floats = 32 * block_lanes;
+};
+
+/// A node of a figure's tree: a child body and all locks between it and its parent body. The locks of all nodes are
+/// solved at once, by factoring J M^-1 J^T along the tree without fill (J: Jacobian of the locks, M: mass matrix).
+struct FigureNode {
+    int body;         ///< the child body
+    int parent;       ///< the parent body, moving or fixed; -1 for a root that floats
+    int parent_node;  ///< the parent body's node; -1 if the parent is fixed or there is none
+    int rows;         ///< of all its locks together, 0 to 6
+    /// Where its arrays begin in FigureBlock::system, in floats. M' is the mass matrix of the child body and
+    /// everything below it in the tree (articulated inertia).
+    std::int64_t jacobian;  ///< EqualityRows; once factored, the form that kernel_tree_rows.h keeps
+    std::int64_t response;  ///< M'^-1 J^T, six floats per row
+    std::int64_t factor;    ///< factors of K = J M'^-1 J^T
+    std::int64_t target;    ///< K^-1 times the right-hand side of the rows; one float per row
+    std::int64_t change;    ///< of the child body's velocity, six
+    std::int64_t mass;      ///< M': lower triangle
+    std::int64_t force;     ///< on the child body, from the nodes below it, six
+    std::int64_t kept;      ///< copy of the velocity while responses of closures are computed, six
+    std::int64_t pull;      ///< angular impulse of stiffened locks, applied at the first solve, three
+    // Arrays that share memory with another one, because they are not needed at the same time:
+    std::int64_t tension;  ///< at `target`: lambda of the last substep times its length, N s2; one per row
+    std::int64_t pivots;   ///< at `change`: pivots of the body's own M, six
+    std::int64_t mass_factor;  ///< at `mass`, which it overwrites: factors of M'
+    struct Lock {
+        int joint;  ///< of the shape
+        int first_row, rows;
+        bool locks_point;  ///< its first three rows hold a point on a point, along x, y and z
+        bool reversed;     ///< the child body is the joint's body a: errors and impulses change sign
+    };
+    std::vector<Lock> locks;
+    /// Whether the node has a single lock, whose first three rows hold a point on a point along x, y and z, and whose
+    /// other rows are purely angular.
+    [[nodiscard]] bool hangs_by_point() const { return locks.size() == 1 && locks.front().locks_point; }
+    static constexpr int row_floats = 10 * block_lanes;  ///< of an EqualityRow
+};
+
+/// A lock that closes a loop of the figure. It is solved exactly too, from the tree's response to it
+/// (kernel_closures.h).
+struct FigureClosure {
+    int joint;  ///< of the shape
+    int first_row, rows;
+};
+
+/// What the copies of a figure have in common.
+struct FigureShape {
+    struct Joint {
+        int type;
+        BodyKind kind_a, kind_b;
+        std::uint8_t colour;
+        int a, b;          ///< bodies of the figure
+        int equalities;    ///< rows that may be solved exactly; 0 for limits, motors, springs
+        bool locks_point;  ///< the first three of them hold a point on a point
+        bool in_tree = false;
+    };
+    std::vector<BodyKind> bodies;
+    std::vector<Joint> joints;      ///< by colour
+    std::vector<FigureNode> nodes;  ///< children before parents; empty unless locks are solved exactly
+    std::vector<FigureClosure> closures;
+    int closure_rows = 0;
+    std::int64_t closure_jacobian = 0, closure_factor = 0, closure_target = 0;  ///< like those of a node
+    std::int64_t closure_alone =
+        0;  ///< at closure_target, until factored: J M^-1 J^T of a row's two bodies alone
+    std::int64_t system_floats = 0;
+
+    [[nodiscard]] bool has_tree() const { return !nodes.empty(); }
+    [[nodiscard]] bool has_joints_beside_tree() const
+    {
+        return std::any_of(joints.begin(), joints.end(), [](const Joint& joint) { return !joint.in_tree; });
+    }
+};
+
+/// Builds the tree of all locks of a shape and the closures of its loops. Returns false and builds neither when there
+/// are no locks or too many rows of closures.
+bool build_tree(FigureShape& shape);
+
+/// A block of up to sixteen copies.
+struct FigureBlock {
+    const FigureShape* shape = nullptr;
+    int count = 0;
+    const std::int32_t* offsets =
+        nullptr;              ///< offset_of, sixteen per body of the shape; in padding lanes the null row
+    float* bodies = nullptr;  ///< CopyBody::floats per body
+    float* system = nullptr;  ///< the arrays of the tree
+    struct Joint {
+        const ConstraintKernels* kernels;
+        BlockStreams streams;
+        std::int32_t block;
+    };
+    const Joint* joints = nullptr;  ///< in the order of those of the shape
+
+    [[nodiscard]] float* body(int index) const
+    {
+        return bodies + static_cast<std::int64_t>(index) * CopyBody::floats;
+    }
+};
+
+}  // namespace motley

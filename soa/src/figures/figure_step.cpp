@@ -1,0 +1,185 @@
+// Runs a plan over a block of copies.
+#include "figures/figure_step.h"
+
+namespace motley {
+namespace {
+
+/// Runs a kernel over the joints that the tree does not solve, in the order of their colours.
+void sweep(const KernelContext& context, const FigureBlock& block,
+           ConstraintKernels::CopiesSweep ConstraintKernels::*kernel)
+{
+    const auto& joints = block.shape->joints;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        if (joints[i].in_tree) continue;
+        const FigureBlock::Joint& joint = block.joints[i];
+        if (joint.kernels->*kernel == nullptr) continue;
+        (joint.kernels->*kernel)(context, joint.streams, joint.block, block.body(joints[i].a),
+                                 block.body(joints[i].b));
+    }
+}
+
+/// Moves data between the stores of the scene and the rows of the block: kernel prepare or store.
+void transfer(const KernelContext& context, const FigureBlock& block, std::span<const ConstraintData> data,
+              ConstraintKernels::Transfer ConstraintKernels::*kernel)
+{
+    for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
+        const FigureBlock::Joint& joint = block.joints[i];
+        (joint.kernels->*kernel)(context, joint.streams,
+                                 data[static_cast<std::size_t>(block.shape->joints[i].type)], joint.block,
+                                 joint.block + 1);
+    }
+}
+
+/// Adds the impulses of a finished substep to the sums, for joints outside the tree; the tree adds its own as it
+/// solves.
+void add_up(const KernelContext& context, const FigureBlock& block)
+{
+    for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
+        if (block.shape->joints[i].in_tree) continue;
+        const FigureBlock::Joint& joint = block.joints[i];
+        joint.kernels->add_up(context, joint.streams, joint.block, joint.block + 1);
+    }
+}
+
+std::int64_t impulse_floats(const FigureBlock::Joint& joint)
+{
+    return std::int64_t{joint.kernels->impulse_floats} * block_lanes;
+}
+
+/// Computes the Jacobian J and the position error C of every lock at the present poses, and factors the tree,
+/// stiffened by the tension of the locks.
+void factor_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
+{
+    const auto locate = [&](int which, float* rows, float* tensions) {
+        const FigureShape::Joint& joint = block.shape->joints[static_cast<std::size_t>(which)];
+        const FigureBlock::Joint& lanes = block.joints[which];
+        lanes.kernels->equality_rows(lanes.streams, lanes.block, block.body(joint.a), block.body(joint.b),
+                                     rows);
+        const std::int64_t floats = impulse_floats(lanes);
+        const float* impulses = lanes.streams.impulses + lanes.block * floats;
+        for (std::int64_t i = 0; i < floats; ++i) tensions[i] = context.step.substep * impulses[i];
+    };
+    constexpr std::int64_t row_floats = FigureNode::row_floats;
+    for (const FigureNode& node : block.shape->nodes) {
+        for (const FigureNode::Lock& lock : node.locks)
+            locate(lock.joint, block.system + node.jacobian + row_floats * lock.first_row,
+                   block.system + node.tension + block_lanes * lock.first_row);
+    }
+    for (const FigureClosure& closure : block.shape->closures)
+        locate(closure.joint, block.system + block.shape->closure_jacobian + row_floats * closure.first_row,
+               block.system + block.shape->closure_target + block_lanes * closure.first_row);
+    kernels.factor(block);
+}
+
+/// Runs the stages of a plan that apply to a figure; the others apply to the whole scene.
+class CopiesRunner {
+  public:
+    CopiesRunner(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
+                 std::span<const ConstraintData> data)
+        : context_(context),
+          kernels_(kernels),
+          block_(block),
+          data_(data),
+          has_tree_(block.shape->has_tree()),
+          has_others_(block.shape->has_joints_beside_tree())
+    {
+    }
+    void run(const PlanStage& stage) const
+    {
+        switch (stage.operation) {
+            case Operation::prepare:
+                transfer(context_, block_, data_, &ConstraintKernels::prepare);
+                kernels_.load(context_, block_);
+                break;
+            case Operation::stiffen:
+                if (context_.overloaded->load(std::memory_order_relaxed))
+                    sweep(context_, block_, &ConstraintKernels::stiffen_copies);
+                break;
+            case Operation::add_up_impulses:
+                add_up(context_, block_);
+                break;
+            case Operation::integrate_velocities:
+                kernels_.integrate_velocities(context_, block_);
+                break;
+            case Operation::factor_trees:
+                if (has_tree_) factor_tree(context_, kernels_, block_);
+                break;
+            case Operation::begin_trees:
+                if (has_tree_) begin_tree(block_);
+                break;
+            case Operation::warm_start:
+                sweep(context_, block_, &ConstraintKernels::warm_start_copies);
+                break;
+            case Operation::solve_trees:
+                if (has_tree_ && has_others_) kernels_.solve(block_, context_.step.exact_rate);
+                break;
+            case Operation::solve:
+                iterate(&ConstraintKernels::solve_copies, stage.times, context_.step.exact_rate);
+                break;
+            case Operation::integrate_positions:
+                kernels_.integrate_positions(context_, block_);
+                break;
+            case Operation::relax:
+                iterate(&ConstraintKernels::relax_copies, stage.times, 0);
+                break;
+            case Operation::store:
+                kernels_.store(context_, block_);
+                transfer(context_, block_, data_, &ConstraintKernels::store);
+                break;
+            default:
+                break;
+        }
+    }
+
+  private:
+    const KernelContext& context_;
+    const FigureKernels& kernels_;
+    const FigureBlock& block_;
+    std::span<const ConstraintData> data_;
+    bool has_tree_, has_others_;
+
+    void iterate(ConstraintKernels::CopiesSweep ConstraintKernels::*kernel, int times, float rate) const
+    {
+        // Without joints outside the tree, the first sweep solves all.
+        const int sweeps = has_others_ ? times : 1;
+        for (int i = 0; i < sweeps; ++i) {
+            sweep(context_, block_, kernel);
+            if (has_tree_) kernels_.solve(block_, rate);
+        }
+    }
+};
+
+}  // namespace
+
+void step_figure(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
+                 std::span<const ConstraintData> data, const Plan& plan)
+{
+    const CopiesRunner runner(context, kernels, block, data);
+    for_each_stage(plan, [&](const PlanStage& stage, int) { runner.run(stage); });
+}
+
+void prepare_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
+{
+    kernels.load(context, block);
+    factor_tree(context, kernels, block);
+}
+
+void begin_tree(const FigureBlock& block)
+{
+    for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
+        if (!block.shape->joints[i].in_tree) continue;
+        const std::int64_t floats = impulse_floats(block.joints[i]);
+        float* impulses = block.joints[i].streams.impulses + block.joints[i].block * floats;
+        std::fill(impulses, impulses + floats, 0.0F);
+    }
+}
+
+void solve_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
+                float rate)
+{
+    kernels.load_velocities(context, block);
+    kernels.solve(block, rate);
+    kernels.store_velocities(context, block);
+}
+
+}  // namespace motley

@@ -1,0 +1,167 @@
+// The order in which the bodies and locks of a figure are eliminated.
+#include <utility>
+
+#include "figures/figure.h"
+
+namespace motley {
+namespace {
+
+constexpr int most_rows = 6;           ///< of the locks between a child body and its parent
+constexpr int most_closure_rows = 24;  ///< their system is dense, and each row costs a sweep of the tree
+
+std::size_t at(int index)
+{
+    return static_cast<std::size_t>(index);
+}
+
+/// Builds the tree of a shape: first the parent of each body, then the locks that close loops, then where the arrays
+/// of each node begin.
+class TreeBuilder {
+  public:
+    explicit TreeBuilder(FigureShape& shape)
+        : shape_(shape),
+          locks_on_(shape.bodies.size()),
+          node_of_(shape.bodies.size(), none),
+          is_in_node_(shape.joints.size(), 0)
+    {
+    }
+    bool build()
+    {
+        list_locks();
+        hang_all_bodies();
+        find_closures();
+        if (closure_rows_ > most_closure_rows || nodes_.empty()) return false;
+        lay_out();
+        hand_over();
+        return true;
+    }
+
+  private:
+    static constexpr int none = -1;
+    FigureShape& shape_;
+    std::vector<std::vector<int>> locks_on_;  ///< joints, by body
+    std::vector<int> node_of_;                ///< by body
+    std::vector<std::uint8_t> is_in_node_;    ///< by joint
+    std::vector<FigureNode> nodes_;           ///< parents before children
+    std::size_t spread_ = 0;                  ///< nodes whose neighbours all have a node
+    std::vector<FigureClosure> closures_;
+    int closure_rows_ = 0;
+
+    [[nodiscard]] bool moves(int body) const { return shape_.bodies[at(body)] == BodyKind::rigid; }
+    [[nodiscard]] bool hangs(int body) const { return node_of_[at(body)] != none; }
+    [[nodiscard]] int other_end(int joint, int body) const
+    {
+        const FigureShape::Joint& j = shape_.joints[at(joint)];
+        return j.a == body ? j.b : j.a;
+    }
+
+    void list_locks()
+    {
+        for (std::size_t i = 0; i < shape_.joints.size(); ++i) {
+            const FigureShape::Joint& joint = shape_.joints[i];
+            if (joint.equalities == 0) continue;
+            locks_on_[at(joint.a)].push_back(static_cast<int>(i));
+            locks_on_[at(joint.b)].push_back(static_cast<int>(i));
+        }
+    }
+    /// A search along the locks: a body becomes a child of the body from which it was reached. It starts from fixed
+    /// bodies, then from one body of each set without a fixed body.
+    void hang_all_bodies()
+    {
+        const int bodies = static_cast<int>(shape_.bodies.size());
+        for (int body = 0; body < bodies; ++body) {
+            if (moves(body)) continue;
+            for (const int joint : locks_on_[at(body)]) {
+                const int next = other_end(joint, body);
+                if (!hangs(next)) hang(next, body);
+                spread();
+            }
+        }
+        for (int body = 0; body < bodies; ++body) {
+            if (!moves(body) || hangs(body) || locks_on_[at(body)].empty()) continue;
+            hang(body, none);
+            spread();
+        }
+    }
+    void spread()
+    {
+        for (; spread_ < nodes_.size(); ++spread_) {
+            const int body = nodes_[spread_].body;
+            for (const int joint : locks_on_[at(body)]) {
+                const int next = other_end(joint, body);
+                if (moves(next) && !hangs(next)) hang(next, body);
+            }
+        }
+    }
+    /// Makes a node of all locks between the two bodies, up to six rows.
+    void hang(int body, int parent)
+    {
+        FigureNode node{};
+        node.body = body;
+        node.parent = parent;
+        node.parent_node = parent == none ? none : node_of_[at(parent)];
+        for (const int joint : locks_on_[at(body)]) {
+            const FigureShape::Joint& j = shape_.joints[at(joint)];
+            if (other_end(joint, body) != parent || node.rows + j.equalities > most_rows) continue;
+            is_in_node_[at(joint)] = 1;
+            node.locks.push_back({joint, node.rows, j.equalities, j.locks_point, j.a == body});
+            node.rows += j.equalities;
+        }
+        node_of_[at(body)] = static_cast<int>(nodes_.size());
+        nodes_.push_back(std::move(node));
+    }
+    void find_closures()
+    {
+        for (std::size_t i = 0; i < shape_.joints.size(); ++i) {
+            const int equalities = shape_.joints[i].equalities;
+            if (equalities == 0 || is_in_node_[i] != 0) continue;
+            closures_.push_back({static_cast<int>(i), closure_rows_, equalities});
+            closure_rows_ += equalities;
+        }
+    }
+    /// Decides where the arrays of nodes and closures begin in FigureBlock::system.
+    void lay_out()
+    {
+        std::int64_t end = 0;
+        const auto take = [&](int floats) {
+            return std::exchange(end, end + std::int64_t{floats} * block_lanes);
+        };
+        constexpr int row_floats = FigureNode::row_floats / block_lanes;
+        for (FigureNode& node : nodes_) {
+            node.jacobian = take(row_floats * node.rows);
+            node.response = take(6 * node.rows);
+            node.factor = take(node.rows * (node.rows + 1) / 2);
+            node.target = node.tension = take(node.rows);
+            node.change = node.pivots = take(6);
+            node.mass = node.mass_factor = take(21);
+            node.force = take(6);
+            node.kept = take(6);
+            node.pull = take(3);
+        }
+        shape_.closure_jacobian = take(row_floats * closure_rows_);
+        shape_.closure_factor = take(closure_rows_ * (closure_rows_ + 1) / 2);
+        shape_.closure_target = shape_.closure_alone = take(closure_rows_);
+        shape_.system_floats = end;
+    }
+    /// Moves the result into the shape, children before parents.
+    void hand_over()
+    {
+        const int count = static_cast<int>(nodes_.size());
+        for (FigureNode& node : nodes_) {
+            if (node.parent_node != none) node.parent_node = count - 1 - node.parent_node;
+        }
+        for (FigureShape::Joint& joint : shape_.joints) joint.in_tree = joint.equalities > 0;
+        shape_.nodes.assign(std::make_move_iterator(nodes_.rbegin()), std::make_move_iterator(nodes_.rend()));
+        shape_.closures = std::move(closures_);
+        shape_.closure_rows = closure_rows_;
+    }
+};
+
+}  // namespace
+
+bool build_tree(FigureShape& shape)
+{
+    return TreeBuilder(shape).build();
+}
+
+}  // namespace motley

@@ -1,0 +1,401 @@
+// Finds components by union-find, and their shapes by comparing their joints in the order of their colours.
+#include "figures/figures.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "layout/disjoint_sets.h"
+
+namespace motley {
+namespace {
+
+/// A block with fewer copies than this is swept faster by colour, with all other joints. A constant, so that blocks
+/// do not depend on the instruction set.
+constexpr std::size_t fewest_copies = 8;
+/// The most bodies of a figure whose lanes, with those of its joints, still fit a second level cache.
+constexpr std::size_t most_bodies = 64;
+
+bool is_rigid(BodyRow body)
+{
+    return body.kind() == BodyKind::rigid;
+}
+
+std::uint32_t rigid_row_of(const Placement& joint)
+{
+    return is_rigid(joint.a) ? joint.a.row() : joint.b.row();
+}
+
+/// Components that may be figures, in flat lists: the joints of member m are those from first_joint[m] to
+/// first_joint[m + 1], and likewise its bodies and its signature.
+struct Members {
+    std::vector<const Figures::Candidate*> joints;  ///< by colour, type and body
+    std::vector<BodyRow> bodies;                    ///< in the order in which the joints name them
+    std::vector<std::uint32_t> signatures;  ///< the shapes, in numbers: members with equal ones are copies
+    std::vector<std::size_t> first_joint{0}, first_body{0}, first_number{0};
+    std::vector<std::uint8_t>
+        is_refused;  ///< light_between_heavy() has found a body, so its locks are not solved exactly
+
+    [[nodiscard]] std::size_t count() const { return first_joint.size() - 1; }
+    [[nodiscard]] std::span<const Figures::Candidate* const> joints_of(std::size_t member) const
+    {
+        return std::span(joints).subspan(first_joint[member], first_joint[member + 1] - first_joint[member]);
+    }
+    [[nodiscard]] std::span<const BodyRow> bodies_of(std::size_t member) const
+    {
+        return std::span(bodies).subspan(first_body[member], first_body[member + 1] - first_body[member]);
+    }
+    [[nodiscard]] std::span<const std::uint32_t> signature_of(std::size_t member) const
+    {
+        return std::span(signatures)
+            .subspan(first_number[member], first_number[member + 1] - first_number[member]);
+    }
+};
+
+/// A body with two locks or more, in a figure without a fixed body and with a body more than 2,000 times as heavy;
+/// {} if there is none. The mass that its joints see is made of both and keeps too few digits of the light one: the
+/// joints hold, but their impulses do not cancel. Momentum changes by 3e-6 per second at 1 : 1,000 and by 3e-5 at
+/// 1 : 10,000 (light_between_heavy_test.cpp).
+BodyId light_between_heavy(std::span<const Figures::Candidate* const> joints, const BodyStore& bodies)
+{
+    constexpr double most_mass_ratio = 2000;
+    std::map<std::uint32_t, int> locks_on;  // by slot
+    for (const Figures::Candidate* joint : joints) {
+        if (joint->equalities == 0) continue;
+        for (const BodyRow body : {joint->placement.a, joint->placement.b}) {
+            if (!is_rigid(body)) return {};
+            ++locks_on[bodies.rows(BodyKind::rigid).slot[body.row()]];
+        }
+    }
+    const auto inverse_mass = [&](std::uint32_t slot) { return double{bodies.inverse_masses[slot]}; };
+    double of_heaviest = std::numeric_limits<double>::infinity();
+    for (const auto& [slot, locks] : locks_on) of_heaviest = std::min(of_heaviest, inverse_mass(slot));
+    for (const auto& [slot, locks] : locks_on) {
+        if (locks > 1 && inverse_mass(slot) > most_mass_ratio * of_heaviest) return bodies.id_of_slot(slot);
+    }
+    return {};
+}
+
+/// Numbers the bodies of a figure from 0 on.
+class BodyNames {
+  public:
+    explicit BodyNames(const BodyStore& bodies)
+        : rigid_(bodies.rows(BodyKind::rigid).size()), fixed_(bodies.rows(BodyKind::fixed).size())
+    {
+    }
+    /// Begins to number the next figure. A rigid body is in one figure only; a fixed one may be in many.
+    void start_figure() { ++figure_; }
+    /// The number of a body. One that this figure has not numbered yet is added to the end of `bodies`, in which the
+    /// figure begins at `first`.
+    std::uint32_t name(BodyRow body, std::vector<BodyRow>& bodies, std::size_t first)
+    {
+        Name& name = (is_rigid(body) ? rigid_ : fixed_)[body.row()];
+        if (name.figure != figure_) {
+            name = {figure_, static_cast<std::uint32_t>(bodies.size() - first)};
+            bodies.push_back(body);
+        }
+        return name.number;
+    }
+
+  private:
+    struct Name {
+        std::uint32_t figure = 0, number = 0;
+    };
+    std::vector<Name> rigid_, fixed_;
+    std::uint32_t figure_ = 0;
+};
+
+/// Completes the last member: numbers its bodies and writes its signature.
+void close_member(Members& members, BodyNames& names, bool is_refused)
+{
+    const std::size_t first_body = members.bodies.size();
+    names.start_figure();
+    for (std::size_t i = members.first_joint.back(); i < members.joints.size(); ++i) {
+        const Figures::Candidate& joint = *members.joints[i];
+        const Placement& p = joint.placement;
+        members.signatures.push_back(p.colour | std::uint32_t{p.type} << 8 |
+                                     static_cast<std::uint32_t>(p.a.kind()) << 16 |
+                                     static_cast<std::uint32_t>(p.b.kind()) << 18 |
+                                     static_cast<std::uint32_t>(joint.equalities) << 20 |
+                                     static_cast<std::uint32_t>(joint.locks_point) << 24);
+        members.signatures.push_back(names.name(p.a, members.bodies, first_body));
+        members.signatures.push_back(names.name(p.b, members.bodies, first_body));
+    }
+    members.signatures.push_back(is_refused ? 1 : 0);
+    members.is_refused.push_back(is_refused ? 1 : 0);
+    members.first_joint.push_back(members.joints.size());
+    members.first_body.push_back(members.bodies.size());
+    members.first_number.push_back(members.signatures.size());
+}
+
+std::unique_ptr<FigureShape> shape_of(const Members& members, std::size_t member)
+{
+    auto shape = std::make_unique<FigureShape>();
+    for (const BodyRow body : members.bodies_of(member)) shape->bodies.push_back(body.kind());
+    const std::span<const Figures::Candidate* const> joints = members.joints_of(member);
+    const std::span<const std::uint32_t> signature = members.signature_of(member);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const Placement& p = joints[i]->placement;
+        shape->joints.push_back(
+            {p.type, p.a.kind(), p.b.kind(), p.colour, static_cast<int>(signature[3 * i + 1]),
+             static_cast<int>(signature[3 * i + 2]), joints[i]->equalities, joints[i]->locks_point});
+    }
+    return shape;
+}
+
+bool can_be_in_lanes(const Placement& joint, const KernelTable& kernels)
+{
+    return joint.colour != overflow_colour &&
+           kernels.constraints[class_of(joint.type, joint.a.kind(), joint.b.kind())].solve_copies != nullptr;
+}
+
+/// The root of a joint that cannot be in a figure.
+constexpr std::int32_t none = -1;
+
+/// A joint of the component whose first rigid row is `root`. No two joints of a colour share a moving body, so
+/// sorting by `order` gives the same sequence in every copy, whatever was added and removed before: the slots of a
+/// figure's bodies are in the order in which these were added.
+struct JointOfComponent {
+    std::int32_t root;
+    std::uint64_t order;  ///< colour, type, slot of a rigid body
+    const Figures::Candidate* joint;
+};
+
+/// The joints of all components that may be figures and have at most `largest` moving bodies, by component.
+std::vector<JointOfComponent> joints_by_component(std::span<const Figures::Candidate> joints,
+                                                  const BodyStore& bodies, const KernelTable& kernels,
+                                                  std::size_t largest)
+{
+    const BodyRows& rigid = bodies.rows(BodyKind::rigid);
+    const std::size_t rigid_rows = rigid.size();
+    DisjointSets components;
+    components.reset(rigid_rows);
+    for (const auto& [joint, equalities, locks_point] : joints) {
+        if (is_rigid(joint.a) && is_rigid(joint.b))
+            components.tie(static_cast<std::int32_t>(joint.a.row()),
+                           static_cast<std::int32_t>(joint.b.row()));
+    }
+    components.flatten();
+    std::vector<std::uint32_t> size(rigid_rows, 0);
+    for (std::size_t row = 0; row < rigid_rows; ++row) ++size[static_cast<std::size_t>(components.root(row))];
+    std::vector<std::uint8_t> excluded(rigid_rows, 0);
+    for (const auto& [joint, equalities, locks_point] : joints) {
+        if (can_be_in_lanes(joint, kernels)) continue;
+        for (const BodyRow body : {joint.a, joint.b})
+            if (is_rigid(body)) excluded[static_cast<std::size_t>(components.root(body.row()))] = 1;
+    }
+    // Joints are counted by component, stored one component after another, and sorted in each of them.
+    std::vector<std::uint32_t> end(rigid_rows + 1, 0);
+    const auto root_of = [&](const Figures::Candidate& joint) {
+        if (!can_be_in_lanes(joint.placement, kernels)) return none;
+        const std::int32_t root = components.root(rigid_row_of(joint.placement));
+        const auto i = static_cast<std::size_t>(root);
+        return excluded[i] != 0 || size[i] > largest ? none : root;
+    };
+    for (const Figures::Candidate& joint : joints) {
+        const std::int32_t root = root_of(joint);
+        if (root != none) ++end[static_cast<std::size_t>(root)];
+    }
+    std::exclusive_scan(end.begin(), end.end(), end.begin(), 0U);
+    std::vector<JointOfComponent> found(end.back());
+    for (const Figures::Candidate& joint : joints) {
+        const std::int32_t root = root_of(joint);
+        if (root == none) continue;
+        const Placement& p = joint.placement;
+        found[end[static_cast<std::size_t>(root)]++] = {
+            root, std::uint64_t{p.colour} << 40 | std::uint64_t{p.type} << 32 | rigid.slot[rigid_row_of(p)],
+            &joint};
+    }
+    for (std::size_t root = 0; root < rigid_rows; ++root) {
+        const std::size_t begin = root == 0 ? 0 : end[root - 1];
+        std::sort(found.begin() + static_cast<std::ptrdiff_t>(begin),
+                  found.begin() + static_cast<std::ptrdiff_t>(end[root]),
+                  [](const JointOfComponent& x, const JointOfComponent& y) { return x.order < y.order; });
+    }
+    return found;
+}
+
+Members members_of(std::span<const Figures::Candidate> joints, const BodyStore& bodies,
+                   const KernelTable& kernels, bool exact, Figures::Refused& refused)
+{
+    const std::vector<JointOfComponent> found = joints_by_component(
+        joints, bodies, kernels, exact ? bodies.rows(BodyKind::rigid).size() : most_bodies);
+    Members members;
+    members.joints.reserve(found.size());
+    members.signatures.reserve(4 * found.size());
+    members.bodies.reserve(2 * found.size());
+    BodyNames names(bodies);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        members.joints.push_back(found[i].joint);
+        if (i + 1 < found.size() && found[i + 1].root == found[i].root) continue;
+        const auto own =
+            std::span<const Figures::Candidate* const>(members.joints).subspan(members.first_joint.back());
+        const BodyId light = exact ? light_between_heavy(own, bodies) : BodyId{};
+        if (light != BodyId{}) {
+            refused.joints += std::count_if(own.begin(), own.end(), [](const Figures::Candidate* joint) {
+                return joint->equalities > 0;
+            });
+            refused.light_body = light;
+        }
+        close_member(members, names, light != BodyId{});
+    }
+    return members;
+}
+
+/// The members in an order in which copies follow each other. (If two shapes had the same hash, fewer copies would be
+/// found at once.)
+std::vector<std::size_t> sorted_by_signature(const Members& members)
+{
+    std::vector<std::pair<std::uint64_t, std::size_t>> hashed(members.count());
+    for (std::size_t i = 0; i < hashed.size(); ++i) {
+        std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
+        for (const std::uint32_t number : members.signature_of(i)) hash = (hash ^ number) * 1099511628211ULL;
+        hashed[i] = {hash, i};
+    }
+    std::sort(hashed.begin(), hashed.end());
+    std::vector<std::size_t> order(hashed.size());
+    std::transform(hashed.begin(), hashed.end(), order.begin(),
+                   [](const auto& member) { return member.second; });
+    return order;
+}
+
+bool are_copies(const Members& members, std::size_t x, std::size_t y)
+{
+    return std::ranges::equal(members.signature_of(x), members.signature_of(y));
+}
+
+/// A padding lane in the block of this constraint: see Placement::is_gap.
+Placement gap_beside(Placement placement)
+{
+    placement.constraint = ~placement.constraint;
+    return placement;
+}
+
+}  // namespace
+
+void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, const KernelTable& kernels,
+                   bool exact, std::vector<Placement>& placed)
+{
+    const std::size_t rigid_rows = bodies.rows(BodyKind::rigid).size();
+    refused_ = {};
+    shapes_.clear();
+    blocks_.clear();
+    lone_.clear();
+    touched_trees_.clear();
+    const Members members = members_of(joints, bodies, kernels, exact, refused_);
+    const std::vector<std::size_t> order = sorted_by_signature(members);
+
+    placed.clear();
+    block_of_row_.assign(rigid_rows, -1);
+    std::vector<std::int32_t> offsets;
+    std::int64_t memory = 0;
+    std::vector<std::int64_t> first_float;
+    std::span<const std::size_t> copies;
+    for (std::size_t next = 0; next < order.size(); next += copies.size()) {
+        std::size_t end = next + 1;
+        while (end < order.size() && are_copies(members, order[next], order[end])) ++end;
+        copies = std::span(order).subspan(next, end - next);
+        // Too few copies, and nothing to be solved exactly.
+        if (!exact && copies.size() < fewest_copies) continue;
+        std::unique_ptr<FigureShape> shape = shape_of(members, copies.front());
+        const bool has_tree = exact && members.is_refused[copies.front()] == 0 && build_tree(*shape);
+        if (!has_tree && shape->bodies.size() > most_bodies) continue;
+        for (std::size_t first = 0; first < copies.size(); first += block_lanes) {
+            const std::size_t count = std::min<std::size_t>(block_lanes, copies.size() - first);
+            if (!has_tree && count < fewest_copies) break;
+            const auto block = static_cast<std::int32_t>(blocks_.size());
+            blocks_.push_back({.shape = shape.get(), .count = static_cast<int>(count)});
+            first_float.push_back(memory);
+            if (has_tree)
+                memory +=
+                    static_cast<std::int64_t>(shape->bodies.size()) * CopyBody::floats + shape->system_floats;
+            for (std::size_t body = 0; body < shape->bodies.size(); ++body) {
+                for (std::size_t lane = 0; lane < block_lanes; ++lane) {
+                    const bool pads = lane >= count;
+                    const BodyRow row = pads ? BodyRow{} : members.bodies_of(copies[first + lane])[body];
+                    offsets.push_back(offset_of(row));
+                    if (!pads && is_rigid(row)) block_of_row_[row.row()] = block;
+                }
+            }
+            for (std::size_t joint = 0; joint < shape->joints.size(); ++joint) {
+                for (std::size_t lane = 0; lane < block_lanes; ++lane) {
+                    const std::size_t copy = copies[first + std::min(lane, count - 1)];
+                    const Placement& placement = members.joints_of(copy)[joint]->placement;
+                    placed.push_back(lane < count ? placement : gap_beside(placement));
+                }
+            }
+        }
+        shapes_.push_back(std::move(shape));
+    }
+
+    offsets_.assign(offsets.begin(), offsets.end());
+    memory_.assign(static_cast<std::size_t>(memory), 0.0F);
+    std::size_t first_offset = 0;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+        FigureBlock& block = blocks_[i];
+        block.offsets = offsets_.data() + first_offset;
+        if (block.shape->has_tree()) {
+            block.bodies = memory_.data() + first_float[i];
+            block.system = block.body(static_cast<int>(block.shape->bodies.size()));
+        }
+        first_offset += block.shape->bodies.size() * block_lanes;
+    }
+    for (const Candidate& joint : joints) {
+        if (!can_be_in_lanes(joint.placement, kernels) || block_of_row_[rigid_row_of(joint.placement)] < 0)
+            placed.push_back(joint.placement);
+    }
+}
+
+void Figures::bind(BatchSet& batches, const KernelTable& kernels)
+{
+    joints_.assign(blocks_.size(), {});
+    skipped_.assign(blocks_.size(), {});
+    std::map<std::pair<int, int>, std::int32_t> used;  // blocks used so far, by class and colour
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+        for (const FigureShape::Joint& joint : blocks_[i].shape->joints) {
+            const int constraint_class = class_of(joint.type, joint.kind_a, joint.kind_b);
+            const BatchSet::Block block =
+                batches.block(constraint_class, joint.colour, used[{constraint_class, int{joint.colour}}]++);
+            joints_[i].push_back({&kernels.constraints[constraint_class], block.streams, block.index});
+            skipped_[i].push_back(block.skipped);
+        }
+    }
+    for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i].joints = joints_[i].data();
+    // Which blocks are alone changes from step to step, and finding them must not allocate.
+    alone_.reserve(blocks_.size());
+    lone_.reserve(blocks_.size());
+    touched_trees_.reserve(blocks_.size());
+}
+
+void Figures::find_lone_blocks(std::span<const Placement> contacts, bool may_be_alone)
+{
+    alone_.assign(blocks_.size(), may_be_alone ? 1 : 0);
+    for (const Placement& contact : contacts) {
+        for (const BodyRow body : {contact.a, contact.b}) {
+            if (!is_rigid(body)) continue;
+            const std::int32_t block = block_of(body.row());
+            if (block >= 0) alone_[static_cast<std::size_t>(block)] = 0;
+        }
+    }
+    lone_.clear();
+    touched_trees_.clear();
+    lone_joints_ = 0;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+        const FigureShape& shape = *blocks_[i].shape;
+        const bool alone = alone_[i] != 0;
+        if (alone) {
+            lone_.push_back(static_cast<std::int32_t>(i));
+            lone_joints_ += blocks_[i].count * static_cast<std::int64_t>(shape.joints.size());
+        } else if (shape.has_tree()) {
+            touched_trees_.push_back(static_cast<std::int32_t>(i));
+        }
+        for (std::size_t joint = 0; joint < shape.joints.size(); ++joint)
+            *skipped_[i][joint] = alone                         ? BatchSet::skip_altogether
+                                  : shape.joints[joint].in_tree ? BatchSet::skip_sweeps
+                                                                : BatchSet::skip_nothing;
+    }
+}
+
+}  // namespace motley

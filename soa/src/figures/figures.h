@@ -1,0 +1,75 @@
+// Finds the figures of a scene: sets of rigid bodies that joints connect, and all copies of the same shape. The host
+// declares nothing: sets that it builds alike are recognised as copies. A copy that loses a joint is a shape of its
+// own from then on, and one that touches something is swept by colour like everything else.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "figures/figure.h"
+#include "layout/batches.h"
+
+namespace motley {
+
+class Figures {
+  public:
+    /// A joint as it comes from its store, with a colour.
+    struct Candidate {
+        Placement placement;
+        int equalities;    ///< rows that may be solved exactly, or 0
+        bool locks_point;  ///< the first three of them hold a point on a point
+    };
+    /// Sorts the joints into `placed`. Those of figures come first, sixteen consecutive copies of each joint, with
+    /// gaps where a block has fewer copies, so that each joint of a block of copies has a block of its own. The rest
+    /// follow in their old order. `exact`: the locks of figures are solved by trees, however few copies there are,
+    /// except for the locks that refused() counts.
+    void find(std::span<const Candidate> joints, const BodyStore& bodies, const KernelTable& kernels,
+              bool exact, std::vector<Placement>& placed);
+    /// Locks that are not solved exactly, because their figure has no fixed body and has a body too light for the
+    /// other bodies; see StepReport::exact_joints_refused.
+    struct Refused {
+        std::int64_t joints = 0;
+        BodyId light_body{};  ///< one such body
+    };
+    [[nodiscard]] const Refused& refused() const { return refused_; }
+    /// After `placed` has been filled into its blocks: looks up the blocks of the joints.
+    void bind(BatchSet& batches, const KernelTable& kernels);
+
+    /// Finds the blocks that are alone in a step: no contact touches their bodies, so they are solved on their own.
+    void find_lone_blocks(std::span<const Placement> contacts, bool may_be_alone);
+
+    [[nodiscard]] bool is_empty() const { return blocks_.empty(); }
+    [[nodiscard]] std::span<const FigureBlock> blocks() const { return blocks_; }
+    /// Blocks that are alone in this step, and those with a tree that are not.
+    [[nodiscard]] std::span<const std::int32_t> lone() const { return lone_; }
+    [[nodiscard]] std::span<const std::int32_t> touched_trees() const { return touched_trees_; }
+    /// Whether a rigid row belongs to a block that is alone.
+    [[nodiscard]] bool is_alone(std::size_t row) const
+    {
+        const std::int32_t block = block_of(row);
+        return block >= 0 && alone_[static_cast<std::size_t>(block)] != 0;
+    }
+    /// The number of joints in blocks that are alone.
+    [[nodiscard]] std::int64_t lone_joints() const { return is_empty() ? 0 : lone_joints_; }
+
+  private:
+    Refused refused_;
+    std::vector<std::unique_ptr<FigureShape>> shapes_;
+    std::vector<FigureBlock> blocks_;
+    std::vector<std::vector<FigureBlock::Joint>> joints_;  ///< of each block
+    std::vector<std::vector<std::uint8_t*>> skipped_;  ///< of each block and joint: BatchSet::Block::skipped
+    AlignedVector<std::int32_t> offsets_;              ///< of all blocks, one after another
+    AlignedVector<float> memory_;                      ///< likewise
+    std::vector<std::int32_t> block_of_row_;           ///< one entry per rigid row that existed at find()
+    /// Negative for a body of no figure. Bodies added since find() have no joints.
+    [[nodiscard]] std::int32_t block_of(std::size_t row) const
+    {
+        return row < block_of_row_.size() ? block_of_row_[row] : -1;
+    }
+    std::vector<std::uint8_t> alone_;
+    std::vector<std::int32_t> lone_, touched_trees_;
+    std::int64_t lone_joints_ = 0;
+};
+
+}  // namespace motley

@@ -1,0 +1,21 @@
+// Every kernel of one instruction set.
+#pragma once
+
+#include "contract/constraint_types.h"
+#include "layout/block.h"
+
+namespace motley {
+
+inline constexpr int class_count = constraint_type_count * body_kind_count * body_kind_count;
+
+/// Kernels of constraints by class_of, of bodies by kind, and of figures.
+struct KernelTable {
+    ConstraintKernels constraints[class_count];
+    BodyKernels bodies[body_kind_count];
+    FigureKernels figures;
+};
+
+/// The table compiled for an instruction set; only for those of available_isas().
+const KernelTable& kernel_table(Isa isa);
+
+}  // namespace motley

@@ -1,6 +1,0 @@
-// AVX-512: sixteen lanes, a whole block at once.
-// Included inside an anonymous namespace, once by each file of kernels: see constraint_kernels.cpp.
-
-using Arch = xsimd::avx512f;
-#include "lanes.h"
-#include "quads_avx512.h"

@@ -1,5 +1,0 @@
-// Scalar: one lane, the lane maths instantiated on float. The other instruction sets must give the same bits.
-// Included inside an anonymous namespace, once by each file of kernels: see constraint_kernels.cpp.
-
-using Lanes = float;
-#include "quads_scalar.h"

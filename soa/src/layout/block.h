@@ -1,0 +1,208 @@
+// Blocks of sixteen lanes, and the table of kernels that run over them.
+//
+// A block holds up to sixteen constraints of one type and one pair of body kinds, none of which shares a moving body
+// with another. The number is sixteen on every instruction set (computed as 16 x 1, 4 x 4, 2 x 8 or 1 x 16), so that
+// the blocks, their order and with them every bit of the result do not depend on the machine.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "maths/step_constants.h"
+#include "motley/soa/isa.h"
+#include "scene/joint_pose.h"
+#include "stores/body_store.h"
+
+namespace motley {
+
+inline constexpr int block_lanes = 16;
+/// The most floats that a type may have in its Impulse.
+inline constexpr int most_impulse_floats = 32;
+/// The most floats that a body has per lane.
+inline constexpr int most_body_floats = 20;
+
+/// Blocks store where a body's row begins as an offset in pairs of floats. Eight bytes is the largest scale factor of
+/// an x86 address, so kernels need no multiplication for each row that they load or store.
+inline constexpr int offset_floats = 2;
+constexpr std::int32_t offsets_a_row(BodyKind kind)
+{
+    return 4 / offset_floats * quads_of(kind);
+}
+inline std::int32_t offset_of(BodyRow row)
+{
+    return static_cast<std::int32_t>(row.row()) * offsets_a_row(row.kind());
+}
+
+/// The bodies of a block. Lanes from the block's count on are padding: their bodies are the null rows, and they are
+/// never stored.
+struct alignas(64) BlockBodies {
+    std::int32_t a[block_lanes];  ///< offset_of body a
+    std::int32_t b[block_lanes];
+};
+/// The constraints of a block: their indices in the list or store of the type.
+struct alignas(64) BlockConstraints {
+    std::int32_t lane[block_lanes];
+};
+
+/// Everything that a kernel reads and writes of one type and pair: blocks, and their streams of floats. Stream s of
+/// block k starts at s + k * floats * 16; a field of a row is sixteen consecutive floats.
+struct BlockStreams {
+    BodyKind kind_a{}, kind_b{};  ///< of the bodies
+    const BlockBodies* bodies = nullptr;
+    const std::uint8_t* counts = nullptr;           ///< lanes of each block that are not padding
+    const BlockConstraints* constraints = nullptr;  ///< read by prepare and store only
+    float* rows = nullptr;                          ///< constant through a step
+    float* substep_rows = nullptr;                  ///< made by warm_start each substep
+    float* impulses = nullptr;
+    float* sums = nullptr;       ///< over the substeps so far; null for contacts of a single substep
+    float* residuals = nullptr;  ///< energies and speeds of LaneResidual; null unless they are measured
+};
+
+/// Where definitions and remembered impulses of a type lie, one entry per constraint.
+struct ConstraintData {
+    const float* parameters = nullptr;
+    std::int64_t parameter_stride = 0;  ///< floats
+    const float* memory_in = nullptr;
+    const std::int32_t* memory_index =
+        nullptr;                     ///< entry of memory_in by constraint; null: the constraint's own
+    float* memory_out = nullptr;     ///< by constraint
+    std::int64_t memory_stride = 0;  ///< floats
+    float* step_out =
+        nullptr;  ///< by constraint, the sum over all substeps: a Wrench for joints, for contacts as in memory_out
+    std::int64_t step_stride = 0;               ///< floats
+    const WorldPoints* world_points = nullptr;  ///< by constraint; null for types without
+};
+
+/// Rows of one kind as the kernels see them.
+struct BodyArrays {
+    float* velocity = nullptr;
+    float* delta = nullptr;
+    float* unpushed = nullptr;
+    float* start_along = nullptr;  ///< see Flight, like is_jointed
+    const std::uint8_t* is_jointed = nullptr;
+    const float* acceleration = nullptr;
+    float* world_inverse_inertia = nullptr;
+    float* start_inverse_inertia = nullptr;
+    const Sym3<float>* inverse_inertia = nullptr;  ///< in the body's frame
+    BodyPose* pose = nullptr;
+    Quat<PoseReal>* orientation = nullptr;
+    std::int32_t size = 0;
+    bool can_move = false;  ///< if false, kernels read these rows and never write them
+};
+
+/// Whether sweeps of solve and relax note each constraint's LaneResidual.
+enum class Measure {
+    nothing,
+    while_solving,    ///< of what the sweep changes
+    without_solving,  ///< of what a sweep would change; velocities and impulses stay as they are
+};
+
+/// A warm start without a sweep: as a substep begins, each body gets again the velocity change that its constraints
+/// made in the last substep. Exact where M^-1 J^T is constant through the step (contacts of particles and planar
+/// bodies); M is the mass matrix, J the Jacobian.
+enum class Replay {
+    nothing,
+    next_time,     ///< only stores the velocities before any constraint acts
+    last_substep,  ///< applies the change of the last substep, and stores again
+};
+
+struct KernelContext {
+    StepConstants step;
+    StepConstants relaxing;  ///< the same for sweeps that relax
+    Measure measure = Measure::nothing;
+    Replay replay = Replay::nothing;
+    bool bodies_are_far = false;  ///< they exceed a core's cache: sweeps prefetch those of the next block
+    BodyArrays bodies[body_kind_count];
+    /// Set by prepare where a joint pulls harder than a substep can follow: then `stiffen` must be run. See
+    /// tension.h.
+    std::atomic<bool>* overloaded = nullptr;
+};
+
+/// The kernels of one type and pair: each runs over blocks begin ... end - 1.
+struct ConstraintKernels {
+    using Sweep = void (*)(const KernelContext&, const BlockStreams&, std::int32_t begin, std::int32_t end);
+    using Transfer = void (*)(const KernelContext&, const BlockStreams&, const ConstraintData&,
+                              std::int32_t begin, std::int32_t end);
+    Transfer prepare = nullptr;  ///< definitions and memory -> rows and impulses
+    /// Increases, for this step, the inertia of bodies under heavy load (tension.h). Null for types that pull at no
+    /// lever arm.
+    Sweep stiffen = nullptr;
+    Sweep warm_start = nullptr;
+    Sweep solve = nullptr;
+    Sweep relax = nullptr;
+    Sweep restitute = nullptr;  ///< null for types that do not bounce
+    Sweep project = nullptr;
+    Sweep add_up = nullptr;    ///< adds the impulses of a finished substep to the sums
+    Transfer store = nullptr;  ///< impulses and sums -> memory
+
+    /// The same over one block whose lanes are copies of a figure, with body a and body b already in lanes (see
+    /// CopyBody). Null for pairs with a particle or planar body, and for types that bounce.
+    using CopiesSweep = void (*)(const KernelContext&, const BlockStreams&, std::int32_t block, float* body_a,
+                                 float* body_b);
+    CopiesSweep stiffen_copies = nullptr;
+    CopiesSweep warm_start_copies = nullptr;
+    CopiesSweep solve_copies = nullptr;
+    CopiesSweep relax_copies = nullptr;
+    /// Writes EqualityRows, `equality_count` of them, sixteen floats a field. Null for types that lock nothing.
+    using CopiesRows = void (*)(const BlockStreams&, std::int32_t block, const float* body_a,
+                                const float* body_b, float* rows);
+    CopiesRows equality_rows = nullptr;
+    int equality_count = 0;
+
+    int row_floats = 0, substep_floats = 0, impulse_floats = 0, sum_floats = 0;
+    int swept_floats = 0;  ///< of row and substep row, those that a sweep reads
+};
+
+/// The kernels of one kind of body, over rows begin ... end - 1.
+struct BodyKernels {
+    using Move = void (*)(const KernelContext&, std::int32_t begin, std::int32_t end);
+    Move integrate_velocities = nullptr;  ///< null for fixed bodies
+    Move begin_velocities = nullptr;      ///< the same for the first substep: also stores Flight::start_along
+    Move integrate_positions = nullptr;
+    Move integrate_on = nullptr;  ///< positions, then the velocities of the next substep, in one pass
+    /// Integrates the positions of `count` bodies of this kind, in any rows. Null for fixed bodies.
+    void (*integrate_listed)(const KernelContext&, const BodyRow* rows, std::int32_t count) = nullptr;
+    /// BodyStore::commit of sixteen rows from `first` on. Returns false and does nothing unless each row is a body
+    /// that can move and whose state is finite. Null for fixed bodies.
+    bool (*commit)(const KernelContext&, std::int32_t first) = nullptr;
+    // For sixteen bodies, see watched_sweep.h:
+    /// Copies the bodies into at most most_body_floats fields of sixteen floats.
+    void (*keep)(const BodyArrays&, const std::int32_t* offsets, float* kept) = nullptr;
+    /// dv^T M dv, J, of the velocity change dv since keep() (M: mass matrix), and the inverse mass, 1/kg.
+    void (*find_energy)(const BodyArrays&, const std::int32_t* offsets, const float* kept, float* energy,
+                        float* inverse_mass) = nullptr;
+    /// Restores the kept velocities of the first `count` bodies. Null for fixed bodies.
+    void (*bring_back)(const BodyArrays&, const std::int32_t* offsets, const float* kept,
+                       int count) = nullptr;
+};
+
+struct FigureBlock;
+/// The kernels of a figure's bodies, and of all its locks at once, over the copies of a block: see figure.h.
+struct FigureKernels {
+    using Move = void (*)(const KernelContext&, const FigureBlock&);
+    Move load = nullptr;   ///< rows -> lanes
+    Move store = nullptr;  ///< lanes -> rows: velocities and deltas
+    Move load_velocities = nullptr;
+    Move store_velocities = nullptr;
+    Move integrate_velocities = nullptr;
+    Move integrate_positions = nullptr;
+    void (*factor)(const FigureBlock&) = nullptr;  ///< factors the tree; after equality_rows of each lock
+    /// Changes velocities v and impulses so that J v + rate C = 0 for every lock (J: Jacobian, C: position error).
+    void (*solve)(const FigureBlock&, float rate) = nullptr;
+};
+
+/// A constraint type with a pair of body kinds: the key of batches and kernels.
+constexpr int class_of(int type, BodyKind a, BodyKind b)
+{
+    return (type * body_kind_count + static_cast<int>(a)) * body_kind_count + static_cast<int>(b);
+}
+constexpr BodyKind kind_a_of(int constraint_class)
+{
+    return static_cast<BodyKind>(constraint_class / body_kind_count % body_kind_count);
+}
+constexpr BodyKind kind_b_of(int constraint_class)
+{
+    return static_cast<BodyKind>(constraint_class % body_kind_count);
+}
+
+}  // namespace motley

@@ -1,0 +1,290 @@
+// Colouring and placing. Constraints that persist keep their colour; the rest take the first that is free.
+#include "layout/layout.h"
+
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <utility>
+
+#include "stores/growth.h"
+#include "stores/joint_store.h"
+
+namespace motley {
+namespace {
+
+/// Bodies per range: a few microseconds of streaming.
+constexpr std::int32_t rows_per_range = 512;
+
+/// The size of a core's second level cache, bytes. Bodies that fit it arrive in time without prefetching, which is a
+/// quarter of a small kernel's instructions: without it a sweep of 10,000 people is 1.4 times as fast, and one of a
+/// million 0.8 times.
+std::int64_t second_level_cache()
+{
+    constexpr std::int64_t usual = 1 << 20;
+#ifdef _SC_LEVEL2_CACHE_SIZE
+    static const std::int64_t said = sysconf(_SC_LEVEL2_CACHE_SIZE);
+    return said > 0 ? said : usual;
+#else
+    return usual;
+#endif
+}
+
+/// What a sweep reads of a body: velocity and displacement, and the inertia of a rigid body.
+std::int64_t swept_bytes(BodyKind kind)
+{
+    return kind == BodyKind::rigid ? 96 : 32;
+}
+
+}  // namespace
+
+void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse& use)
+{
+    const bool plants_trees = std::exchange(use_, use).exactly != use.exactly;
+    if (!scene.joints->version || scene.joints->version != joint_version_ || plants_trees) {
+        // The old layout is marked invalid until all of the new one is made, because an allocation may fail in
+        // between.
+        joint_version_.reset();
+        cut_.reset();
+        place_joints(scene);
+        if (!scene.joints->version) scene.joints->version = std::make_shared<const char>('\0');
+        joint_version_ = scene.joints->version;
+    }
+    for (std::size_t kind = 0; kind < body_kind_count; ++kind) {
+        // Bodies that were added since the joints changed have no joints.
+        const std::size_t rows = scene.bodies.rows(static_cast<BodyKind>(kind)).size();
+        grow_to(is_jointed_[kind], rows);
+        grow_to(start_along_[kind], rows);
+    }
+    if (contact_count > 0) masks_.copy(joint_masks_, scene.bodies);
+    grow_to(uncoloured_, contact_count);
+    contacts.begin({intake.placements.data(), contact_count}, intake.patches.are_wanted());
+}
+
+void Layout::place_joints(SceneCore& scene)
+{
+    const BodyStore& bodies = scene.bodies;
+    joint_masks_.reset(bodies);
+    scene.joints->for_each([&](auto& store, int) {
+        for (std::size_t i = 0; i < store.size(); ++i) {
+            if (store.colours[i] == no_colour) continue;
+            joint_masks_.try_take(bodies.row_of(store.definitions[i].body_a),
+                                  bodies.row_of(store.definitions[i].body_b), store.colours[i]);
+        }
+    });
+    candidates_.clear();
+    ties_.clear();
+    scene.joints->for_each([&](auto& store, int type) {
+        using Type = typename std::remove_cvref_t<decltype(store)>::Type;
+        for (std::size_t i = 0; i < store.size(); ++i) {
+            const BodyRow a = bodies.row_of(store.definitions[i].body_a);
+            const BodyRow b = bodies.row_of(store.definitions[i].body_b);
+            if (bodies.is_contained(a) || bodies.is_contained(b)) {
+                store.forget_impulse(i);
+                continue;
+            }
+            if (store.colours[i] == no_colour) store.colours[i] = joint_masks_.take_first(a, b);
+            const int equalities = Type::is_equality(store.definitions[i]) ? Type::equality_count : 0;
+            candidates_.push_back({{a, b, static_cast<std::int32_t>(i),
+                                    static_cast<std::uint8_t>(contact_type_count + type), store.colours[i]},
+                                   equalities,
+                                   Type::locks_point});
+            ties_.push_back({a, b, Type::locks_place(store.definitions[i])});
+        }
+    });
+    find_groups(bodies);
+    figures.find(candidates_, bodies, kernels_, use_.exactly, joint_placements_);
+    joints_.begin(joint_placements_, false);
+    for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.count(chunk);
+    joints_.open(kernels_, true);
+    for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.fill(chunk);
+    figures.bind(joints_, kernels_);
+}
+
+void Layout::find_groups(const BodyStore& bodies)
+{
+    groups.find(ties_, bodies);
+    for (int kind = 0; kind < body_kind_count; ++kind)
+        is_jointed_[static_cast<std::size_t>(kind)].assign(bodies.rows(static_cast<BodyKind>(kind)).size(),
+                                                           0);
+    for (const FreeGroups::Tie& tie : ties_) {
+        for (const BodyRow body : {tie.a, tie.b})
+            is_jointed_[static_cast<std::size_t>(body.kind())][body.row()] = 1;
+    }
+}
+
+void Layout::colour_contacts(const BodyStore& bodies, ContactList& list)
+{
+    const std::span<Placement> placements(intake.placements.data(), list.count);
+    std::size_t uncoloured = 0;
+    for (std::uint32_t i = 0; i < placements.size(); ++i) {
+        Placement& placement = placements[i];
+        if (placement.is_bad || bodies.is_contained(placement.a) || bodies.is_contained(placement.b)) {
+            placement.colour = left_out_colour;
+            list.colours[i] = no_colour;
+            list.impulses[i + 1] = list.step_impulses[i] = {};
+            continue;
+        }
+        // A joint added since may have taken the colour; then the contact gets another one below. So does one in the
+        // overflow: its hub may have fewer constraints by now.
+        const bool keeps =
+            placement.colour < overflow_colour && masks_.try_take(placement.a, placement.b, placement.colour);
+        if (!keeps) uncoloured_[uncoloured++] = i;
+        list.colours[i] = placement.colour;
+    }
+    for (std::size_t k = 0; k < uncoloured; ++k) {
+        const std::uint32_t i = uncoloured_[k];
+        list.colours[i] = placements[i].colour = masks_.take_first(placements[i].a, placements[i].b);
+    }
+}
+
+void Layout::count_contacts(std::int64_t chunk)
+{
+    if (intake.patches.are_wanted()) intake.fill_patch(chunk);
+    contacts.count(chunk);
+}
+
+void Layout::cut(SceneCore& scene, std::span<const Contact> list, bool tells_apart)
+{
+    point_at_data(scene, list);
+    // Without contacts, and with the joints of the step before, the chunks are still valid.
+    Cut wanted{{}, use_.in_lockstep, tells_apart};
+    for (int kind = 0; kind < body_kind_count; ++kind)
+        wanted.rows[static_cast<std::size_t>(kind)] = scene.bodies.rows(static_cast<BodyKind>(kind)).size();
+    if (contacts.is_empty() && cut_ == wanted) return;
+    cut_.reset();
+    sweeps_.clear();
+    transfers_.parts.clear();
+    transfers_.tiles.clear();
+    if (!figures.is_empty()) figures.find_lone_blocks(contacts.placements(), use_.in_lockstep);
+    list_rows(scene);
+    joints_.cut(kernels_, tells_apart, sweeps_, transfers_);
+    contacts.cut(kernels_, tells_apart, sweeps_, transfers_);
+    if (contacts.is_empty()) cut_ = wanted;
+}
+
+void Layout::list_rows(const SceneCore& scene)
+{
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        std::vector<RowRange>& ranges = rows_[static_cast<std::size_t>(kind)];
+        const auto size = static_cast<std::int32_t>(scene.bodies.rows(static_cast<BodyKind>(kind)).size());
+        const bool has_lone = static_cast<BodyKind>(kind) == BodyKind::rigid && !figures.lone().empty();
+        ranges.clear();
+        if (size == 1) continue;  // the null row alone
+        if (intake.patches.are_wanted())
+            beside_[static_cast<std::size_t>(kind)].resize(static_cast<std::size_t>(size));
+        const auto add = [&](std::int32_t first, std::int32_t last) {
+            for_each_even_piece<block_lanes>(first, last, rows_per_range,
+                                             [&](std::int32_t begin, std::int32_t end) {
+                                                 ranges.push_back({begin, end});
+                                             });
+        };
+        if (has_lone) {
+            for_each_run(
+                0, size, [&](std::int32_t row) { return !figures.is_alone(static_cast<std::size_t>(row)); },
+                add);
+        } else {
+            add(0, size);
+        }
+    }
+}
+
+void Layout::list_beside_patches(BodyKind kind, std::int64_t i)
+{
+    RowRange& range = rows_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
+    BodyRow* const first = beside_[static_cast<std::size_t>(kind)].data() + range.begin;
+    BodyRow* last = first;
+    for (std::int32_t row = range.begin; row < range.end; ++row) {
+        *last = BodyRow(kind, static_cast<std::uint32_t>(row));
+        last += intake.patches.lists(*last) ? 0 : 1;
+    }
+    range.beside = static_cast<std::int32_t>(last - first);
+}
+
+std::span<const BodyRow> Layout::beside_patches(BodyKind kind, std::int64_t i) const
+{
+    const RowRange& range = rows(static_cast<int>(kind))[static_cast<std::size_t>(i)];
+    return {beside_[static_cast<std::size_t>(kind)].data() + range.begin,
+            static_cast<std::size_t>(range.beside)};
+}
+
+void Layout::point_at_data(SceneCore& scene, std::span<const Contact> list)
+{
+    static_assert(sizeof(Contact) % sizeof(float) == 0);
+    static_assert(offsetof(Contact, restitution) - offsetof(Contact, normal) == 11 * sizeof(float),
+                  "the numbers of a contact are three quads in line");
+    ConstraintData contact;
+    if (!list.empty()) {
+        contact.parameters = &list[0].normal.x;
+        contact.parameter_stride = sizeof(Contact) / sizeof(float);
+        contact.memory_in = &scene.contacts.current().impulses[0].normal;
+        contact.memory_index = intake.memory_index.data();
+        contact.memory_out = &scene.contacts.staged().impulses[1].normal;
+        contact.memory_stride = sizeof(ContactImpulse) / sizeof(float);
+        contact.step_out = &scene.contacts.staged().step_impulses[0].normal;
+        contact.step_stride = contact.memory_stride;
+    }
+    for (int type = 0; type < contact_type_count; ++type) data_[static_cast<std::size_t>(type)] = contact;
+    scene.joints->for_each([&](auto& store, int type) {
+        using Store = std::remove_cvref_t<decltype(store)>;
+        ConstraintData& data = data_[static_cast<std::size_t>(contact_type_count + type)];
+        data.parameters = store.parameters.data();
+        data.parameter_stride = quad_floats<typename Store::Parameters>;
+        data.memory_in = store.memory.data();
+        data.memory_out = store.memory.data();
+        data.memory_stride = quad_floats<typename Store::Memory>;
+        data.step_out = store.wrenches.data();
+        data.step_stride = Store::wrench_floats;
+        data.world_points = store.world_points.data();
+    });
+}
+
+void Layout::point_at(SceneCore& scene, const StepConstants& step)
+{
+    context.step = step;
+    context.relaxing = relaxing(step);
+    std::int64_t swept = 0;
+    for (int kind = 0; kind < body_kind_count; ++kind) {
+        BodyRows& rows = scene.bodies.rows(static_cast<BodyKind>(kind));
+        swept += swept_bytes(static_cast<BodyKind>(kind)) * static_cast<std::int64_t>(rows.size());
+        context.bodies[kind] = {rows.velocity.data(),
+                                rows.delta.data(),
+                                rows.unpushed.data(),
+                                start_along_[static_cast<std::size_t>(kind)].data(),
+                                is_jointed_[static_cast<std::size_t>(kind)].data(),
+                                rows.acceleration.data(),
+                                rows.world_inverse_inertia.data(),
+                                rows.start_inverse_inertia.data(),
+                                rows.inverse_inertia.data(),
+                                rows.pose.data(),
+                                rows.orientation.data(),
+                                static_cast<std::int32_t>(rows.size()),
+                                static_cast<BodyKind>(kind) != BodyKind::fixed};
+    }
+    context.bodies_are_far = swept > second_level_cache();
+    overloaded_ = false;
+    context.overloaded = &overloaded_;
+}
+
+void Layout::report(StepReport& report) const
+{
+    const BatchSet::Count joints = joints_.count(kernels_), touches = contacts.count(kernels_);
+    report.joints = joints.constraints;
+    report.contacts = touches.constraints;
+    report.blocks = joints.blocks + touches.blocks;
+    report.overflow = joints.overflow + touches.overflow;
+    report.joints_in_lockstep = figures.lone_joints();
+    report.exact_joints_refused = figures.refused().joints;
+    report.first_light_body = figures.refused().light_body;
+    const auto constraints = static_cast<double>(joints.constraints + touches.constraints);
+    if (constraints > 0) {
+        report.lane_occupancy = constraints / (block_lanes * static_cast<double>(report.blocks));
+        report.bytes_per_constraint = (joints.streamed_bytes + touches.streamed_bytes) / constraints;
+    }
+    report.colours = std::popcount(sweeps_.colours);
+}
+
+}  // namespace motley

@@ -1,0 +1,119 @@
+// How a scene is laid out for lanes in one step: coloured, in blocks, with pointers to everything a kernel
+// needs.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "figures/figures.h"
+#include "layout/batches.h"
+#include "layout/contact_intake.h"
+#include "layout/free_groups.h"
+#include "motley/core/step_report.h"
+#include "scene/scene_core.h"
+
+namespace motley {
+
+/// Rows of bodies begin ... end - 1: the unit of work of an integration.
+struct RowRange {
+    std::int32_t begin, end;
+    std::int32_t beside = 0;  ///< how many of them are in no patch
+};
+
+/// How joints may be solved in this step.
+struct FigureUse {
+    bool in_lockstep = false;  ///< figures that nothing else touches are solved on their own
+    bool exactly = false;      ///< all locks of a figure are solved at once, by its tree
+};
+
+/// Lives as long as its solver; buffers are kept from step to step. What persists of a result (colours,
+/// impulses) lives in the scene.
+class Layout {
+  public:
+    explicit Layout(const KernelTable& kernels) : kernels_(kernels) {}
+
+    /// First the host's contacts are taken in...
+    ContactIntake intake;
+    /// ...then space is made, and the joints are coloured and placed if they have changed...
+    void begin(SceneCore& scene, std::size_t contact_count, const FigureUse& use);
+    /// ...then every contact gets a colour, in order, by one thread, without allocating...
+    void colour_contacts(const BodyStore& bodies, ContactList& list);
+    /// ...then the contacts are sorted into blocks (count_contacts, and its own open and fill)...
+    void count_contacts(std::int64_t chunk);
+    BatchSet contacts{0, contact_type_count};
+    /// ...and the blocks are cut into work.
+    void cut(SceneCore& scene, std::span<const Contact> list, bool tells_apart);
+
+    /// The step's constants and the rows of the bodies.
+    KernelContext context;
+    void point_at(SceneCore& scene, const StepConstants& step);
+    /// After the joints are prepared: whether one of them pulls harder than a substep can follow (tension.h).
+    [[nodiscard]] bool is_overloaded() const { return overloaded_; }
+
+    [[nodiscard]] const SweepLists& sweeps() const { return sweeps_; }
+    [[nodiscard]] std::span<const Placement> joint_placements() const { return joint_placements_; }
+    [[nodiscard]] std::span<const Placement> contact_placements() const { return contacts.placements(); }
+    /// The figures of the scene, and which of them are solved on their own.
+    Figures figures;
+    /// Groups of bodies that joints connect: see FreeGroups.
+    FreeGroups groups;
+    /// The bodies of a kind, except those of figures that are alone.
+    [[nodiscard]] const std::vector<RowRange>& rows(int kind) const
+    {
+        return rows_[static_cast<std::size_t>(kind)];
+    }
+    /// Lists the bodies of range `i` of a kind that are in no patch...
+    void list_beside_patches(BodyKind kind, std::int64_t i);
+    /// ...and returns them.
+    [[nodiscard]] std::span<const BodyRow> beside_patches(BodyKind kind, std::int64_t i) const;
+    [[nodiscard]] const TransferList& transfers() const { return transfers_; }
+    [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
+    [[nodiscard]] std::span<const ConstraintData> data() const { return data_; }
+    [[nodiscard]] const KernelTable& kernels() const { return kernels_; }
+    /// True when M^-1 J^T of every constraint is constant through the step (M: mass matrix, J: Jacobian): there are
+    /// contacts only, and no rigid bodies, whose inertia rotates with them.
+    [[nodiscard]] bool has_constant_responses() const
+    {
+        return joints_.is_empty() &&
+               context.bodies[static_cast<int>(BodyKind::rigid)].size == 1;  // the null row
+    }
+    /// Fills the counts of a report.
+    void report(StepReport& report) const;
+
+  private:
+    const KernelTable& kernels_;
+    BatchSet joints_{contact_type_count, constraint_type_count};
+    std::vector<Placement> joint_placements_;
+    std::vector<std::uint32_t> uncoloured_;
+    std::shared_ptr<const char> joint_version_;
+    FigureUse use_;
+    /// What the chunks of a step without contacts depend on in addition to the joints.
+    struct Cut {
+        std::array<std::uint32_t, body_kind_count> rows;
+        bool in_lockstep, tells_apart;
+        friend bool operator==(const Cut&, const Cut&) = default;
+    };
+    std::optional<Cut> cut_;  ///< what sweeps_ and transfers_ were cut for; empty if they must be cut again
+    std::vector<Figures::Candidate> candidates_;
+    std::vector<FreeGroups::Tie> ties_;
+    std::array<std::vector<std::uint8_t>, body_kind_count> is_jointed_;  ///< by kind and row
+    std::array<AlignedVector<float>, body_kind_count> start_along_;      ///< see Flight
+    std::atomic<bool> overloaded_ = false;
+    std::array<std::vector<RowRange>, body_kind_count> rows_;
+    std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< in no patch; at the range's first row
+    ColourMasks joint_masks_, masks_;
+    SweepLists sweeps_;
+    TransferList transfers_;
+    std::array<ConstraintData, constraint_type_count> data_;
+
+    void place_joints(SceneCore& scene);
+    void find_groups(const BodyStore& bodies);
+    void list_rows(const SceneCore& scene);
+    void point_at_data(SceneCore& scene, std::span<const Contact> contacts);
+};
+
+}  // namespace motley
