@@ -113,6 +113,8 @@ struct RunCommand {
         app.add_option("--seconds", options.seconds, "simulated time; default: the scene's")
             ->check(CLI::PositiveNumber);
         app.add_option("--dt", options.dt, "s a step")->check(CLI::Range(1e-6, 1.0))->capture_default_str();
+        app.add_flag("--listed", options.lists_contacts,
+                     "a search of the host lists the contacts of people, where the scene can choose");
         app.add_option("--friction", options.friction, "between people; default: the scene's")
             ->check(CLI::Range(0.0, 1e6));
         app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();

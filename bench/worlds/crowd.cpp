@@ -23,6 +23,19 @@ void Crowd::add(Scene& scene, Agent agent, Vec2<double> position)
     bodies_.push_back(agent.body);
     radii_.push_back(agent.radius);
     serial_.push_back(next_serial_++);
+    if (is_handed_over_) scene.set_disc(agent.body, {.radius = agent.radius, .friction = friction});
+}
+
+void Crowd::hand_over(Scene& scene)
+{
+    std::vector<DiscDefinition> discs;
+    for (const Agent& agent : agents) discs.push_back({.radius = agent.radius, .friction = friction});
+    scene.set_discs(bodies_, std::span<const DiscDefinition>(discs));
+    for (const Wall& wall : walls) {
+        const Vec2<double> ends[] = {wall.from, wall.to};
+        scene.add_wall({.points = ends, .friction = friction});
+    }
+    is_handed_over_ = true;
 }
 
 void Crowd::remove(Scene& scene, std::size_t index)

@@ -45,6 +45,11 @@ class Crowd {
     /// Forgets agent `index` and removes its body; the last agent takes its place.
     void remove(Scene& scene, std::size_t index);
 
+    /// Gives everybody a disc and makes the walls walls of the scene, so that the solver finds the contacts. People who
+    /// are added later get a disc as well.
+    void hand_over(Scene& scene);
+    [[nodiscard]] bool is_handed_over() const { return is_handed_over_; }
+
     /// Reads positions and velocities from the scene.
     void observe(const Scene& scene, Executor& executor);
     /// Forces that bring everyone to the desired velocity: m (v0 e - v) / tau, e towards the goal.
@@ -72,6 +77,7 @@ class Crowd {
     std::size_t contact_count_ = 0;
     AlignedVector<std::uint32_t> serial_;  ///< each agent's order of arrival; part of contact keys
     std::uint32_t next_serial_ = 0;
+    bool is_handed_over_ = false;
 
     /// What a chunk of the grid found: people near each other, and people near walls (b is the wall).
     struct Findings {

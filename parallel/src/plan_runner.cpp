@@ -38,6 +38,7 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
             break;
         case Operation::prepare:
             sweeper_.transfer(&ConstraintKernels::prepare);
+            discs_.prepare(step.scene);
             break;
         case Operation::stiffen:
             if (layout_.is_overloaded()) sweeper_.sweep(&ConstraintKernels::stiffen);
@@ -220,6 +221,7 @@ void PlanRunner::move_bodies(const Step& step)
     step.report.first_contained = scene.bodies.id_of_slot(first_slot);
     scene.bodies.contained_count += static_cast<std::size_t>(step.report.bodies_contained);
     scene.joints->version.reset();  // joints of contained bodies are left out from now on
+    scene.discs.is_stale = true;    // and so are their discs
 }
 
 bool PlanRunner::sweeps_long(const SolverSettings& settings)

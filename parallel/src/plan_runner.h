@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "disc_pipeline.h"
 #include "layout/layout.h"
 #include "renewal.h"
 #include "step/convergence.h"
@@ -15,8 +16,8 @@ namespace motley {
 
 class PlanRunner {
   public:
-    PlanRunner(Sweeper& sweeper, Layout& layout)
-        : sweeper_(sweeper), layout_(layout), renewal_(sweeper, layout)
+    PlanRunner(Sweeper& sweeper, DiscPipeline& discs, Layout& layout)
+        : sweeper_(sweeper), discs_(discs), layout_(layout), renewal_(sweeper, layout)
     {
     }
 
@@ -37,6 +38,7 @@ class PlanRunner {
 
   private:
     Sweeper& sweeper_;
+    DiscPipeline& discs_;
     Layout& layout_;
     Convergence convergence_;
     Renewal renewal_;

@@ -39,14 +39,16 @@ void Renewal::renew()
 
 void Renewal::change_signs()
 {
-    for (const std::vector<SweepChunk>& list : layout_.sweeps().lists) {
-        for (const SweepChunk& chunk : list) {
+    const auto change = [](std::span<const SweepChunk> chunks) {
+        for (const SweepChunk& chunk : chunks) {
             const std::int64_t floats = std::int64_t{chunk.kernels->impulse_floats} * block_lanes;
             std::transform(chunk.streams.impulses + floats * chunk.begin,
                            chunk.streams.impulses + floats * chunk.end,
                            chunk.streams.impulses + floats * chunk.begin, [](float x) { return -x; });
         }
-    }
+    };
+    for (const std::vector<SweepChunk>& list : layout_.sweeps().lists) change(list);
+    change(layout_.discs());
 }
 
 }  // namespace motley

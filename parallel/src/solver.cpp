@@ -10,6 +10,7 @@
 
 #include "budget.h"
 #include "contact_pipeline.h"
+#include "disc_pipeline.h"
 #include "layout/layout.h"
 #include "maths/step_constants.h"
 #include "motley/core/invalid_input.h"
@@ -28,7 +29,8 @@ namespace {
 /// The size of a step, counted in contacts: see SolverOptions::alone_below.
 std::size_t size_of(const Scene& scene, std::span<const Contact> contacts)
 {
-    return contacts.size() + 4 * scene.joint_count() + scene.body_count() / 2;
+    return contacts.size() + 4 * scene.joint_count() + scene.body_count() / 2 +
+           2 * core_of(scene).discs.count;
 }
 
 Isa checked_isa(const std::optional<Isa>& wanted)
@@ -68,6 +70,17 @@ std::string text_of(const std::exception_ptr& thrown) noexcept
     return {};
 }
 
+/// Contacts of discs are solved by sweeps, as often as the settings say.
+void refuse_what_discs_cannot(const SceneCore& scene, const SolverSettings& settings)
+{
+    if (!scene.discs.is_in_use()) return;
+    if (settings.method == Method::direct)
+        refuse("SolverSettings.method", "direct, in a scene with discs",
+               "another one, or contacts from a list");
+    if (settings.tolerance > 0)
+        refuse("SolverSettings.tolerance", settings.tolerance, "0 in a scene with discs");
+}
+
 void measure_start(const Scene& scene, std::span<const Contact> contacts, StepMeasures& measures)
 {
     measures.before = scene.errors();
@@ -97,6 +110,7 @@ struct Solver::Impl {
     StageRunner runner;
     Layout layout;
     ContactPipeline pipeline;
+    DiscPipeline discs;
     Sweeper sweeper;
     PlanRunner plan_runner;
     Plan plan;         ///< of this step
@@ -112,8 +126,9 @@ struct Solver::Impl {
           runner(options.executor ? options.executor : own_executor.get()),
           layout(kernel_table(i)),
           pipeline(runner, layout),
+          discs(runner, layout),
           sweeper(runner, layout),
-          plan_runner(sweeper, layout)
+          plan_runner(sweeper, discs, layout)
     {
     }
 
@@ -193,6 +208,7 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> co
     if (!(dt >= 0 && dt <= 1)) refuse("step.dt", dt, "0 to 1 (s)");
     if (contacts.size() > INT32_MAX)
         refuse("step.contacts.size()", static_cast<double>(contacts.size()), "at most 2^31 - 1");
+    refuse_what_discs_cannot(scene, asked);
     const auto began = std::chrono::steady_clock::now();
     pick_settings();
     const std::exception_ptr late = runner.with_workers(runs_alone(host_scene, contacts), [&] {
@@ -204,6 +220,8 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> co
         clock.enter(Stage::colour);
         lay_out(scene, contacts, report);
         if (!report.error.empty()) return clock.leave();
+        discs.find(scene, dt);
+        layout.list_discs(scene);
         layout.point_at(scene, step_constants(settings, dt, scene.last_substep));
         plan_step(scene);
         clock.leave();
@@ -339,7 +357,7 @@ bool Solver::Impl::can_visit_patches_once(const SceneCore& scene) const
 {
     return layout.intake.patches.are_wanted() && settings.method == Method::soft_step &&
            settings.relaxations > 0 && !PlanRunner::sweeps_long(settings) && !tells_blocks_apart(scene) &&
-           layout.figures.touched_trees().empty();
+           layout.figures.touched_trees().empty() && layout.disc_bands() == 0;
 }
 
 }  // namespace motley

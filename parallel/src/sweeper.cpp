@@ -110,9 +110,32 @@ void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_
     // Relaxation runs in the opposite order, so that a patch, solved last, can be moved and relaxed while it is in
     // cache.
     const bool patches_first = kernel == &ConstraintKernels::relax;
-    if (patches_first) sweep_patches(kernel, at_least);
+    // Islands that want more sweeps than others are of listed contacts and joints.
+    const bool with_discs = at_least <= 0 && layout_.context.measure == Measure::nothing;
+    if (patches_first) {
+        if (with_discs) sweep_discs(kernel);
+        sweep_patches(kernel, at_least);
+    }
     sweep_beside_patches(kernel, at_least);
-    if (!patches_first) sweep_patches(kernel, at_least);
+    if (!patches_first) {
+        sweep_patches(kernel, at_least);
+        if (with_discs) sweep_discs(kernel);
+    }
+}
+
+/// Bands of even number, then of odd number; before them, or after them to relax, band 0.
+void Sweeper::sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel)
+{
+    const std::int64_t bands = layout_.disc_bands();
+    if (bands == 0) return;
+    const auto run = [&](std::int64_t band) {
+        run_chunks(layout_.context, layout_.kernels(), layout_.discs_of_band(band), kernel, every_block);
+    };
+    const bool wide_last = kernel == &ConstraintKernels::relax;
+    if (!wide_last) run(0);
+    runner_.run(bands / 2, [&](std::int64_t i) { run(2 * i + 1); });
+    runner_.run((bands - 1) / 2, [&](std::int64_t i) { run(2 * i + 2); });
+    if (wide_last) run(0);
 }
 
 void Sweeper::add_up()
@@ -121,6 +144,10 @@ void Sweeper::add_up()
     runner_.run(sweeps.chunk_count(), [&](std::int64_t i) {
         const SweepChunk& chunk = sweeps.chunk(i);
         if (chunk.streams.sums != nullptr)
+            chunk.kernels->add_up(layout_.context, chunk.streams, chunk.begin, chunk.end);
+    });
+    runner_.run(layout_.disc_bands(), [&](std::int64_t band) {
+        for (const SweepChunk& chunk : layout_.discs_of_band(band))
             chunk.kernels->add_up(layout_.context, chunk.streams, chunk.begin, chunk.end);
     });
 }

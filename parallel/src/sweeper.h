@@ -56,6 +56,7 @@ class Sweeper {
     Layout& layout_;
     std::vector<FigureWorkspace> workspaces_;  ///< one per worker
 
+    void sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel);
     void sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
     void move_patch(const KernelContext& context, std::int64_t patch);
     void relax_patch(const KernelContext& context, std::int64_t patch);

@@ -34,6 +34,7 @@ class OpenCrowd final : public CrowdScene {
                         {{side_, 0}, {side_, side_}},
                         {{side_, side_}, {0, side_}},
                         {{0, side_}, {0, 0}}};
+        if (!options.lists_contacts) people.hand_over(scene);
     }
 
     void steer(double time, Executor& executor) override

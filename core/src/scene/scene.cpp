@@ -3,6 +3,7 @@
 
 #include "motley/core/invalid_input.h"
 #include "scene/body_checks.h"
+#include "stores/growth.h"
 #include "stores/joint_store.h"
 
 namespace motley {
@@ -56,7 +57,9 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
     if (twice) refuse("remove_bodies.bodies", "a list with a body named twice", "each body once");
 
     core_->bodies.make_room_to_remove(bodies);
+    make_room_for(core_->discs.free_walls, core_->discs.walls.size());
     core_->remove_joints_of(bodies);
+    core_->remove_discs_of(bodies);
     for (const BodyId body : bodies) core_->bodies.remove(body);
     std::erase_if(core_->island_iterations,
                   [&](const IslandIterations& asked) { return !is_alive(asked.body); });
@@ -65,7 +68,7 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
 
 void Scene::renumber_bodies()
 {
-    core_->bodies.renumber();
+    core_->renumber_rows();
     core_->joints->version.reset();  // blocks refer to rows
 }
 

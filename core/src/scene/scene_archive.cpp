@@ -184,6 +184,7 @@ void SceneArchive::check(const SceneCore& scene)
 {
     check_bodies(scene);
     check_joints(scene);
+    check_discs(scene);
     for (const IslandIterations& asked : scene.island_iterations) scene.check_island_wish(asked);
     const ContactList& list = scene.contacts.current();
     for (std::size_t i = 0; i < list.count; ++i)
@@ -197,6 +198,7 @@ void SceneArchive::derive(SceneCore& scene)
     BodyStore& bodies = scene.bodies;
     JointStores& joints = *scene.joints;
     bodies.derive();
+    scene.discs.derive();
     bodies.first_ends.assign(bodies.slots_.size(), 0);
     joints.ends.assign(2 * joints.slots.size(), {});
     joints.for_each([&](auto& store, int) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scene/scene_core.h"
+#include "stores/disc_fields.h"
 #include "stores/joint_store.h"
 
 namespace motley {
@@ -85,6 +86,7 @@ struct SceneArchive {
         visit_bodies(archive, scene.bodies);
         visit_joints(archive, *scene.joints);
         visit_contacts(archive, scene.contacts);
+        visit_discs(archive, scene.discs);
         archive(scene.island_iterations);
         archive(scene.ground);
         archive(scene.body_count);
@@ -102,6 +104,7 @@ struct SceneArchive {
     static void check(const SceneCore& scene);
     static void check_bodies(const SceneCore& scene);
     static void check_joints(const SceneCore& scene);
+    static void check_discs(const SceneCore& scene);
     /// Computes what is not stored in files.
     static void derive(SceneCore& scene);
 
@@ -139,6 +142,54 @@ struct SceneArchive {
         archive(joints.slots);
         archive(joints.free_slots);
         archive(joints.watched);
+    }
+    /// The blocks as they are solved, without the room behind them.
+    template <class Archive, class Store>
+    static void visit_discs(Archive& archive, Store& discs)
+    {
+        archive(discs.shapes);
+        archive(discs.walls);
+        archive(discs.free_walls);
+        archive(discs.segments);
+        archive(discs.anchors);
+        archive(discs.wall_ends);
+        archive(discs.wall_skin);
+        archive(discs.origin);
+        archive(discs.age);
+        archive(discs.horizon);
+        archive(discs.is_stale);
+        auto bands = static_cast<std::uint64_t>(discs.band_count);
+        archive(bands);
+        if constexpr (Archive::reads) {
+            if (bands > discs.anchors.size() + 2) throw std::runtime_error("has more bands than discs");
+            discs.band_count = static_cast<std::size_t>(bands);
+            discs.bands.resize(discs.band_count);
+        }
+        for (std::size_t band = 0; band < discs.band_count; ++band) {
+            for_each_disc_class([&](auto c) {
+                using Fields = DiscFieldsOf<c.value>;
+                auto& blocks = discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
+                archive(blocks.count);
+                const std::size_t count = blocks.count < 0 ? 0 : static_cast<std::size_t>(blocks.count);
+                visit_first(archive, blocks.bodies, count);
+                visit_first(archive, blocks.lanes, count);
+                visit_first(archive, blocks.rows, count * block_lanes * Fields::row_floats);
+                visit_first(archive, blocks.impulses, count * block_lanes * Fields::impulse_floats);
+                visit_first(archive, blocks.sums, count * block_lanes * Fields::impulse_floats);
+                if constexpr (is_wall(c.value)) visit_first(archive, blocks.touches, count * block_lanes);
+            });
+        }
+    }
+    /// The first `count` elements of a vector that may have more; read back, it has no more.
+    template <class Archive, class Vector>
+    static void visit_first(Archive& archive, Vector& values, std::size_t count)
+    {
+        if constexpr (Archive::reads) {
+            archive(values);
+            if (values.size() != count) throw std::runtime_error("has lists of different lengths");
+        } else {
+            archive(Vector(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count)));
+        }
     }
     /// Only the list of the last step: the table of keys does not affect results.
     template <class Archive, class Cache>

@@ -10,6 +10,7 @@
 #include "stores/body_store.h"
 #include "stores/busy_flag.h"
 #include "stores/contact_cache.h"
+#include "stores/disc_store.h"
 
 namespace motley {
 
@@ -28,6 +29,7 @@ struct SceneCore {
     BodyStore bodies;
     Boxed<JointStores> joints;
     ContactCache contacts;
+    DiscStore discs;
     std::vector<BreakEvent> break_events;             ///< with room for every watched joint
     std::vector<IslandIterations> island_iterations;  ///< of bodies alive
     BodyId ground{};
@@ -62,9 +64,22 @@ struct SceneCore {
     void require_list_of_last_step(std::span<const Contact> list, const char* what) const;
     [[nodiscard]] std::size_t index_of_joint(ConstraintId joint, int type) const;
 
+    // ---- discs: scene_discs.cpp ----
+    void check_has_disc(BodyId body, const char* what) const;
+    [[nodiscard]] bool has_disc(BodyId body) const { return discs.shape_of(body.slot) != nullptr; }
+    /// Calls work(DiscImpulse) for each contact of discs that pushed in the last step.
+    template <class Work>
+    void for_each_disc_impulse(const Work& work) const;
+
     ConstraintId take_joint_slot(int type, std::size_t index);
     void remove_joints_of(std::span<const BodyId> removed);
     void remove_joint_at(int type, std::size_t index);
+    /// The discs of bodies that are about to be removed, and the walls on them.
+    void remove_discs_of(std::span<const BodyId> removed);
+    /// After a teleport: contacts of a disc, or of the walls on a body, start anew.
+    void forget_discs_of(BodyId moved);
+    /// BodyStore::renumber, and what is kept by row follows.
+    void renumber_rows();
     void write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular);
     /// The mean force or torque over the last step of an impulse of that step.
     [[nodiscard]] Vec3<float> force_of(const Vec3<float>& impulse) const;

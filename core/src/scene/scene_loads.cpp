@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "motley/core/invalid_input.h"
-#include "scene/scene_core.h"
+#include "scene/disc_impulses.h"
 
 namespace motley {
 namespace {
@@ -58,6 +58,17 @@ void Scene::read_loads(std::span<const BodyId> bodies, std::span<const Contact> 
         bear(contacts[i].body_a, -on_b);
         bear(contacts[i].body_b, on_b);
     }
+    core_->for_each_disc_impulse([&](const DiscImpulse& contact) {
+        const Vec3<double> on_b{contact.on_b().x, contact.on_b().y, 0};
+        const auto bear = [&](std::uint32_t slot, const Vec3<double>& push) {
+            Borne& all = borne[slot];
+            all.normal += contact.along;
+            all.largest = std::max(all.largest, contact.along);
+            all.net = all.net + push;
+        };
+        bear(contact.slot_a, -on_b);
+        bear(contact.slot_b, on_b);
+    });
     const double per_second = core_->last_step > 0 ? 1 / static_cast<double>(core_->last_step) : 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const Borne& all = borne[bodies[i].slot];

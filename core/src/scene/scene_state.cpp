@@ -59,6 +59,7 @@ void Scene::set_pose(BodyId body, const Vec3<double>& position, const Quat<doubl
         if (where.kind() == BodyKind::rigid && core_->bodies.contained[body.slot] == 0)
             core_->bodies.refresh_world_inertia(where.row());
     }
+    core_->forget_discs_of(body);
     // A teleport makes the cached impulses meaningless.
     core_->joints->for_each_on(core_->bodies.first_ends[body.slot], [&](const JointStores::Slot& joint) {
         core_->joints->for_each([&](auto& store, int type) {
@@ -176,6 +177,7 @@ void Scene::revive(BodyId body, const Vec3<double>& position, const Vec3<float>&
     core_->bodies.rows(core_->bodies.row_of(body).kind()).pose[core_->bodies.row_of(body).row()].position =
         convert<PoseReal>(position);
     core_->write_velocity(body, &linear, nullptr);
+    core_->forget_discs_of(body);
 }
 
 bool Scene::is_contained(BodyId body) const

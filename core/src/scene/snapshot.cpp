@@ -17,7 +17,7 @@ namespace motley {
 namespace {
 
 /// To be increased with every change of what is written.
-constexpr std::uint32_t format_version = 3;
+constexpr std::uint32_t format_version = 4;
 constexpr std::array<char, 8> scene_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 's'};
 constexpr std::array<char, 8> problem_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 'p'};
 

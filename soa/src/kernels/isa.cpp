@@ -127,6 +127,13 @@ constexpr Isa rare_lanes_of(Isa isa)
     }
 }
 
+/// The instruction set that solves contacts of discs. Two halves of a block in lanes of AVX2 overlap where one whole
+/// block waits for itself: 0.8 times the time of AVX-512 on Zen 5.
+constexpr Isa disc_lanes_of(Isa isa)
+{
+    return isa == Isa::avx512 ? Isa::avx2 : isa;
+}
+
 template <Isa isa, class... Lists>
 void enter_constraints(KernelTable& table, TypeList<Lists...>)
 {
@@ -152,6 +159,9 @@ const KernelTable& table_of()
         if constexpr (isa != Isa::scalar) entered = table_of<Isa::scalar>();
         enter_constraints<isa>(entered, ConstraintLists{});
         enter_body_kernels<isa>(entered.bodies, entered.figures);
+#ifndef MOTLEY_WITHOUT_PLANAR
+        enter_disc_kernels<disc_lanes_of(isa)>(entered.discs);
+#endif
 #ifndef MOTLEY_WITHOUT_TREES
         enter_tree_kernels<isa>(entered.figures);
 #endif

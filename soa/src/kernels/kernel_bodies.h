@@ -10,6 +10,14 @@ using PoseQuad [[gnu::vector_size(4 * sizeof(PoseReal)), gnu::aligned(sizeof(Pos
     PoseReal;
 using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
 
+/// The same pointer, of which the compiler does not know that it has read from it before: it then reads offsets again
+/// rather than keep sixteen of them, for which there are no registers.
+[[gnu::always_inline]] inline const std::int32_t* read_again(const std::int32_t* offsets)
+{
+    asm("" : "+r"(offsets));
+    return offsets;
+}
+
 [[gnu::always_inline]] inline Body<BodyKind::particle> load_body(const BodyArrays& arrays,
                                                                  const std::int32_t* offsets,
                                                                  Body<BodyKind::particle>*)
@@ -26,7 +34,7 @@ using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
 {
     Lanes v[4], d[4];
     load_quads(arrays.velocity, offset_floats, offsets, v);
-    load_quads(arrays.delta, offset_floats, offsets, d);
+    load_quads(arrays.delta, offset_floats, read_again(offsets), d);
     return {{v[0], v[1]}, v[2], v[3], {d[0], d[1]}, d[2], d[3]};
 }
 

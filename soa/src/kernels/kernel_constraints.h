@@ -65,7 +65,8 @@ struct Kernels {
         Nowhere nowhere;
         for (int lane = 0; lane < count; lane += Lanes_width) {
             work(Bundle{arrays_a, arrays_b, bodies.a + lane, bodies.b + lane,
-                        streams.constraints[block].lane + lane, streams.rows + block * row_stride + lane,
+                        streams.constraints == nullptr ? nullptr : streams.constraints[block].lane + lane,
+                        streams.rows + block * row_stride + lane,
                         // An empty stream is null, and no offset is added to it.
                         substep_stride == 0 ? nullptr : streams.substep_rows + block * substep_stride + lane,
                         streams.impulses + block * impulse_stride + lane,

@@ -23,6 +23,9 @@ void enter_constraint_kernels(ConstraintKernels* pairs);
 /// figures.
 template <Isa isa>
 void enter_body_kernels(BodyKernels* kinds, FigureKernels& figures);
+/// Enters the kernels of contacts of discs.
+template <Isa isa>
+void enter_disc_kernels(DiscKernels& discs);
 /// Enters FigureKernels::factor and solve.
 template <Isa isa>
 void enter_tree_kernels(FigureKernels& figures);

@@ -8,11 +8,12 @@ namespace motley {
 
 inline constexpr int class_count = constraint_type_count * body_kind_count * body_kind_count;
 
-/// Kernels of constraints by class_of, of bodies by kind, and of figures.
+/// Kernels of constraints by class_of, of bodies by kind, of figures and of discs.
 struct KernelTable {
     ConstraintKernels constraints[class_count];
     BodyKernels bodies[body_kind_count];
     FigureKernels figures;
+    DiscKernels discs;
 };
 
 /// The table compiled for an instruction set; only for those of available_isas().

@@ -1,44 +1,25 @@
-// Blocks of sixteen lanes, and the table of kernels that run over them.
-//
-// A block holds up to sixteen constraints of one type and one pair of body kinds, none of which shares a moving body
-// with another. The number is sixteen on every instruction set (computed as 16 x 1, 4 x 4, 2 x 8 or 1 x 16), so that
-// the blocks, their order and with them every bit of the result do not depend on the machine.
+// The table of kernels that run over blocks of sixteen lanes (stores/lane_block.h). A block is of one constraint type
+// and one pair of body kinds.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 
 #include "maths/step_constants.h"
 #include "motley/soa/isa.h"
 #include "scene/joint_pose.h"
-#include "stores/body_store.h"
+#include "stores/disc_store.h"
+#include "stores/lane_block.h"
 
 namespace motley {
 
-inline constexpr int block_lanes = 16;
 /// The most floats that a type may have in its Impulse.
 inline constexpr int most_impulse_floats = 32;
 /// The most floats that a body has per lane.
 inline constexpr int most_body_floats = 20;
 
-/// Blocks store where a body's row begins as an offset in pairs of floats. Eight bytes is the largest scale factor of
-/// an x86 address, so kernels need no multiplication for each row that they load or store.
-inline constexpr int offset_floats = 2;
-constexpr std::int32_t offsets_a_row(BodyKind kind)
-{
-    return 4 / offset_floats * quads_of(kind);
-}
-inline std::int32_t offset_of(BodyRow row)
-{
-    return static_cast<std::int32_t>(row.row()) * offsets_a_row(row.kind());
-}
-
-/// The bodies of a block. Lanes from the block's count on are padding: their bodies are the null rows, and they are
-/// never stored.
-struct alignas(64) BlockBodies {
-    std::int32_t a[block_lanes];  ///< offset_of body a
-    std::int32_t b[block_lanes];
-};
 /// The constraints of a block: their indices in the list or store of the type.
 struct alignas(64) BlockConstraints {
     std::int32_t lane[block_lanes];
@@ -189,6 +170,18 @@ struct FigureKernels {
     void (*factor)(const FigureBlock&) = nullptr;  ///< factors the tree; after equality_rows of each lock
     /// Changes velocities v and impulses so that J v + rate C = 0 for every lock (J: Jacobian, C: position error).
     void (*solve)(const FigureBlock&, float rate) = nullptr;
+};
+
+/// The kernels of contacts of discs. Their rows are made by prepare_smooth and prepare_rough of pairs, and by
+/// place_walls() of walls; nothing is stored, because their blocks are the scene's.
+struct DiscKernels {
+    std::array<ConstraintKernels, disc_class_count> classes;
+    ConstraintKernels::Sweep prepare_smooth = nullptr, prepare_rough = nullptr;
+    [[nodiscard]] ConstraintKernels& of(DiscClass c) { return classes[static_cast<std::size_t>(c)]; }
+    [[nodiscard]] const ConstraintKernels& of(DiscClass c) const
+    {
+        return classes[static_cast<std::size_t>(c)];
+    }
 };
 
 /// A constraint type with a pair of body kinds: the key of batches and kernels.

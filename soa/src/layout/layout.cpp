@@ -192,6 +192,32 @@ void Layout::list_rows(const SceneCore& scene)
     }
 }
 
+void Layout::list_discs(SceneCore& scene)
+{
+    disc_chunks_.clear();
+    disc_bands_.clear();
+    for (std::size_t band = 0; band < scene.discs.band_count; ++band) {
+        const auto first = static_cast<std::int32_t>(disc_chunks_.size());
+        for (std::size_t c = 0; c < disc_class_count; ++c) {
+            DiscBlocks& blocks = scene.discs.bands[band].blocks[c];
+            if (blocks.count == 0) continue;
+            const BodyKind kind_a = is_wall(static_cast<DiscClass>(c)) ? BodyKind::fixed : BodyKind::planar;
+            SweepChunk chunk{};
+            chunk.kernels = &kernels_.discs.classes[c];
+            chunk.streams.kind_a = chunk.kind_a = kind_a;
+            chunk.streams.kind_b = chunk.kind_b = BodyKind::planar;
+            chunk.streams.bodies = blocks.bodies.data();
+            chunk.streams.counts = blocks.lanes.data();
+            chunk.streams.rows = blocks.rows.data();
+            chunk.streams.impulses = blocks.impulses.data();
+            chunk.streams.sums = blocks.sums.data();
+            chunk.end = blocks.count;
+            disc_chunks_.push_back(chunk);
+        }
+        disc_bands_.push_back({first, static_cast<std::int32_t>(disc_chunks_.size())});
+    }
+}
+
 void Layout::list_beside_patches(BodyKind kind, std::int64_t i)
 {
     RowRange& range = rows_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
@@ -271,7 +297,18 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
 
 void Layout::report(StepReport& report) const
 {
-    const BatchSet::Count joints = joints_.count(kernels_), touches = contacts.count(kernels_);
+    const BatchSet::Count joints = joints_.count(kernels_);
+    BatchSet::Count touches = contacts.count(kernels_);
+    for (const SweepChunk& chunk : disc_chunks_) {
+        std::int64_t lanes = 0;
+        for (std::int32_t block = 0; block < chunk.end; ++block) lanes += chunk.streams.counts[block];
+        const int floats = chunk.kernels->swept_floats + chunk.kernels->impulse_floats;
+        touches.constraints += lanes;
+        touches.blocks += chunk.end;
+        touches.streamed_bytes +=
+            static_cast<double>(lanes) * (sizeof(float) * static_cast<double>(floats) + 8);
+        report.disc_contacts += lanes;
+    }
     report.joints = joints.constraints;
     report.contacts = touches.constraints;
     report.blocks = joints.blocks + touches.blocks;

@@ -70,6 +70,16 @@ class Layout {
     void list_beside_patches(BodyKind kind, std::int64_t i);
     /// ...and returns them.
     [[nodiscard]] std::span<const BodyRow> beside_patches(BodyKind kind, std::int64_t i) const;
+    /// The contacts of discs in bands; bands of even number are independent of each other, and those of odd number:
+    /// see DiscStore.
+    void list_discs(SceneCore& scene);
+    [[nodiscard]] std::int64_t disc_bands() const { return static_cast<std::int64_t>(disc_bands_.size()); }
+    [[nodiscard]] std::span<const SweepChunk> discs_of_band(std::int64_t band) const
+    {
+        const PatchChunks& range = disc_bands_[static_cast<std::size_t>(band)];
+        return {disc_chunks_.data() + range.first, disc_chunks_.data() + range.last};
+    }
+    [[nodiscard]] std::span<const SweepChunk> discs() const { return disc_chunks_; }
     [[nodiscard]] const TransferList& transfers() const { return transfers_; }
     [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
     [[nodiscard]] std::span<const ConstraintData> data() const { return data_; }
@@ -108,6 +118,8 @@ class Layout {
     ColourMasks joint_masks_, masks_;
     SweepLists sweeps_;
     TransferList transfers_;
+    std::vector<SweepChunk> disc_chunks_;  ///< of each band and class
+    std::vector<PatchChunks> disc_bands_;
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(SceneCore& scene);

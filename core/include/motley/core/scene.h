@@ -10,6 +10,7 @@
 #include "motley/core/body.h"
 #include "motley/core/boxed.h"
 #include "motley/core/constraints/contact_definition.h"
+#include "motley/core/crowd.h"
 #include "motley/core/ids.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_definitions.h"
@@ -123,6 +124,25 @@ class Scene {
     /// first given one.
     [[nodiscard]] std::span<const BreakEvent> break_events() const;
 
+    // ---- discs and walls, whose contacts the library finds itself -----------------------------------------
+    /// Gives a planar, dynamic body the shape of a disc, or another one than it has. From then on steps find its
+    /// contacts with other discs and with walls; contacts of the host's list act beside them.
+    void set_disc(BodyId body, const DiscDefinition& disc);
+    /// The same for many: disc i is of bodies[i].
+    void set_discs(std::span<const BodyId> bodies, StridedSpan<const DiscDefinition> discs);
+    /// Takes the disc of a body away. Refuses a body without one.
+    void clear_disc(BodyId body);
+    [[nodiscard]] bool has_disc(BodyId body) const;
+    /// Adds a wall. It is removed with its body.
+    WallId add_wall(const WallDefinition& wall);
+    void remove_wall(WallId wall);
+    [[nodiscard]] bool is_alive(WallId wall) const;
+    /// The contacts of discs with each other and with walls that pushed in the last step. They were solved in this
+    /// order.
+    [[nodiscard]] std::vector<DiscContact> disc_contacts() const;
+    /// Those of one body with a disc.
+    [[nodiscard]] std::vector<DiscContact> disc_contacts_of(BodyId body) const;
+
     // ---- memory -------------------------------------------------------------------------------------------
     /// Reorders the bodies so that neighbours in space are neighbours in memory. Handles stay valid and results keep
     /// every bit. Makes the steps of a large crowd faster after its people have mixed. Costs about as much as a step:
@@ -153,7 +173,8 @@ class Scene {
     [[nodiscard]] JointReport contact_report(std::span<const Contact> contacts, std::size_t index) const;
 
     /// The loads that the contacts of the last step put on bodies: loads[i] is of bodies[i], which may be dynamic,
-    /// kinematic, static or contained. `contacts` is the list of that step; another list is refused. `circumferences`
+    /// kinematic, static or contained. `contacts` is the list of that step; another list is refused. Contacts of discs
+    /// count as well. `circumferences`
     /// (m, above 0, to 1e9), if given, turn forces into pressures. Allocates one sum for each body of the scene.
     void read_loads(std::span<const BodyId> bodies, std::span<const Contact> contacts,
                     StridedSpan<BodyLoad> loads, StridedSpan<const float> circumferences = {}) const;

@@ -44,7 +44,7 @@ struct SceneErrors {
     double momentum[3] = {0, 0, 0};   ///< kg m/s, linear, world
 };
 
-/// How well a step solved its constraints. The same bits for any number of threads and instruction set.
+/// How well a step solved its constraints, contacts of discs left out. The same bits for any number of threads and instruction set.
 struct StepMeasures {
     /// The residual r of J v + bias, limits and friction cones included, after the last sweep of `solve` in the last
     /// substep: sqrt(sum of r^T K^-1 r) over all constraints, K = J M^-1 J^T, in sqrt(J). Zero exactly when every
@@ -64,6 +64,8 @@ struct StepReport {
         error;  ///< why the step was refused; if it is done, what the executor threw afterwards, if anything
 
     std::int64_t contacts = 0;
+    std::int64_t disc_contacts =
+        0;  ///< of these, those of discs near each other or near walls that the library found
     std::int64_t contacts_skipped = 0;  ///< invalid contacts that BadContacts::skip left out
     std::string skipped_error;          ///< of the first of them: field, value and valid range
     std::int64_t joints = 0;

@@ -1,0 +1,198 @@
+// Discs and walls as the host sets and reads them. Nothing is changed before everything is checked.
+#include <string>
+
+#include "motley/core/invalid_input.h"
+#include "scene/body_checks.h"
+#include "scene/disc_impulses.h"
+#include "scene/scene_core.h"
+#include "stores/growth.h"
+
+namespace motley {
+namespace {
+
+constexpr double least_radius = 1e-6, most_radius = 1e6;
+constexpr double least_length = 1e-6;  // m, of a segment
+
+void check_disc(const DiscDefinition& disc)
+{
+    check("DiscDefinition.radius", disc.radius, least_radius, most_radius, "1e-6 to 1e6 (m)");
+    check("DiscDefinition.friction", disc.friction, 0, 1e9, "0 to 1e9");
+}
+
+void check_points(const WallDefinition& wall)
+{
+    const std::size_t least = wall.closed ? 3 : 2, count = wall.points.size();
+    if (count < least)
+        refuse("WallDefinition.points.size()", static_cast<double>(count),
+               wall.closed ? "3 or more of a closed wall" : "2 or more");
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string name = "WallDefinition.points[" + std::to_string(i) + "]";
+        check_position(name.c_str(), {wall.points[i].x, wall.points[i].y, 0});
+        if (i + 1 == count && !wall.closed) break;
+        const Vec2<double> along = wall.points[(i + 1) % count] - wall.points[i];
+        if (dot(along, along) < least_length * least_length)
+            refuse(name, "at the next point", "neighbours at least 1e-6 m apart");
+    }
+}
+
+}  // namespace
+
+void SceneCore::check_has_disc(BodyId body, const char* what) const
+{
+    require_alive(body, what);
+    if (!has_disc(body)) refuse(what, "a body without a disc", "a body with a disc");
+}
+
+void Scene::set_disc(BodyId body, const DiscDefinition& disc)
+{
+    set_discs({&body, 1}, StridedSpan<const DiscDefinition>(&disc, 1));
+}
+
+void Scene::set_discs(std::span<const BodyId> bodies, StridedSpan<const DiscDefinition> discs)
+{
+    if (discs.size() != bodies.size())
+        refuse("set_discs.discs.size()", static_cast<double>(discs.size()), "the size of bodies");
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        core_->require_alive(bodies[i], "set_discs.bodies");
+        if (core_->bodies.model(bodies[i]) != BodyModel::planar ||
+            core_->bodies.motion(bodies[i]) != BodyMotion::dynamic_body)
+            refuse("set_discs.bodies", "a body that is not planar and dynamic", "planar, dynamic bodies");
+        check_disc(discs[i]);
+    }
+    grow_to(core_->discs.shapes, core_->bodies.slot_count());
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        core_->discs.set_shape(bodies[i].slot,
+                               {discs[i].radius, discs[i].friction, discs[i].category, discs[i].mask});
+}
+
+void Scene::clear_disc(BodyId body)
+{
+    core_->check_has_disc(body, "clear_disc.body");
+    core_->discs.set_shape(body.slot, {});
+    core_->forget_discs_of(body);
+}
+
+bool Scene::has_disc(BodyId body) const
+{
+    core_->require_alive(body, "has_disc.body");
+    return core_->has_disc(body);
+}
+
+WallId Scene::add_wall(const WallDefinition& wall)
+{
+    check_points(wall);
+    check("WallDefinition.friction", wall.friction, 0, 1e9, "0 to 1e9");
+    const BodyId body = wall.body == BodyId{} ? core_->ground : wall.body;
+    core_->require_alive(body, "WallDefinition.body");
+    if (core_->bodies.motion(body) == BodyMotion::dynamic_body)
+        refuse("WallDefinition.body", "a dynamic body", "a static or kinematic body");
+    DiscStore& discs = core_->discs;
+    const std::size_t count = wall.points.size() - (wall.closed ? 0 : 1);
+    make_room_for(discs.segments, count);
+    if (discs.free_walls.empty()) {
+        discs.walls.emplace_back();
+        discs.free_walls.push_back(static_cast<std::uint32_t>(discs.walls.size() - 1));
+    }
+    const std::uint32_t slot = discs.free_walls.back();
+    discs.free_walls.pop_back();
+    discs.walls[slot].live = 1;
+    for (std::size_t i = 0; i < count; ++i)
+        discs.segments.push_back({wall.points[i], wall.points[(i + 1) % wall.points.size()], body,
+                                  wall.friction, wall.category, wall.mask, slot});
+    discs.is_stale = true;
+    return {slot, discs.walls[slot].generation};
+}
+
+void Scene::remove_wall(WallId wall)
+{
+    if (!is_alive(wall))
+        refuse("remove_wall.wall", "slot " + std::to_string(wall.slot) + ", not alive",
+               "a wall of this scene");
+    make_room_for(core_->discs.free_walls, 1);
+    core_->discs.remove_wall(wall.slot);
+}
+
+bool Scene::is_alive(WallId wall) const
+{
+    return core_->discs.is_alive(wall);
+}
+
+void SceneCore::remove_discs_of(std::span<const BodyId> removed)
+{
+    for (const BodyId body : removed) {
+        if (has_disc(body)) discs.set_shape(body.slot, {});
+        forget_discs_of(body);
+        if (bodies.motion(body) == BodyMotion::dynamic_body) continue;
+        for (std::size_t i = 0; i < discs.segments.size();) {
+            if (discs.segments[i].body == body) {
+                discs.remove_wall(discs.segments[i].wall);
+            } else {
+                ++i;
+            }
+        }
+    }
+}
+
+void SceneCore::forget_discs_of(BodyId moved)
+{
+    const BodyRow where = bodies.row_of(moved);
+    if (where.kind() == BodyKind::planar) {
+        discs.forget_row(where.row());
+    } else if (where.kind() == BodyKind::fixed) {
+        discs.is_stale = true;
+    }
+}
+
+void SceneCore::renumber_rows()
+{
+    const BodyRows& planar = bodies.rows(BodyKind::planar);
+    std::vector<std::uint32_t> rows(planar.size(), 0);
+    const std::vector<std::uint32_t> slots = planar.slot;
+    bodies.renumber();
+    for (std::uint32_t row = 1; row < slots.size(); ++row) {
+        if (slots[row] != 0) rows[row] = bodies.row_of(bodies.id_of_slot(slots[row])).row();
+    }
+    discs.renumber(rows);
+}
+
+namespace {
+
+DiscContact contact_of(const SceneCore& scene, const DiscImpulse& impulse)
+{
+    DiscContact contact;
+    contact.a = scene.bodies.id_of_slot(impulse.slot_a);
+    contact.b = scene.bodies.id_of_slot(impulse.slot_b);
+    if (impulse.segment != UINT32_MAX) {
+        const std::uint32_t slot = scene.discs.segments[impulse.segment].wall;
+        contact.wall = {slot, scene.discs.walls[slot].generation};
+    }
+    contact.normal = impulse.normal;
+    contact.separation = impulse.separation;
+    const double per_second = scene.last_step > 0 ? 1 / static_cast<double>(scene.last_step) : 0;
+    contact.normal_force = static_cast<float>(per_second * impulse.along);
+    contact.friction_force = static_cast<float>(per_second * impulse.across);
+    return contact;
+}
+
+}  // namespace
+
+std::vector<DiscContact> Scene::disc_contacts() const
+{
+    std::vector<DiscContact> contacts;
+    core_->for_each_disc_impulse(
+        [&](const DiscImpulse& impulse) { contacts.push_back(contact_of(*core_, impulse)); });
+    return contacts;
+}
+
+std::vector<DiscContact> Scene::disc_contacts_of(BodyId body) const
+{
+    core_->check_has_disc(body, "disc_contacts_of.body");
+    std::vector<DiscContact> contacts;
+    core_->for_each_disc_impulse([&](const DiscImpulse& impulse) {
+        if (impulse.slot_a == body.slot || impulse.slot_b == body.slot)
+            contacts.push_back(contact_of(*core_, impulse));
+    });
+    return contacts;
+}
+
+}  // namespace motley

@@ -1,0 +1,97 @@
+// See disc_store.h.
+#include "stores/disc_store.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace motley {
+namespace {
+
+bool is_filtered(const DiscShape& shape)
+{
+    return shape.category != 1 || shape.mask != UINT32_MAX;
+}
+
+}  // namespace
+
+void DiscStore::set_shape(std::uint32_t slot, const DiscShape& shape)
+{
+    DiscShape& own = shapes[slot];
+    count_shape(own, SIZE_MAX);  // one less
+    own = shape;
+    count_shape(own, 1);
+    is_stale = true;
+}
+
+void DiscStore::count_shape(const DiscShape& shape, std::size_t one)
+{
+    if (shape.radius == 0) return;
+    count += one;
+    rough_discs += shape.friction > 0 ? one : 0;
+    filtered_discs += is_filtered(shape) ? one : 0;
+}
+
+void DiscStore::derive()
+{
+    count = rough_discs = filtered_discs = 0;
+    for (const DiscShape& shape : shapes) count_shape(shape, 1);
+}
+
+void DiscStore::remove_segments_of(std::uint32_t wall)
+{
+    std::vector<std::uint32_t> moved(segments.size(), UINT32_MAX);
+    std::uint32_t left = 0;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        if (segments[i].wall == wall) continue;
+        moved[i] = left;
+        segments[left++] = segments[i];
+    }
+    segments.resize(left);
+    for (std::size_t band = 0; band < band_count; ++band) {
+        for (DiscBlocks& blocks : bands[band].blocks) {
+            for (WallTouch& touch : blocks.touches)
+                touch.segment = touch.segment < moved.size() ? moved[touch.segment] : UINT32_MAX;
+        }
+    }
+    is_stale = true;
+}
+
+void DiscStore::remove_wall(std::uint32_t slot)
+{
+    remove_segments_of(slot);
+    walls[slot].live = 0;
+    if (++walls[slot].generation == 0) walls[slot].generation = 1;  // zero is the null handle's
+    free_walls.push_back(slot);
+}
+
+void DiscStore::forget_row(std::uint32_t row)
+{
+    if (row < anchors.size()) anchors[row].skin = -1;
+    is_stale = true;
+}
+
+void DiscStore::renumber(std::span<const std::uint32_t> new_rows)
+{
+    if (anchors.empty()) return;
+    AlignedVector<DiscAnchor> moved(anchors.size());
+    for (std::size_t row = 0; row < std::min(new_rows.size(), anchors.size()); ++row)
+        moved[new_rows[row]] = anchors[row];
+    anchors = std::move(moved);
+    constexpr std::int32_t a_row = offsets_a_row(BodyKind::planar);
+    const auto renumber_offset = [&](std::int32_t& offset) {
+        offset = static_cast<std::int32_t>(new_rows[static_cast<std::size_t>(offset / a_row)]) * a_row;
+    };
+    for (std::size_t band = 0; band < band_count; ++band) {
+        for (std::size_t c = 0; c < disc_class_count; ++c) {
+            DiscBlocks& blocks = bands[band].blocks[c];
+            for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
+                for (std::size_t lane = 0; lane < blocks.lanes[block]; ++lane) {
+                    renumber_offset(blocks.bodies[block].b[lane]);
+                    if (!is_wall(static_cast<DiscClass>(c))) renumber_offset(blocks.bodies[block].a[lane]);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace motley

@@ -1,0 +1,130 @@
+// Discs, walls, and the contacts that were found between them. The contacts are kept from step to step in the blocks in
+// which they are solved, so that nothing is listed, coloured or looked up in a step in which the neighbours stay the
+// same.
+//
+// Bodies are sorted into strips of the plane, and consecutive strips into bands. A contact belongs to the band of its
+// first body, and its other body is in the same band or in the next one. So bands of even number share no body with
+// each other, nor do those of odd number. Band 0 has the contacts that reach further.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "motley/core/crowd.h"
+#include "stores/aligned_vector.h"
+#include "stores/lane_block.h"
+
+namespace motley {
+
+/// Radius 0: the body has no disc.
+struct DiscShape {
+    float radius = 0, friction = 0;
+    std::uint32_t category = 1, mask = UINT32_MAX;
+    [[nodiscard]] bool meets(std::uint32_t others_category, std::uint32_t others_mask) const
+    {
+        return (category & others_mask) != 0 && (others_category & mask) != 0;
+    }
+};
+
+/// A straight piece of a wall.
+struct WallSegment {
+    Vec2<double> from{}, to{};  ///< m, in the frame of the body, or of the world where that is static
+    BodyId body{};
+    float friction = 0;
+    std::uint32_t category = 1, mask = UINT32_MAX;
+    std::uint32_t wall = 0;  ///< slot
+};
+
+/// A disc near a wall.
+struct WallTouch {
+    std::uint32_t segment = 0;
+    float side =
+        1;  ///< 1: the disc is to the left of the segment as it runs from `from` to `to`; -1: to the right
+};
+
+/// What contacts are solved as, in the order in which a sweep visits them.
+enum class DiscClass : std::uint8_t { smooth_pair, rough_pair, smooth_wall, rough_wall };
+inline constexpr int disc_class_count = 4;
+constexpr bool is_wall(DiscClass c)
+{
+    return c == DiscClass::smooth_wall || c == DiscClass::rough_wall;
+}
+constexpr bool is_rough(DiscClass c)
+{
+    return c == DiscClass::rough_pair || c == DiscClass::rough_wall;
+}
+
+/// The contacts of one class in one band. The vectors may be longer than `count` blocks.
+struct DiscBlocks {
+    std::int32_t count = 0;
+    AlignedVector<BlockBodies> bodies;
+    AlignedVector<std::uint8_t> lanes;  ///< of each block, those that are not padding
+    /// As DiscContactKind::Row, Impulse and Impulse: field f of lane l of block b at 16 (fields b + f) + l.
+    AlignedVector<float> rows, impulses, sums;
+    std::vector<WallTouch> touches;  ///< of walls: by 16 b + l
+};
+struct DiscBand {
+    std::array<DiscBlocks, disc_class_count> blocks;
+};
+
+/// Where a body was when its neighbours were found, and how far it may go before they must be found again.
+struct DiscAnchor {
+    float x = 0, y = 0;  ///< m, from DiscStore::origin
+    float skin = 0;      ///< m; infinite for rows without a disc
+};
+
+struct DiscStore {
+    std::vector<DiscShape> shapes;   ///< by slot of the body; may be shorter than the table of slots
+    std::size_t count = 0;           ///< of discs
+    std::size_t rough_discs = 0;     ///< those with friction
+    std::size_t filtered_discs = 0;  ///< those whose category or mask is not the default
+
+    struct WallSlot {
+        std::uint32_t generation = 1;
+        std::uint8_t live = 0;
+    };
+    std::vector<WallSlot> walls{1};  ///< by slot; the first is the null handle's
+    std::vector<std::uint32_t> free_walls;
+    std::vector<WallSegment> segments;  ///< of live walls, in the order in which they were added
+
+    // What the last search found:
+    std::vector<DiscBand> bands;  ///< the first `band_count` of them
+    std::size_t band_count = 0;
+    AlignedVector<DiscAnchor> anchors;    ///< by row of planar bodies
+    std::vector<Vec2<double>> wall_ends;  ///< two a segment: where the ends were, world
+    float wall_skin = 0;                  ///< m: how far an end may move before a new search
+    Vec2<double> origin{};                ///< m, world
+    int age = 0;                          ///< steps since then
+    int horizon = 1;                      ///< steps for which that search looked ahead
+    /// Whether a body, a disc or a wall was added, removed or teleported since then.
+    bool is_stale = true;
+
+    [[nodiscard]] bool is_in_use() const { return count > 0; }
+    [[nodiscard]] const DiscShape* shape_of(std::uint32_t slot) const
+    {
+        return slot < shapes.size() && shapes[slot].radius > 0 ? &shapes[slot] : nullptr;
+    }
+    [[nodiscard]] bool is_alive(WallId wall) const
+    {
+        return wall.slot < walls.size() && walls[wall.slot].live != 0 &&
+               walls[wall.slot].generation == wall.generation;
+    }
+    /// Gives a body a disc, or takes it away with radius 0. `shapes` is long enough.
+    void set_shape(std::uint32_t slot, const DiscShape& shape);
+    /// Counts the discs anew.
+    void derive();
+    /// Frees the slot and the segments of a live wall. There is room in free_walls.
+    void remove_wall(std::uint32_t slot);
+    /// When a body was removed or teleported: its impulses must not be used again.
+    void forget_row(std::uint32_t row);
+    /// When the rows of planar bodies are renumbered: row i is now new_rows[i].
+    void renumber(std::span<const std::uint32_t> new_rows);
+
+  private:
+    void count_shape(const DiscShape& shape, std::size_t one);
+    void remove_segments_of(std::uint32_t wall);
+};
+
+}  // namespace motley

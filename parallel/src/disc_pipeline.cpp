@@ -1,0 +1,136 @@
+// See disc_pipeline.h.
+#include "disc_pipeline.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace motley {
+namespace {
+
+constexpr std::int64_t rows_per_chunk = 1024;
+/// The most steps for which a search looks ahead.
+constexpr int longest_horizon = 8;
+/// m: a disc that may come so near the end of its skin is searched for anew. It allows for the speed that a disc gains
+/// within a step.
+constexpr double slack = 0.005;
+
+}  // namespace
+
+void DiscPipeline::find(SceneCore& scene, float dt)
+{
+    DiscStore& discs = scene.discs;
+    if (!discs.is_in_use()) {
+        discs.band_count = 0;
+        return;
+    }
+    find_wall_ends(scene, wall_ends_);
+    if (!is_outdated(scene, dt)) {
+        ++discs.age;
+        return;
+    }
+    // A search looks as far ahead as the last one lasted, and a little further.
+    if (!discs.is_stale) {
+        if (discs.age + 1 < discs.horizon) discs.horizon = std::max(1, discs.horizon - 1);
+        if (discs.age + 1 >= discs.horizon) discs.horizon = std::min(longest_horizon, discs.horizon + 1);
+    }
+    // Should memory run out on the way, the next step searches again.
+    discs.is_stale = true;
+    carry_impulses(scene);
+    discs.wall_skin =
+        0.02F + static_cast<float>(fastest_wall_end(scene) * static_cast<double>(dt) * discs.horizon);
+    discs.wall_ends = wall_ends_;
+    sort_into_strips(scene, dt);
+    find_contacts(scene);
+    discs.age = 0;
+    discs.is_stale = false;
+}
+
+/// Whether two discs, or a disc and a wall, may touch in this step that were not found near each other.
+bool DiscPipeline::is_outdated(const SceneCore& scene, float dt)
+{
+    const DiscStore& discs = scene.discs;
+    const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
+    if (discs.is_stale) return true;
+    const double seconds = static_cast<double>(dt);
+    const double wall_goes = fastest_wall_end(scene) * seconds;
+    for (std::size_t end = 0; end < wall_ends_.size(); ++end) {
+        const Vec2<double> went = wall_ends_[end] - discs.wall_ends[end];
+        if (std::sqrt(dot(went, went)) + wall_goes + slack > static_cast<double>(discs.wall_skin))
+            return true;
+    }
+    std::atomic<bool> outdated{false};
+    const std::int64_t size = rows.size();
+    runner_.run((size + rows_per_chunk - 1) / rows_per_chunk, [&](std::int64_t chunk) {
+        if (outdated.load(std::memory_order_relaxed)) return;
+        const auto first = static_cast<std::size_t>(chunk * rows_per_chunk);
+        const auto last = static_cast<std::size_t>(std::min((chunk + 1) * rows_per_chunk, size));
+        bool any = false;
+        for (std::size_t row = first; row < last; ++row) {
+            const DiscAnchor& anchor = discs.anchors[row];
+            const Vec3<PoseReal>& at = rows.pose[row].position;
+            const double x = static_cast<double>(at.x) - discs.origin.x - static_cast<double>(anchor.x);
+            const double y = static_cast<double>(at.y) - discs.origin.y - static_cast<double>(anchor.y);
+            const float* v = &rows.velocity[4 * row];
+            const auto vx = static_cast<double>(v[0]), vy = static_cast<double>(v[1]);
+            const double goes = std::sqrt(x * x + y * y) + seconds * std::sqrt(vx * vx + vy * vy) + slack;
+            any = any || !(goes <= static_cast<double>(anchor.skin));
+        }
+        if (any) outdated.store(true, std::memory_order_relaxed);
+    });
+    return outdated;
+}
+
+void DiscPipeline::carry_impulses(SceneCore& scene)
+{
+    CarriedImpulses& carried = finder_.carried;
+    const DiscStore& discs = scene.discs;
+    carried.begin(scene);
+    const auto bands = static_cast<std::int64_t>(discs.band_count);
+    runner_.run(bands, [&](std::int64_t band) { carried.count(discs, static_cast<std::size_t>(band)); });
+    carried.open();
+    if (bands == 0) return;
+    carried.keep(discs, 0);
+    runner_.run(bands - 1,
+                [&](std::int64_t band) { carried.keep(discs, static_cast<std::size_t>(band) + 1); });
+}
+
+void DiscPipeline::sort_into_strips(SceneCore& scene, float dt)
+{
+    DiscStrips& strips = finder_.strips;
+    DiscStore& discs = scene.discs;
+    strips.begin(scene, dt);
+    const std::int64_t chunks = strips.chunk_count();
+    runner_.run(chunks, [&](std::int64_t chunk) { strips.measure(scene, discs, chunk); });
+    strips.choose(discs);
+    runner_.run(chunks, [&](std::int64_t chunk) { strips.count(scene, discs, chunk); });
+    strips.open();
+    runner_.run(chunks, [&](std::int64_t chunk) { strips.place(scene, discs, chunk); });
+    runner_.run(strips.group_count() + 1, [&](std::int64_t group) { strips.sort(scene, group); });
+    strips.divide();
+}
+
+void DiscPipeline::find_contacts(SceneCore& scene)
+{
+    finder_.open(scene, runner_.workers());
+    runner_.run(static_cast<std::int64_t>(scene.discs.band_count), [&](std::int64_t band, int worker) {
+        finder_.find(scene, static_cast<std::size_t>(band), worker);
+    });
+}
+
+void DiscPipeline::prepare(SceneCore& scene)
+{
+    const float warm = layout_.context.step.warm_start_scale;
+    const DiscKernels& kernels = layout_.kernels().discs;
+    runner_.run(layout_.disc_bands(), [&](std::int64_t band) {
+        for (const SweepChunk& chunk : layout_.discs_of_band(band)) {
+            if (chunk.kernels == &kernels.of(DiscClass::smooth_pair))
+                kernels.prepare_smooth(layout_.context, chunk.streams, chunk.begin, chunk.end);
+            if (chunk.kernels == &kernels.of(DiscClass::rough_pair))
+                kernels.prepare_rough(layout_.context, chunk.streams, chunk.begin, chunk.end);
+        }
+        place_walls(scene, wall_ends_, warm, scene.discs.bands[static_cast<std::size_t>(band)]);
+    });
+}
+
+}  // namespace motley

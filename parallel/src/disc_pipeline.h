@@ -1,0 +1,34 @@
+// The path of the contacts that the library finds itself: of discs with each other and with walls. Each phase is one
+// function here, in the order in which they run.
+#pragma once
+
+#include <vector>
+
+#include "crowd/disc_finder.h"
+#include "layout/layout.h"
+#include "stage_runner.h"
+
+namespace motley {
+
+class DiscPipeline {
+  public:
+    DiscPipeline(StageRunner& runner, Layout& layout) : runner_(runner), layout_(layout) {}
+
+    /// Before a step of dt seconds: finds contacts anew, unless those of the last search are still all there can be.
+    void find(SceneCore& scene, float dt);
+    /// Makes the rows of this step.
+    void prepare(SceneCore& scene);
+
+  private:
+    StageRunner& runner_;
+    Layout& layout_;
+    DiscFinder finder_;
+    std::vector<Vec2<double>> wall_ends_;  ///< now
+
+    [[nodiscard]] bool is_outdated(const SceneCore& scene, float dt);
+    void sort_into_strips(SceneCore& scene, float dt);
+    void carry_impulses(SceneCore& scene);
+    void find_contacts(SceneCore& scene);
+};
+
+}  // namespace motley

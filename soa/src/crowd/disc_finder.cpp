@@ -1,0 +1,278 @@
+// See disc_finder.h.
+#include "crowd/disc_finder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stores/disc_fields.h"
+
+namespace motley {
+namespace {
+
+/// The square of the distance of a point from a segment, m2.
+double distance2(const Vec2<double>& point, const Vec2<double>& from, const Vec2<double>& to)
+{
+    const Vec2<double> along = to - from;
+    const double t = std::clamp(dot(along, point - from) / dot(along, along), 0.0, 1.0);
+    const Vec2<double> apart = point - (from + t * along);
+    return dot(apart, apart);
+}
+
+/// The range along the strips in which a segment lies between two places across them, m.
+struct Range {
+    double low, high;
+};
+Range range_within(const Vec2<double>& from, const Vec2<double>& to, double low, double high)
+{
+    const double rise = to.y - from.y;
+    double first = 0, last = 1;
+    if (std::abs(rise) > 1e-12) {
+        const double s = (low - from.y) / rise, t = (high - from.y) / rise;
+        first = std::clamp(std::min(s, t), 0.0, 1.0);
+        last = std::clamp(std::max(s, t), 0.0, 1.0);
+    }
+    const double x = from.x + first * (to.x - from.x), y = from.x + last * (to.x - from.x);
+    return {std::min(x, y), std::max(x, y)};
+}
+
+float friction_of(float a, float b)
+{
+    return a == b ? a : std::sqrt(a * b);
+}
+
+}  // namespace
+
+void DiscFinder::open(SceneCore& scene, int workers)
+{
+    DiscStore& discs = scene.discs;
+    workers_.resize(static_cast<std::size_t>(workers));
+    discs.band_count = static_cast<std::size_t>(strips.band_count()) + 1;
+    if (discs.bands.size() < discs.band_count) discs.bands.resize(discs.band_count);
+    place_segments(discs);
+}
+
+/// Lists for every band the walls near its strips.
+void DiscFinder::place_segments(const DiscStore& discs)
+{
+    if (segments_.size() < discs.band_count) segments_.resize(discs.band_count);
+    for (std::vector<PlacedSegment>& list : segments_) list.clear();
+    const double reach = static_cast<double>(strips.most_reach()) + static_cast<double>(discs.wall_skin);
+    for (std::size_t i = 0; i < discs.segments.size(); ++i) {
+        const PlacedSegment segment{strips.to_strips(discs.wall_ends[2 * i]),
+                                    strips.to_strips(discs.wall_ends[2 * i + 1]),
+                                    static_cast<std::uint32_t>(i)};
+        segments_[0].push_back(segment);
+        const std::int32_t low = strips.strip_at(std::min(segment.from.y, segment.to.y) - reach);
+        const std::int32_t high = strips.strip_at(std::max(segment.from.y, segment.to.y) + reach);
+        for (std::int32_t band = 0; band < strips.band_count(); ++band) {
+            if (strips.first_strip(band) <= high && low < strips.first_strip(band + 1))
+                segments_[static_cast<std::size_t>(band) + 1].push_back(segment);
+        }
+    }
+}
+
+void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
+{
+    Worker& own = workers_[static_cast<std::size_t>(worker)];
+    DiscBand& found = scene.discs.bands[band];
+    std::size_t numbers = scene.bodies.rows(BodyKind::planar).size();
+    if (band > 0) {
+        const std::int32_t first = strips.first_strip(static_cast<std::int32_t>(band) - 1);
+        const std::int32_t last = strips.first_strip(static_cast<std::int32_t>(band));
+        numbers = strips.first_of(std::min(last + 1, strips.strip_count())) - strips.first_of(first);
+    } else if (strips.wide().empty()) {
+        numbers = 0;
+    }
+    for_each_disc_class([&](auto c) {
+        using Fields = DiscFieldsOf<c.value>;
+        const auto i = static_cast<std::size_t>(c.value);
+        own.fillers[i].begin(found.blocks[i], Fields::row_floats, Fields::impulse_floats, numbers);
+    });
+    if (band == 0) {
+        find_wide(scene, own);
+    } else {
+        find_in_strips(scene, band, own);
+    }
+    for (BlockFiller& filler : own.fillers) filler.finish();
+}
+
+/// The pairs of a strip with itself and with the next one, in order.
+void DiscFinder::list_pairs(std::int32_t strip, std::vector<Pair>& pairs) const
+{
+    const std::span<const PlacedDisc> here = strips.strip(strip);
+    const std::span<const PlacedDisc> next =
+        strip + 1 < strips.strip_count() ? strips.strip(strip + 1) : std::span<const PlacedDisc>();
+    const std::uint32_t first_here = strips.first_of(strip),
+                        first_next = first_here + static_cast<std::uint32_t>(here.size());
+    const double most = static_cast<double>(strips.most_reach());
+    std::size_t found = 0, behind = 0;
+    for (std::size_t i = 0; i < here.size(); ++i) {
+        const PlacedDisc& me = here[i];
+        const double limit = me.along + static_cast<double>(me.reach) + most;
+        while (behind < next.size() && next[behind].along < me.along - 2 * most) ++behind;
+        const auto look = [&](std::span<const PlacedDisc> others, std::size_t from, std::uint32_t first) {
+            for (std::size_t j = from; j < others.size() && others[j].along <= limit; ++j) {
+                const double along = others[j].along - me.along, across = others[j].across - me.across;
+                const double near = static_cast<double>(others[j].reach + me.reach);
+                // The pair is always written, and counted only when near: a branch would often mispredict.
+                if (pairs.size() <= found) pairs.resize(with_room_to_grow(found + 64));
+                pairs[found] = {first_here + static_cast<std::uint32_t>(i),
+                                first + static_cast<std::uint32_t>(j)};
+                found += along * along + across * across < near * near ? 1 : 0;
+            }
+        };
+        look(here, i + 1, first_here);
+        look(next, behind, first_next);
+    }
+    pairs.resize(found);
+}
+
+/// A contact of two discs, if they may meet.
+template <class Number>
+void DiscFinder::add_pair(SceneCore& scene, DiscBand& band, Worker& worker, const PlacedDisc& a,
+                          const PlacedDisc& b, const Number& number_of) const
+{
+    DiscStore& discs = scene.discs;
+    float friction = 0;
+    if (discs.rough_discs > 0 || discs.filtered_discs > 0) {
+        const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+        const DiscShape& shape_a = discs.shapes[slots[a.row]];
+        const DiscShape& shape_b = discs.shapes[slots[b.row]];
+        if (!shape_a.meets(shape_b.category, shape_b.mask)) return;
+        friction = friction_of(shape_a.friction, shape_b.friction);
+    }
+    const CarriedImpulses::Impulse impulse = carried.of_pair(a.row, b.row);
+    with_disc_class(friction > 0 ? DiscClass::rough_pair : DiscClass::smooth_pair, [&](auto c) {
+        if constexpr (!is_wall(c.value)) {
+            using Fields = DiscFieldsOf<c.value>;
+            const auto i = static_cast<std::size_t>(c.value);
+            DiscBlocks& blocks = band.blocks[i];
+            const BlockFiller::Place at = worker.fillers[i].take(number_of(a), number_of(b));
+            blocks.bodies[at.block].a[at.lane] = offset_of(BodyRow(BodyKind::planar, a.row));
+            blocks.bodies[at.block].b[at.lane] = offset_of(BodyRow(BodyKind::planar, b.row));
+            typename Fields::Row row{};
+            row.in_sweep.effective_mass = 1 / (a.inverse_mass + b.inverse_mass);
+            typename Fields::Impulse held{};
+            held.normal = impulse.normal;
+            if constexpr (is_rough(c.value)) {
+                row.in_sweep.friction = friction;
+                row.radius_a = a.radius;
+                row.radius_b = b.radius;
+                held.tangent = impulse.tangent;
+            } else {
+                row.reach = a.radius + b.radius;
+            }
+            store_lane(row, blocks.rows.data(), at.block, at.lane);
+            store_lane(held, blocks.impulses.data(), at.block, at.lane);
+        }
+    });
+}
+
+/// A contact of a disc with a wall, if it is near and they may meet.
+template <class Number>
+void DiscFinder::add_touch(SceneCore& scene, DiscBand& band, Worker& worker, const PlacedSegment& segment,
+                           const PlacedDisc& disc, const Number& number_of) const
+{
+    DiscStore& discs = scene.discs;
+    const double near = static_cast<double>(disc.reach) + static_cast<double>(discs.wall_skin);
+    if (!(distance2({disc.along, disc.across}, segment.from, segment.to) < near * near)) return;
+    const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
+    const WallSegment& wall = discs.segments[segment.index];
+    const DiscShape& shape = discs.shapes[rows.slot[disc.row]];
+    if (!shape.meets(wall.category, wall.mask)) return;
+    const float friction = friction_of(shape.friction, wall.friction);
+    CarriedImpulses::Impulse impulse = carried.of_wall(disc.row, segment.index);
+    if (impulse.side == 0) {
+        const Vec2<double>& from = discs.wall_ends[2 * std::size_t{segment.index}];
+        const Vec2<double>& to = discs.wall_ends[2 * std::size_t{segment.index} + 1];
+        const Vec3<PoseReal>& at = rows.pose[disc.row].position;
+        const Vec2<double> world{static_cast<double>(at.x), static_cast<double>(at.y)};
+        impulse.side = cross(to - from, world - from) < 0 ? -1.0F : 1.0F;
+    }
+    with_disc_class(friction > 0 ? DiscClass::rough_wall : DiscClass::smooth_wall, [&](auto c) {
+        if constexpr (is_wall(c.value)) {
+            using Fields = DiscFieldsOf<c.value>;
+            const auto i = static_cast<std::size_t>(c.value);
+            DiscBlocks& blocks = band.blocks[i];
+            const BlockFiller::Place at = worker.fillers[i].take(BlockFiller::no_body, number_of(disc));
+            blocks.bodies[at.block].a[at.lane] = offset_of(scene.bodies.row_of(wall.body));
+            blocks.bodies[at.block].b[at.lane] = offset_of(BodyRow(BodyKind::planar, disc.row));
+            grow_to(blocks.touches, block_lanes * (at.block + 1));
+            blocks.touches[block_lanes * at.block + at.lane] = {segment.index, impulse.side};
+            typename Fields::Row row{};
+            row.in_sweep.effective_mass = 1 / disc.inverse_mass;
+            typename Fields::Impulse held{};
+            held.normal = impulse.normal;
+            if constexpr (is_rough(c.value)) {
+                row.in_sweep.friction = friction;
+                row.radius_b = disc.radius;
+                held.tangent = impulse.tangent;
+            } else {
+                row.reach = disc.radius;
+            }
+            store_lane(row, blocks.rows.data(), at.block, at.lane);
+            store_lane(held, blocks.impulses.data(), at.block, at.lane);
+        }
+    });
+}
+
+void DiscFinder::find_in_strips(SceneCore& scene, std::size_t band, Worker& worker)
+{
+    DiscBand& found = scene.discs.bands[band];
+    const std::int32_t first = strips.first_strip(static_cast<std::int32_t>(band) - 1);
+    const std::int32_t last = strips.first_strip(static_cast<std::int32_t>(band));
+    const std::uint32_t base = strips.first_of(first);
+    const PlacedDisc* const zero = &strips.disc(base);
+    const auto number_of = [&](const PlacedDisc& disc) { return static_cast<std::uint32_t>(&disc - zero); };
+    for (std::int32_t strip = first; strip < last; ++strip) {
+        list_pairs(strip, worker.pairs);
+        for (const Pair& pair : worker.pairs)
+            add_pair(scene, found, worker, strips.disc(pair.a), strips.disc(pair.b), number_of);
+    }
+    const double skin = static_cast<double>(scene.discs.wall_skin);
+    const double reach = static_cast<double>(strips.most_reach()) + skin;
+    for (const PlacedSegment& segment : segments_[band]) {
+        const double low = std::min(segment.from.y, segment.to.y) - reach,
+                     high = std::max(segment.from.y, segment.to.y) + reach;
+        for (std::int32_t s = std::max(first, strips.strip_at(low));
+             s <= std::min(last - 1, strips.strip_at(high)); ++s) {
+            const std::span<const PlacedDisc> discs = strips.strip(s);
+            const Range near = range_within(segment.from, segment.to, strips.low_edge_of(s) - reach,
+                                            strips.low_edge_of(s + 1) + reach);
+            auto disc = std::lower_bound(discs.begin(), discs.end(), near.low - reach,
+                                         [](const PlacedDisc& d, double along) { return d.along < along; });
+            for (; disc != discs.end() && disc->along <= near.high + reach; ++disc)
+                add_touch(scene, found, worker, segment, *disc, number_of);
+        }
+    }
+}
+
+/// Discs that reach further than the strips are made for: each with all discs and walls in its reach.
+void DiscFinder::find_wide(SceneCore& scene, Worker& worker)
+{
+    DiscBand& found = scene.discs.bands[0];
+    const auto number_of = [](const PlacedDisc& disc) { return disc.row; };
+    const std::span<const PlacedDisc> wide = strips.wide();
+    for (std::size_t w = 0; w < wide.size(); ++w) {
+        const PlacedDisc& me = wide[w];
+        const auto try_pair = [&](const PlacedDisc& other) {
+            const double along = other.along - me.along, across = other.across - me.across;
+            const double near = static_cast<double>(other.reach + me.reach);
+            if (along * along + across * across < near * near)
+                add_pair(scene, found, worker, me, other, number_of);
+        };
+        for (std::size_t v = w + 1; v < wide.size(); ++v) try_pair(wide[v]);
+        const double reach = static_cast<double>(me.reach) + static_cast<double>(strips.most_reach());
+        for (std::int32_t s = strips.strip_at(me.across - reach); s <= strips.strip_at(me.across + reach);
+             ++s) {
+            const std::span<const PlacedDisc> discs = strips.strip(s);
+            auto disc = std::lower_bound(discs.begin(), discs.end(), me.along - reach,
+                                         [](const PlacedDisc& d, double along) { return d.along < along; });
+            for (; disc != discs.end() && disc->along <= me.along + reach; ++disc) try_pair(*disc);
+        }
+        for (const PlacedSegment& segment : segments_[0])
+            add_touch(scene, found, worker, segment, me, number_of);
+    }
+}
+
+}  // namespace motley

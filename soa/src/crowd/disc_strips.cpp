@@ -1,0 +1,218 @@
+// See disc_strips.h. A sort by counting, in chunks that do not depend on the number of threads.
+#include "crowd/disc_strips.h"
+
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "stores/growth.h"
+
+namespace motley {
+namespace {
+
+/// m: a disc at rest may go so far before its neighbours are found again.
+constexpr float skin_at_rest = 0.02F;
+/// People of a band: few enough for a core's first cache, and enough that blocks are full.
+constexpr std::uint32_t discs_per_band = 512;
+
+}  // namespace
+
+int DiscStrips::bucket_of(float reach)
+{
+    // Exponent and three digits of the fraction.
+    constexpr std::int32_t first = (127 - 20) << 3;
+    const auto digits = static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(reach) >> 20);
+    return std::clamp(digits - first, 0, buckets - 1);
+}
+float DiscStrips::upper_end_of(int bucket)
+{
+    return std::bit_cast<float>(static_cast<std::uint32_t>(bucket + 1 + ((127 - 20) << 3)) << 20);
+}
+
+void DiscStrips::begin(SceneCore& scene, float dt)
+{
+    const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
+    DiscStore& discs = scene.discs;
+    steps_ = static_cast<double>(dt) * discs.horizon;
+    chunks_ = (std::int64_t{rows.size()} + rows_per_chunk - 1) / rows_per_chunk;
+    measured_.resize(static_cast<std::size_t>(chunks_));
+    grow_to(discs.anchors, rows.size());
+}
+
+template <class Work>
+void DiscStrips::for_each_disc(const SceneCore& scene, const DiscStore& discs, std::int64_t chunk,
+                               const Work& work) const
+{
+    const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
+    const auto first = static_cast<std::uint32_t>(chunk * rows_per_chunk);
+    const auto last =
+        static_cast<std::uint32_t>(std::min<std::int64_t>((chunk + 1) * rows_per_chunk, rows.size()));
+    for (std::uint32_t row = first; row < last; ++row) {
+        if (discs.anchors[row].skin < INFINITY) work(row, rows);
+    }
+}
+
+void DiscStrips::measure(const SceneCore& scene, DiscStore& discs, std::int64_t chunk)
+{
+    const BodyStore& bodies = scene.bodies;
+    const BodyRows& rows = bodies.rows(BodyKind::planar);
+    Measured m;
+    const auto first = static_cast<std::uint32_t>(chunk * rows_per_chunk);
+    const auto last =
+        static_cast<std::uint32_t>(std::min<std::int64_t>((chunk + 1) * rows_per_chunk, rows.size()));
+    for (std::uint32_t row = first; row < last; ++row) {
+        DiscAnchor& anchor = discs.anchors[row];
+        anchor.skin = INFINITY;
+        const std::uint32_t slot = rows.slot[row];
+        const DiscShape* shape = slot == 0 ? nullptr : discs.shape_of(slot);
+        if (shape == nullptr || bodies.contained[slot] != 0) continue;
+        const float* v = &rows.velocity[std::size_t{4} * row];
+        const double speed = std::sqrt(static_cast<double>(v[0]) * static_cast<double>(v[0]) +
+                                       static_cast<double>(v[1]) * static_cast<double>(v[1]));
+        anchor.skin = skin_at_rest + static_cast<float>(std::min(speed * steps_, 1e9));
+        const Vec3<PoseReal>& at = rows.pose[row].position;
+        const auto x = static_cast<double>(at.x), y = static_cast<double>(at.y);
+        m.low = {std::min(m.low.x, x), std::min(m.low.y, y)};
+        m.high = {std::max(m.high.x, x), std::max(m.high.y, y)};
+        ++m.reaches[static_cast<std::size_t>(bucket_of(shape->radius + anchor.skin))];
+        ++m.discs;
+    }
+    measured_[static_cast<std::size_t>(chunk)] = m;
+}
+
+/// Chooses the strips: as wide as all but a few discs can reach.
+void DiscStrips::choose(DiscStore& discs)
+{
+    Measured all;
+    for (const Measured& m : measured_) {
+        all.low = {std::min(all.low.x, m.low.x), std::min(all.low.y, m.low.y)};
+        all.high = {std::max(all.high.x, m.high.x), std::max(all.high.y, m.high.y)};
+        all.discs += m.discs;
+        for (std::size_t b = 0; b < buckets; ++b) all.reaches[b] += m.reaches[b];
+    }
+    discs_ = all.discs;
+    if (discs_ == 0) all.low = all.high = {};
+    constexpr std::int64_t one_in = 256;
+    int bucket = buckets - 1;
+    for (std::int64_t above = 0; bucket > 0; --bucket) {
+        above += all.reaches[static_cast<std::size_t>(bucket)];
+        if (above * one_in > discs_) break;
+    }
+    most_reach_ = upper_end_of(bucket);
+    low_ = discs.origin = all.low;
+    is_turned_ = all.high.x - all.low.x > all.high.y - all.low.y;
+    const double extent = is_turned_ ? all.high.x - all.low.x : all.high.y - all.low.y;
+    const double most_strips = std::min(4.0 * static_cast<double>(discs_) + 64, 1e7);
+    const double width = std::max(2.0001 * static_cast<double>(most_reach_), extent / most_strips);
+    per_metre_ = 1 / width;
+    strips_ = static_cast<std::int32_t>(extent * per_metre_) + 1;
+    strips_per_group_ = (strips_ + most_groups - 1) / most_groups;
+    groups_ = (strips_ + strips_per_group_ - 1) / strips_per_group_;
+    places_.assign(static_cast<std::size_t>(chunks_) * static_cast<std::size_t>(groups_ + 1), 0);
+    first_in_group_.resize(static_cast<std::size_t>(groups_) + 2);
+    grow_to(starts_, static_cast<std::size_t>(groups_));
+    grow_to(placed_, static_cast<std::size_t>(discs_));
+    sorted_.resize(static_cast<std::size_t>(discs_));
+    first_.resize(static_cast<std::size_t>(strips_) + 1);
+}
+
+void DiscStrips::count(const SceneCore& scene, DiscStore& discs, std::int64_t chunk)
+{
+    std::uint32_t* places = &places_[static_cast<std::size_t>(chunk * (groups_ + 1))];
+    for_each_disc(scene, discs, chunk, [&](std::uint32_t row, const BodyRows& rows) {
+        const Vec3<PoseReal>& at = rows.pose[row].position;
+        const Vec2<double> world{static_cast<double>(at.x), static_cast<double>(at.y)};
+        const float reach = discs.shapes[rows.slot[row]].radius + discs.anchors[row].skin;
+        ++places[group_of(to_strips(world).y, reach)];
+        const Vec2<double> from_origin = world - low_;
+        discs.anchors[row].x = static_cast<float>(from_origin.x);
+        discs.anchors[row].y = static_cast<float>(from_origin.y);
+    });
+}
+
+void DiscStrips::open()
+{
+    std::uint32_t next = 0;
+    for (std::int32_t group = 0; group <= groups_; ++group) {
+        first_in_group_[static_cast<std::size_t>(group)] = next;
+        for (std::int64_t chunk = 0; chunk < chunks_; ++chunk)
+            next += std::exchange(places_[static_cast<std::size_t>(chunk * (groups_ + 1) + group)], next);
+    }
+    first_in_group_[static_cast<std::size_t>(groups_) + 1] = next;
+}
+
+void DiscStrips::place(const SceneCore& scene, const DiscStore& discs, std::int64_t chunk)
+{
+    std::uint32_t* places = &places_[static_cast<std::size_t>(chunk * (groups_ + 1))];
+    for_each_disc(scene, discs, chunk, [&](std::uint32_t row, const BodyRows& rows) {
+        const Vec3<PoseReal>& position = rows.pose[row].position;
+        const Vec2<double> at = to_strips({static_cast<double>(position.x), static_cast<double>(position.y)});
+        const float radius = discs.shapes[rows.slot[row]].radius, reach = radius + discs.anchors[row].skin;
+        placed_[places[group_of(at.y, reach)]++] = {
+            at.x, at.y, reach, radius, rows.velocity[std::size_t{4} * row + 3], row};
+    });
+}
+
+void DiscStrips::sort(const SceneCore& scene, std::int64_t group)
+{
+    const std::uint32_t begin = first_in_group_[static_cast<std::size_t>(group)],
+                        end = first_in_group_[static_cast<std::size_t>(group) + 1];
+    const std::span<const PlacedDisc> discs =
+        std::span<const PlacedDisc>(placed_).subspan(begin, end - begin);
+    const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+    const auto comes_before = [&](const PlacedDisc& p, const PlacedDisc& q) {
+        if (p.along != q.along) return p.along < q.along;
+        if (p.across != q.across) return p.across < q.across;
+        return slots[p.row] < slots[q.row];
+    };
+    const auto order = [&](std::size_t first, std::size_t last) {
+        if (last - first > 1)
+            std::sort(sorted_.begin() + static_cast<std::ptrdiff_t>(first),
+                      sorted_.begin() + static_cast<std::ptrdiff_t>(last), comes_before);
+    };
+    if (group == groups_) {
+        std::copy(discs.begin(), discs.end(), sorted_.begin() + begin);
+        order(begin, end);
+        return;
+    }
+    const auto first_strip = static_cast<std::int32_t>(group) * strips_per_group_;
+    const std::int32_t strips = std::min(strips_per_group_, strips_ - first_strip);
+    double low = 1e300, high = -1e300;
+    for (const PlacedDisc& disc : discs) {
+        low = std::min(low, disc.along);
+        high = std::max(high, disc.along);
+    }
+    // Bins along each strip, about one a disc.
+    const auto bins =
+        static_cast<std::int32_t>(std::max<std::size_t>(1, discs.size() / static_cast<std::size_t>(strips)));
+    const double per_metre = high > low ? static_cast<double>(bins) / (high - low) : 0;
+    const auto bin_of = [&](const PlacedDisc& disc) {
+        const std::int32_t bin =
+            std::min(static_cast<std::int32_t>((disc.along - low) * per_metre), bins - 1);
+        return static_cast<std::size_t>((strip_at(disc.across) - first_strip) * bins + bin);
+    };
+    std::vector<std::uint32_t>& starts = starts_[static_cast<std::size_t>(group)];
+    starts.assign(static_cast<std::size_t>(strips * bins) + 1, 0);
+    for (const PlacedDisc& disc : discs) ++starts[bin_of(disc) + 1];
+    starts[0] = begin;
+    for (std::size_t b = 1; b < starts.size(); ++b) starts[b] += starts[b - 1];
+    for (std::int32_t s = 0; s < strips; ++s)
+        first_[static_cast<std::size_t>(first_strip + s)] = starts[static_cast<std::size_t>(s * bins)];
+    for (const PlacedDisc& disc : discs) sorted_[starts[bin_of(disc)]++] = disc;
+    // Each start is now the end of its bin.
+    for (std::size_t b = 0, first = begin; b + 1 < starts.size(); first = starts[b++])
+        order(first, starts[b]);
+}
+
+void DiscStrips::divide()
+{
+    first_[static_cast<std::size_t>(strips_)] = first_in_group_[static_cast<std::size_t>(groups_)];
+    band_strips_.clear();
+    band_strips_.push_back(0);
+    for (std::int32_t s = 1; s < strips_; ++s) {
+        if (first_of(s) - first_of(band_strips_.back()) >= discs_per_band) band_strips_.push_back(s);
+    }
+    band_strips_.push_back(strips_);
+}
+
+}  // namespace motley

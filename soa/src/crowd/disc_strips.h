@@ -1,0 +1,127 @@
+// Discs sorted into strips of the plane, and in each strip along it, so that those near each other are found by a sweep
+// over a few neighbours. The strips are stacked along the longer side of the crowd and are as wide as two discs can
+// reach, so that neighbours are in the same strip or in the next one. The cost follows the number of discs, not the area
+// that they are spread over.
+//
+// The order of discs is by strip, then by place along it, then by place across it, and at last by handle slot. It
+// depends on where the discs are, and not on threads or on the order in which they were added.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/scene_core.h"
+#include "stores/disc_store.h"
+
+namespace motley {
+
+/// A disc at its place in the order.
+struct PlacedDisc {
+    double along, across;  ///< m, from the low corner of all discs
+    float reach;           ///< m: radius and skin
+    float radius;          ///< m
+    float inverse_mass;    ///< 1/kg
+    std::uint32_t row;     ///< of planar bodies
+};
+
+class DiscStrips {
+  public:
+    /// Starts over. Then, chunk by chunk on any threads, measure(); then choose(); then count() of every chunk; then
+    /// open(); then place() of every chunk; then sort() of every group; then divide().
+    void begin(SceneCore& scene, float dt);
+    [[nodiscard]] std::int64_t chunk_count() const { return chunks_; }
+    /// How far each disc of a chunk of rows may reach before the next search; writes the skins of the anchors.
+    void measure(const SceneCore& scene, DiscStore& discs, std::int64_t chunk);
+    void choose(DiscStore& discs);
+    /// Counts the discs of each group, and writes the places of the anchors.
+    void count(const SceneCore& scene, DiscStore& discs, std::int64_t chunk);
+    void open();
+    void place(const SceneCore& scene, const DiscStore& discs, std::int64_t chunk);
+    [[nodiscard]] std::int64_t group_count() const { return groups_; }
+    void sort(const SceneCore& scene, std::int64_t group);
+    /// Divides the strips into bands of about this many discs.
+    void divide();
+
+    [[nodiscard]] std::int32_t strip_count() const { return strips_; }
+    [[nodiscard]] std::span<const PlacedDisc> strip(std::int32_t s) const
+    {
+        const auto first = first_[static_cast<std::size_t>(s)],
+                   last = first_[static_cast<std::size_t>(s) + 1];
+        return std::span(sorted_).subspan(first, last - first);
+    }
+    /// The place in the order of the first disc of a strip.
+    [[nodiscard]] std::uint32_t first_of(std::int32_t s) const { return first_[static_cast<std::size_t>(s)]; }
+    [[nodiscard]] const PlacedDisc& disc(std::uint32_t place) const { return sorted_[place]; }
+    /// Discs that reach further than a strip is made for, by row.
+    [[nodiscard]] std::span<const PlacedDisc> wide() const
+    {
+        return std::span(sorted_).subspan(first_[static_cast<std::size_t>(strips_)]);
+    }
+    /// The most that a disc in a strip reaches, m.
+    [[nodiscard]] float most_reach() const { return most_reach_; }
+    /// The number of bands, and the first strip of each, and one past the last.
+    [[nodiscard]] std::int32_t band_count() const
+    {
+        return static_cast<std::int32_t>(band_strips_.size()) - 1;
+    }
+    [[nodiscard]] std::int32_t first_strip(std::int32_t band) const
+    {
+        return band_strips_[static_cast<std::size_t>(band)];
+    }
+    /// The strip of a place across the strips, m; also for places beyond the first and last one.
+    [[nodiscard]] std::int32_t strip_at(double across) const
+    {
+        const double s = across * per_metre_;
+        return s <= 0 ? 0 : s >= strips_ - 1 ? strips_ - 1 : static_cast<std::int32_t>(s);
+    }
+    /// Where a strip begins across the strips, m.
+    [[nodiscard]] double low_edge_of(std::int32_t s) const { return static_cast<double>(s) / per_metre_; }
+    /// From the world into the frame of the strips, x along and y across.
+    [[nodiscard]] Vec2<double> to_strips(const Vec2<double>& world) const
+    {
+        const Vec2<double> at = world - low_;
+        return is_turned_ ? Vec2<double>{at.y, at.x} : at;
+    }
+
+  private:
+    static constexpr std::int64_t rows_per_chunk = 1024;
+    static constexpr std::int32_t most_groups = 256;
+    static constexpr int buckets = 320;  ///< of reaches, eight an octave
+
+    struct Measured {
+        Vec2<double> low{1e300, 1e300}, high{-1e300, -1e300};
+        std::int64_t discs = 0;
+        std::array<std::int32_t, buckets> reaches{};
+    };
+    std::vector<Measured> measured_;  ///< by chunk
+    std::int64_t chunks_ = 0;
+    double steps_ = 0;  ///< s for which the search looks ahead
+    Vec2<double> low_{};
+    bool is_turned_ = false;  ///< strips run along y and are stacked along x
+    double per_metre_ = 1;
+    float most_reach_ = 0;
+    std::int64_t discs_ = 0;
+    std::int32_t strips_ = 1, groups_ = 1, strips_per_group_ = 1;
+    std::vector<std::uint32_t>
+        places_;  ///< by chunk and group: the number of discs, then the next free place
+    std::vector<std::uint32_t> first_in_group_;
+    std::vector<std::vector<std::uint32_t>> starts_;  ///< by group: of the bins of its strips
+    AlignedVector<PlacedDisc> placed_, sorted_;       ///< by group; in order
+    std::vector<std::uint32_t> first_;  ///< by strip, one past the last, and one past the wide ones
+    std::vector<std::int32_t> band_strips_;
+
+    template <class Work>
+    void for_each_disc(const SceneCore& scene, const DiscStore& discs, std::int64_t chunk,
+                       const Work& work) const;
+    [[nodiscard]] std::int32_t group_of(double across, float reach) const
+    {
+        return reach > most_reach_ ? groups_ : strip_at(across) / strips_per_group_;
+    }
+    [[nodiscard]] static int bucket_of(float reach);
+    [[nodiscard]] static float upper_end_of(int bucket);
+};
+
+}  // namespace motley

@@ -1,0 +1,34 @@
+// The start of a step for contacts of discs, in blocks that are kept from step to step. Included inside an anonymous
+// namespace, after kernel_constraints.h.
+
+/// Rows of pairs from the poses of their discs; the impulses to start from; and sums of zero.
+template <class Type>
+void prepare_pairs(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
+                   std::int32_t end)
+{
+    using Kernels = Kernels<Type, BodyKind::planar, BodyKind::planar>;
+    using Row = typename Kernels::Row;
+    using Impulse = typename Kernels::Impulse;
+    const BodyPose* const poses = context.bodies[static_cast<int>(BodyKind::planar)].pose;
+    const Lanes warm(context.step.warm_start_scale);
+    constexpr std::int32_t a_row = offsets_a_row(BodyKind::planar);
+    for (std::int32_t block = begin; block < end; ++block) {
+        Kernels::for_each_bundle(context, streams, block, [&](const typename Kernels::Bundle& bundle) {
+            alignas(64) float x[Lanes_width], y[Lanes_width];
+            for (int lane = 0; lane < Lanes_width; ++lane) {
+                const Vec3<PoseReal>& a = poses[bundle.offsets_a[lane] / a_row].position;
+                const Vec3<PoseReal>& b = poses[bundle.offsets_b[lane] / a_row].position;
+                x[lane] = static_cast<float>(b.x - a.x);
+                y[lane] = static_cast<float>(b.y - a.y);
+            }
+            auto row = load_row<Row>(bundle.row);
+            Type::template place_pair<Lanes>({load_lanes(x), load_lanes(y)}, row);
+            store_row(row, bundle.row);
+            auto impulse = load_row<Impulse>(bundle.impulse);
+            Lanes* fields = reinterpret_cast<Lanes*>(&impulse);
+            for (int i = 0; i < fields_of<Impulse>; ++i) fields[i] = warm * fields[i];
+            store_row(impulse, bundle.impulse);
+            Kernels::clear(bundle.sum);
+        });
+    }
+}

@@ -1,0 +1,227 @@
+// Contacts of discs and walls that the library finds: what they do. Independent evidence: closed forms (the pushed
+// chain, the inelastic pulse, a disc that slides until it rolls), conservation of momentum, and the search of every
+// pair by brute force.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "disc_crowd.h"
+
+namespace motley {
+namespace {
+
+using testing::DiscCrowd;
+
+constexpr float dt = 1.0F / 60;
+
+BodyDefinition person_at(double x, double y, float mass = 80, float radius = 0.2F)
+{
+    BodyDefinition body;
+    body.model = BodyModel::planar;
+    body.position = {x, y, 0};
+    body.mass = mass;
+    body.inertia.zz = 0.5F * mass * radius * radius;
+    return body;
+}
+
+void take_steps(Solver& solver, Scene& scene, int steps)
+{
+    for (int i = 0; i < steps; ++i) {
+        const StepReport report = solver.step(scene, dt);
+        ASSERT_EQ(report.status, StepStatus::done) << report.error;
+        ASSERT_EQ(report.bodies_contained, 0);
+    }
+}
+
+/// Each of n people is driven by F into a wall: contact k from the back carries k F.
+TEST(DiscContacts, OfAPushedChainCarryTheSumOfWhatIsBehind)
+{
+    constexpr int n = 30;
+    constexpr float force = 214;
+    Scene scene;
+    const Vec2<double> ends[] = {{0, -1}, {0, 1}};
+    const WallId wall = scene.add_wall({.points = ends});
+    std::vector<BodyId> people;
+    for (int i = 0; i < n; ++i) {
+        people.push_back(scene.add_body(person_at(0.2 + 0.4 * i, 0)));
+        scene.set_disc(people.back(), {.radius = 0.2F});
+        scene.set_force(people.back(), {-force, 0, 0}, {});
+    }
+    Solver solver({});
+    take_steps(solver, scene, 600);
+    const std::vector<DiscContact> contacts = scene.disc_contacts();
+    ASSERT_EQ(contacts.size(), std::size_t{n});
+    for (const DiscContact& contact : contacts) {
+        std::size_t behind = 0;  // people from this contact to the back
+        if (contact.wall == wall) {
+            behind = n;
+            EXPECT_NEAR(contact.normal.x, 1, 1e-6);
+        } else {
+            const double a = scene.state(contact.a).position.x, b = scene.state(contact.b).position.x;
+            behind = static_cast<std::size_t>(n - std::lround((a + b) / 2 / 0.4));
+        }
+        EXPECT_NEAR(contact.normal_force, force * static_cast<float>(behind), 0.01F * force * n);
+        EXPECT_LT(-contact.separation, 0.01F * 0.2F);
+    }
+    std::vector<BodyLoad> loads(people.size());
+    scene.read_loads(people, {}, std::span(loads));
+    for (int i = 0; i < n; ++i) {
+        const float front = force * static_cast<float>(n - i), back = front - force;
+        EXPECT_NEAR(loads[static_cast<std::size_t>(i)].normal_force, front + back, 0.01F * force * n);
+        EXPECT_NEAR(loads[static_cast<std::size_t>(i)].net_force.x, force, 0.01F * force * n);
+    }
+    EXPECT_EQ(scene.disc_contacts_of(people[0]).size(), std::size_t{2});
+}
+
+/// Restitution 0, gaps g, the first body at v: body n is hit at t = g n (n + 1) / (2 v).
+TEST(DiscContacts, PassAPulseOnAtTheTimesOfPlasticImpacts)
+{
+    constexpr int n = 20;
+    constexpr double gap = 0.1, v = 1.5;
+    Scene scene;
+    std::vector<BodyId> people;
+    for (int i = 0; i < n; ++i) {
+        BodyDefinition body = person_at((0.4 + gap) * i, 0);
+        if (i == 0) body.linear_velocity.x = static_cast<float>(v);
+        people.push_back(scene.add_body(body));
+        scene.set_disc(people.back(), {.radius = 0.2F});
+    }
+    Solver solver({});
+    std::vector<double> hit(n, -1);
+    double time = 0;
+    constexpr float step = 1.0F / 240;
+    for (int i = 0; i < 4000; ++i) {
+        ASSERT_EQ(solver.step(scene, step).status, StepStatus::done);
+        time += static_cast<double>(step);
+        for (std::size_t k = 0; k < n; ++k) {
+            if (hit[k] < 0 && scene.state(people[k]).linear_velocity.x > 1e-3F) hit[k] = time;
+        }
+    }
+    for (int k = 1; k < n; ++k) {
+        const double expected = gap * k * (k + 1) / (2 * v);
+        EXPECT_NEAR(hit[static_cast<std::size_t>(k)], expected,
+                    0.01 * expected + 2 * static_cast<double>(step))
+            << "body " << k;
+    }
+}
+
+/// A disc (I = m r^2 / 2) pressed on a wall slides until it rolls, at two thirds of its speed and after v / (3 mu a)
+/// with the acceleration a towards the wall.
+TEST(DiscContacts, SlideUntilTheyRoll)
+{
+    constexpr float mu = 0.3F, v = 3, a = 9.81F;
+    Scene scene;
+    const Vec2<double> ends[] = {{-100, 0}, {100, 0}};
+    scene.add_wall({.points = ends, .friction = mu});
+    const BodyId disc = scene.add_body(person_at(0, 0.2));
+    scene.set_disc(disc, {.radius = 0.2F, .friction = mu});
+    scene.set_velocity(disc, {v, 0, 0}, {});
+    Solver solver({.gravity = {0, -a, 0}});
+    const float rolls_at = v / (3 * mu * a);
+    const int before = static_cast<int>(0.5F * rolls_at / dt);
+    take_steps(solver, scene, before);
+    EXPECT_NEAR(scene.state(disc).linear_velocity.x, v - mu * a * dt * static_cast<float>(before), 0.01F);
+    take_steps(solver, scene, 120);
+    const BodyState state = scene.state(disc);
+    EXPECT_NEAR(state.linear_velocity.x, 2 * v / 3, 0.01F);
+    EXPECT_NEAR(state.angular_velocity.z, -state.linear_velocity.x / 0.2F, 0.01F);
+    const std::vector<DiscContact> contacts = scene.disc_contacts();
+    ASSERT_EQ(contacts.size(), std::size_t{1});
+    EXPECT_NEAR(contacts[0].normal_force, 80 * a, 1);
+    EXPECT_NEAR(contacts[0].friction_force, 0, 1);
+}
+
+/// Friction between two discs is an inner force: momentum and angular momentum about the origin stay.
+TEST(DiscContacts, ConserveMomentumAndAngularMomentum)
+{
+    DiscCrowd crowd({.people = 400, .friction = 0.5F, .speed = 2, .spacing = 0.41, .walls = false});
+    const auto momenta = [&] {
+        double p[3] = {0, 0, 0};
+        for (std::size_t i = 0; i < crowd.people.size(); ++i) {
+            const BodyState s = crowd.scene.state(crowd.people[i]);
+            const auto m =
+                1 / static_cast<double>(core_of(crowd.scene).bodies.inverse_masses[crowd.people[i].slot]);
+            const auto r = static_cast<double>(crowd.discs[i].radius);
+            const auto vx = static_cast<double>(s.linear_velocity.x),
+                       vy = static_cast<double>(s.linear_velocity.y);
+            p[0] += m * vx;
+            p[1] += m * vy;
+            p[2] += m * (s.position.x * vy - s.position.y * vx) +
+                    0.5 * m * r * r * static_cast<double>(s.angular_velocity.z);
+        }
+        return std::array<double, 3>{p[0], p[1], p[2]};
+    };
+    const std::array<double, 3> before = momenta();
+    Solver solver({});
+    take_steps(solver, crowd.scene, 120);
+    const std::array<double, 3> after = momenta();
+    // Rounding of 400 people of 80 kg at 2 m/s, 8 m from the origin, in 120 steps of 4 substeps with 8 impulses each.
+    const double scale = 400 * 80.0 * 2;
+    EXPECT_NEAR(after[0], before[0], 1e-6 * scale);
+    EXPECT_NEAR(after[1], before[1], 1e-6 * scale);
+    // The arms stay as they were when a step began, which is exact for r x P of a normal through both centres only to
+    // first order in the motion across it: 2e-5 of the sum of |r x p|.
+    EXPECT_NEAR(after[2], before[2], 2e-5 * scale * 8);
+}
+
+TEST(DiscContacts, MissNoOverlapWhateverTheSpeedAndSize)
+{
+    for (const float speed : {0.0F, 2.0F, 20.0F}) {
+        DiscCrowd crowd({.people = 900, .speed = speed, .spacing = 0.5});
+        // A few much larger discs, which reach further than the others.
+        for (const std::size_t large : {std::size_t{100}, std::size_t{470}, std::size_t{700}}) {
+            crowd.discs[large].radius = 0.9F;
+            crowd.scene.set_disc(crowd.people[large], crowd.discs[large]);
+        }
+        Solver solver({}, {.threads = 2, .alone_below = 0});
+        take_steps(solver, crowd.scene, 240);  // the large ones push their neighbours away
+        EXPECT_LT(crowd.deepest_overlap(), 0.01 * 0.2) << "at " << speed << " m/s";
+    }
+}
+
+TEST(DiscContacts, ActWithListedContactsAndJoints)
+{
+    Scene scene;
+    const BodyId a = scene.add_body(person_at(0, 0)), b = scene.add_body(person_at(0.39, 0));
+    BodyDefinition ball;
+    ball.position = {0.78, 0, 0};
+    ball.mass = 80;
+    const BodyId c = scene.add_body(ball);
+    for (const BodyId disc : {a, b}) scene.set_disc(disc, {.radius = 0.2F});
+    scene.add_joint(BallSocketDefinition{scene.ground(), a, {}, {}});
+    scene.set_force(c, {-100, 0, 0}, {});
+    Solver solver({});
+    for (int i = 0; i < 300; ++i) {
+        const double gap = scene.state(c).position.x - scene.state(b).position.x - 0.4;
+        Contact contact;
+        contact.body_a = b;
+        contact.body_b = c;
+        contact.key = 1;
+        contact.normal = {1, 0, 0};
+        contact.separation = static_cast<float>(gap);
+        contact.arm_a = {0.2F, 0, 0};
+        contact.arm_b = {-0.2F, 0, 0};
+        ASSERT_EQ(solver.step(scene, dt, {&contact, 1}).status, StepStatus::done);
+    }
+    ASSERT_EQ(scene.disc_contacts().size(), std::size_t{1});
+    EXPECT_NEAR(scene.disc_contacts()[0].normal_force, 100, 1);
+    EXPECT_NEAR(scene.state(c).position.x, 0.8, 0.002);
+}
+
+TEST(DiscContacts, OnlyOfThoseWhoseCategoriesMeet)
+{
+    Scene scene;
+    const BodyId ghost = scene.add_body(person_at(0, 0)), person = scene.add_body(person_at(1, 0));
+    scene.set_disc(ghost, {.radius = 0.2F, .category = 2, .mask = 4});
+    scene.set_disc(person, {.radius = 0.2F});
+    scene.set_velocity(ghost, {1, 0, 0}, {});
+    const Vec2<double> ends[] = {{2, -1}, {2, 1}};
+    scene.add_wall({.points = ends, .category = 4});
+    Solver solver({});
+    take_steps(solver, scene, 240);
+    EXPECT_EQ(scene.state(person).position.x, 1);
+    EXPECT_NEAR(scene.state(ghost).position.x, 1.8, 0.01);
+}
+
+}  // namespace
+}  // namespace motley
