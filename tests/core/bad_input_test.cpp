@@ -580,6 +580,34 @@ TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
              f.scene.set_force(f.rigid, {}, {0, 0, infinity});
          },
          "set_forces.torques.z", "inf"},
+        {"orientations sizes",
+         [&](Fixture& f) {
+             const BodyId two[2] = {f.rigid, f.planar};
+             Quat<double> q[1];
+             f.scene.read_orientations(two, q);
+         },
+         "read_orientations.orientations.size()", "1"},
+        {"orientation of a removed body",
+         [&](Fixture& f) {
+             const BodyId two[2] = {f.rigid, f.removed};
+             Quat<double> q[2];
+             f.scene.read_orientations(two, q);
+         },
+         "read_orientations.bodies", "not alive"},
+        {"joint reports sizes",
+         [](Fixture& f) {
+             const ConstraintId one[1] = {f.joint};
+             JointReport reports[2];
+             f.scene.read_joint_reports(one, reports);
+         },
+         "read_joint_reports.reports.size()", "2"},
+        {"joint report of a removed joint",
+         [](Fixture& f) {
+             const ConstraintId two[2] = {f.joint, f.removed_joint};
+             JointReport reports[2];
+             f.scene.read_joint_reports(two, reports);
+         },
+         "read_joint_reports.joints", "not alive"},
         {"revive a body that moves", [](Fixture& f) { f.scene.revive(f.rigid, {}, {}); }, "revive.body",
          "moves"},
         {"set_velocities sizes",

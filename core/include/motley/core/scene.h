@@ -84,11 +84,13 @@ class Scene {
     void set_forces(std::span<const BodyId> bodies, StridedSpan<const Vec3<float>> forces,
                     StridedSpan<const Vec3<float>> torques = {});
     /// Bulk reads into arrays of the host, world frame, m, m/s, rad/s and rad: element i belongs to bodies[i]. An empty
-    /// span of velocities is skipped.
+    /// span of velocities is skipped. Orientations are those of state(): body to world, unit, the identity for a
+    /// particle, and from the yaw for a planar body.
     void read_positions(std::span<const BodyId> bodies, StridedSpan<Vec3<double>> positions) const;
     void read_velocities(std::span<const BodyId> bodies, StridedSpan<Vec3<float>> linear,
                          StridedSpan<Vec3<float>> angular = {}) const;
     void read_yaws(std::span<const BodyId> bodies, StridedSpan<double> yaws) const;
+    void read_orientations(std::span<const BodyId> bodies, StridedSpan<Quat<double>> orientations) const;
 
     // ---- joints -------------------------------------------------------------------------------------------
     /// Adds a joint of any type of joint_definitions.h: add_joint(BallSocketDefinition{...}).
@@ -114,6 +116,8 @@ class Scene {
     [[nodiscard]] std::size_t joint_count() const;
     /// The mean force and torque that a joint applied over the last step, and its position error now.
     [[nodiscard]] JointReport joint_report(ConstraintId joint) const;
+    /// The same of many joints: reports[i] is of joints[i].
+    void read_joint_reports(std::span<const ConstraintId> joints, StridedSpan<JointReport> reports) const;
 
     /// Reports the joint in break_events() after every step in which it bore more than `limit`; an infinite limit
     /// reports nothing. The joint holds all the same: the host breaks it by removing it. Refuses limits that are not
