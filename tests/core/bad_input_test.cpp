@@ -608,6 +608,42 @@ TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
              f.scene.read_joint_reports(two, reports);
          },
          "read_joint_reports.joints", "not alive"},
+        {"mass of a removed body",
+         [](Fixture& f) {
+             f.scene.set_mass(f.removed, 1, {1, 0, 0, 1, 0, 1});
+         },
+         "set_mass.body", "not alive"},
+        {"mass of the ground",
+         [](Fixture& f) {
+             f.scene.set_mass(f.scene.ground(), 1, {1, 0, 0, 1, 0, 1});
+         },
+         "set_mass.body", "static"},
+        {"mass of a kinematic body",
+         [](Fixture& f) {
+             f.scene.set_mass(f.kinematic, 1, {1, 0, 0, 1, 0, 1});
+         },
+         "set_mass.body", "kinematic"},
+        {"mass zero", [](Fixture& f) { f.scene.set_mass(f.particle, 0, {}); }, "set_mass.mass", "0"},
+        {"mass NaN",
+         [](Fixture& f) {
+             f.scene.set_mass(f.rigid, nan, {1, 0, 0, 1, 0, 1});
+         },
+         "set_mass.mass", "nan"},
+        {"inertia of a planar body",
+         [](Fixture& f) {
+             f.scene.set_mass(f.planar, 1, {1, 0, 0, 1, 0, -1});
+         },
+         "set_mass.inertia.zz", "-1"},
+        {"inertia against the triangle inequality",
+         [](Fixture& f) {
+             f.scene.set_mass(f.rigid, 1, {1, 0, 0, 1, 0, 3});
+         },
+         "set_mass.inertia", "triangle"},
+        {"inertia indefinite",
+         [](Fixture& f) {
+             f.scene.set_mass(f.rigid, 1, {1, 2, 0, 1, 0, 1});
+         },
+         "set_mass.inertia", "positive definite"},
         {"revive a body that moves", [](Fixture& f) { f.scene.revive(f.rigid, {}, {}); }, "revive.body",
          "moves"},
         {"set_velocities sizes",

@@ -115,7 +115,7 @@ void SceneArchive::check_bodies(const SceneCore& scene)
         if (kind == BodyKind::planar)
             demand(moment >= 1 / most_moment && moment <= 1 / least_moment,
                    "a moment of inertia that no body has");
-        if (kind == BodyKind::rigid) check_inertia(rows.inertia[where.row()]);
+        if (kind == BodyKind::rigid) check_inertia("BodyDefinition", rows.inertia[where.row()]);
         check_state(rows, kind, where.row(), model, motion);
     }
     check_free_list(

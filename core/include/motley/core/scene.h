@@ -70,6 +70,13 @@ class Scene {
     /// Sets a force (N, at the centre of mass) and a torque (N m), world, finite, that act in every step until changed;
     /// on a contained body only after it is revived. Dynamic bodies only.
     void set_force(BodyId body, const Vec3<float>& force, const Vec3<float>& torque);
+    /// Changes the mass (kg, 1e-10 to 1e10) of a dynamic body, and its inertia (kg m2, about the centre of mass in the
+    /// body frame, of which the model reads what BodyDefinition::inertia says, in the same ranges). Its pose and
+    /// velocities stay; so do its force and torque, as far as their accelerations were finite, with a rounding more.
+    /// The next steps have the bits of a body that was added with this mass, if its force is set anew or 0. A
+    /// contained body takes it when it is revived. Refuses what add_body refuses, and static and kinematic bodies.
+    /// Where the body has joints, the next step lays out all joints anew.
+    void set_mass(BodyId body, float mass, const Sym3<float>& inertia);
     /// Lets a contained body move again, from `position` (m, world) with the velocity `linear` (m/s, world) and no
     /// angular velocity; its orientation stays. Refuses a body that is not contained.
     void revive(BodyId body, const Vec3<double>& position, const Vec3<float>& linear);
