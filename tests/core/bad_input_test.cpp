@@ -608,6 +608,9 @@ TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
              f.scene.read_joint_reports(two, reports);
          },
          "read_joint_reports.joints", "not alive"},
+        {"user data of a removed body", [](Fixture& f) { f.scene.set_user_data(f.removed, 1); },
+         "set_user_data.body", "not alive"},
+        {"user data of nobody", [](Fixture& f) { (void)f.scene.user_data({}); }, "user_data.body", "null"},
         {"mass of a removed body",
          [](Fixture& f) {
              f.scene.set_mass(f.removed, 1, {1, 0, 0, 1, 0, 1});

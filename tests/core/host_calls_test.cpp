@@ -1,6 +1,7 @@
 // What a host keeps and asks of the bodies themselves. Independent evidence: what it was told when it added them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -49,6 +50,60 @@ TEST(HostCalls, OrientationsInBulkAreThoseOfStates)
         EXPECT_EQ(own[i].before, 'b');
         EXPECT_EQ(own[i].after, 'a');
     }
+}
+
+TEST(HostCalls, BodiesAreListedBySlotWithoutTheGroundAndTheRemoved)
+{
+    Scene scene;
+    std::vector<BodyId> listed(3);
+    scene.read_bodies(listed);
+    EXPECT_TRUE(listed.empty());
+    std::vector<BodyId> bodies = add_one_of_each(scene);
+    scene.read_bodies(listed);
+    EXPECT_EQ(listed, bodies);
+    scene.remove_body(bodies[2]);
+    scene.remove_body(bodies[7]);
+    scene.read_bodies(listed);
+    bodies.erase(bodies.begin() + 7);
+    bodies.erase(bodies.begin() + 2);
+    EXPECT_EQ(listed, bodies);
+    scene.renumber_bodies();
+    scene.read_bodies(listed);
+    EXPECT_EQ(listed, bodies) << "rows move, slots do not";
+    const BodyId born = scene.add_body({});
+    scene.read_bodies(listed);
+    EXPECT_EQ(listed.size(), scene.body_count());
+    for (std::size_t i = 1; i < listed.size(); ++i) EXPECT_LT(listed[i - 1].slot, listed[i].slot);
+    EXPECT_NE(std::find(listed.begin(), listed.end(), born), listed.end());
+    // As bulk calls take them.
+    std::vector<Vec3<double>> positions(listed.size());
+    EXPECT_NO_THROW(scene.read_positions(listed, positions));
+}
+
+TEST(HostCalls, UserDataIsZeroAtBirthAndStaysWithItsBodyInCopies)
+{
+    Scene scene;
+    const std::vector<BodyId> bodies = add_one_of_each(scene);
+    EXPECT_EQ(scene.user_data(bodies[4]), 0U);
+    const std::uint64_t hash = scene.state_hash();
+    scene.set_user_data(bodies[4], 0xFEDCBA9876543210U);
+    scene.set_user_data(scene.ground(), 3);
+    EXPECT_EQ(scene.state_hash(), hash);
+    EXPECT_EQ(scene.user_data(bodies[4]), 0xFEDCBA9876543210U);
+    EXPECT_EQ(scene.user_data(bodies[3]), 0U);
+    EXPECT_EQ(scene.user_data(bodies.back()), 0U);
+    scene.renumber_bodies();
+    Scene copy = scene;
+    scene.set_user_data(bodies[4], 1);
+    EXPECT_EQ(copy.user_data(bodies[4]), 0xFEDCBA9876543210U);
+    EXPECT_EQ(copy.user_data(copy.ground()), 3U);
+    const BodyId late = copy.add_body({});
+    EXPECT_EQ(copy.user_data(late), 0U);
+    copy.set_user_data(late, 9);
+    copy.remove_body(late);
+    const BodyId in_its_slot = copy.add_body({});
+    ASSERT_EQ(in_its_slot.slot, late.slot);
+    EXPECT_EQ(copy.user_data(in_its_slot), 0U);
 }
 
 TEST(HostCalls, JointReportsInBulkAreThoseOfEachJoint)

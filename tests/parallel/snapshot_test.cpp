@@ -161,6 +161,29 @@ TEST(Snapshot, InMemoryIsRefusedByNameWhenItIsNotWhole)
     EXPECT_THROW(static_cast<void>(load_problem(good)), std::runtime_error) << "a scene is no problem";
 }
 
+TEST(Snapshot, KeepsUserDataAndRefusesThatOfNoBody)
+{
+    Scene scene;
+    const BodyId body = scene.add_body({}), gone = scene.add_body({}), late = scene.add_body({});
+    const std::uint64_t number = 0xFEDCBA9876543210U;
+    scene.set_user_data(body, number);
+    scene.remove_body(gone);
+    const std::vector<std::byte> good = save_scene(scene);
+    const Scene back = load_scene(good);
+    EXPECT_EQ(back.user_data(body), number);
+    EXPECT_EQ(back.user_data(late), 0U);
+    // The numbers of all slots, which lie one after the other.
+    std::string file(reinterpret_cast<const char*>(good.data()), good.size());
+    const std::array<std::uint64_t, 2> numbers{number, 0}, forged{number, 1};
+    file = with_changed(file, numbers, forged);
+    try {
+        static_cast<void>(load_scene(std::as_bytes(std::span(file))));
+        FAIL();
+    } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find("user data of no body"), std::string::npos) << error.what();
+    }
+}
+
 TEST(Snapshot, KeepsWishesAndBreakLimits)
 {
     const File file;

@@ -85,6 +85,7 @@ struct SceneArchive {
         visit_bodies(archive, scene.bodies);
         visit_joints(archive, *scene.joints);
         visit_contacts(archive, scene.contacts);
+        archive(scene.user_data);
         archive(scene.island_iterations);
         archive(scene.ground);
         archive(scene.body_count);

@@ -1,4 +1,4 @@
-// What a host changes of the bodies themselves.
+// What a host keeps and changes of the bodies themselves: their list, its own number of each, their masses.
 #include "scene/scene_core.h"
 
 #include "motley/core/invalid_input.h"
@@ -6,6 +6,30 @@
 #include "stores/joint_store.h"
 
 namespace motley {
+
+void Scene::read_bodies(std::vector<BodyId>& bodies) const
+{
+    const BodyStore& store = core_->bodies;
+    bodies.reserve(core_->body_count);
+    bodies.clear();
+    for (std::uint32_t slot = 1; slot < store.slot_count(); ++slot) {
+        if (store.is_slot_live(slot) && slot != core_->ground.slot) bodies.push_back(store.id_of_slot(slot));
+    }
+}
+
+void Scene::set_user_data(BodyId body, std::uint64_t value)
+{
+    core_->require_alive(body, "set_user_data.body");
+    // The first value makes room for all bodies.
+    if (body.slot >= core_->user_data.size()) core_->user_data.resize(core_->bodies.slot_count());
+    core_->user_data[body.slot] = value;
+}
+
+std::uint64_t Scene::user_data(BodyId body) const
+{
+    core_->require_alive(body, "user_data.body");
+    return body.slot < core_->user_data.size() ? core_->user_data[body.slot] : 0;
+}
 
 void Scene::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
 {

@@ -30,6 +30,7 @@ struct SceneCore {
     ContactCache contacts;
     std::vector<BreakEvent> break_events;             ///< with room for every watched joint
     std::vector<IslandIterations> island_iterations;  ///< of bodies alive
+    std::vector<std::uint64_t> user_data;             ///< by body slot, of the host; 0 beyond its end
     BodyId ground{};
     std::size_t body_count = 0;  ///< alive, without the ground
     BusyFlag busy;               ///< held by a step for as long as it lasts

@@ -54,6 +54,9 @@ class Scene {
     [[nodiscard]] BodyId ground() const;
     /// Number of bodies alive, without the ground.
     [[nodiscard]] std::size_t body_count() const;
+    /// Replaces the contents of `bodies` by the bodies alive without the ground, in the order of their slots, as bulk
+    /// calls take them. Allocates only what the vector lacks.
+    void read_bodies(std::vector<BodyId>& bodies) const;
 
     [[nodiscard]] BodyModel model(BodyId body) const;
     [[nodiscard]] BodyMotion motion(BodyId body) const;
@@ -77,6 +80,10 @@ class Scene {
     /// contained body takes it when it is revived. Refuses what add_body refuses, and static and kinematic bodies.
     /// Where the body has joints, the next step lays out all joints anew.
     void set_mass(BodyId body, float mass, const Sym3<float>& inertia);
+    /// A number of the host's own for a body: an index, or a pointer. 0 at birth; kept in copies and files of the
+    /// scene. No step reads it. The first call for a scene allocates eight bytes a body.
+    void set_user_data(BodyId body, std::uint64_t value);
+    [[nodiscard]] std::uint64_t user_data(BodyId body) const;
     /// Lets a contained body move again, from `position` (m, world) with the velocity `linear` (m/s, world) and no
     /// angular velocity; its orientation stays. Refuses a body that is not contained.
     void revive(BodyId body, const Vec3<double>& position, const Vec3<float>& linear);

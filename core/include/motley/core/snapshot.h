@@ -20,8 +20,8 @@ struct StepProblem {
     std::vector<Contact> contacts;
 };
 
-/// Everything that decides what the next steps compute, as bytes: bodies, joints, handles, colours, and the accumulated
-/// impulses. A scene that is read back continues with the same bits, and the host's handles stay valid.
+/// Everything that decides what the next steps compute, as bytes: bodies, joints, handles, user data, colours, and the
+/// accumulated impulses. A scene that is read back continues with the same bits, and the host's handles stay valid.
 [[nodiscard]] std::vector<std::byte> save_scene(const Scene& scene);
 /// Reads what save_scene returned, with the same version of the format and the same layout of data in memory. Throws
 /// std::runtime_error saying what is wrong with the bytes: not a scene, of another version or layout, truncated, or
