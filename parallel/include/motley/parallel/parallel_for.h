@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
-#include <functional>
 
 #include "motley/parallel/executor.h"
 
@@ -47,8 +46,7 @@ void parallel_for(Executor& executor, std::int64_t count, std::int64_t grain, co
     if (executor.concurrency() <= 1 || chunks <= 1) {
         work(0);
     } else {
-        // A reference: std::function need not allocate for it.
-        executor.run(executor.concurrency(), std::ref(work));
+        executor.run(executor.concurrency(), work);
         work(0);  // runs what is left if the executor made no call
     }
     if (failure) std::rethrow_exception(failure);
