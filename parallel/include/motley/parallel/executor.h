@@ -15,7 +15,8 @@ class Executor {
     /// time meanwhile, or not at all: the step finishes with any number of them. Returns when every call that began
     /// has returned and no further one will begin; `job` is valid until then. A `job` of a step never throws. When run
     /// throws before it has called job(0), the step is refused; when it throws afterwards, the step is done, and its
-    /// report tells what was thrown.
+    /// report tells what was thrown. A solver calls it from the thread that called step(): from several at the same
+    /// time only if the host steps several solvers on this executor at once (see Solver).
     virtual void run(int workers, Job job) = 0;
 };
 
