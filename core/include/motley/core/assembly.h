@@ -8,6 +8,7 @@
 
 #include "motley/core/scene.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Bodies and joints to be copied, in the frame of the figure.
@@ -51,3 +52,4 @@ struct Placing {
 std::vector<BodyId> add_assembly(Scene& scene, const Figure& figure, std::span<const Placing> copies);
 
 }  // namespace motley
+#pragma GCC visibility pop

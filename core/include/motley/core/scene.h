@@ -17,12 +17,13 @@
 #include "motley/core/step_report.h"
 #include "motley/core/strided_span.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
-struct SceneCore;
+struct [[gnu::visibility("hidden")]] SceneCore;
 struct SixDofDefinition;
 struct WheelDefinition;
-extern template class Boxed<SceneCore>;
+extern template class __attribute__((visibility("default"))) Boxed<SceneCore>;
 
 /// Holds everything that decides what the next step computes. A refused call throws InvalidInput and changes nothing. A
 /// call that runs out of memory throws std::bad_alloc and changes nothing either. A scene that was moved from, or whose
@@ -188,3 +189,4 @@ class Scene {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

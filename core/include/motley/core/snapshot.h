@@ -10,6 +10,7 @@
 #include "motley/core/scene.h"
 #include "motley/core/settings.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// The whole input of one step.
@@ -41,3 +42,4 @@ void save_problem(const StepProblem& problem, const std::string& file);
 StepProblem load_problem(const std::string& file);
 
 }  // namespace motley
+#pragma GCC visibility pop

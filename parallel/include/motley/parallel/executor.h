@@ -3,6 +3,7 @@
 
 #include "motley/parallel/job.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Lends threads to a step. Implement it to run motley on a job system of your own.
@@ -21,3 +22,4 @@ class Executor {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

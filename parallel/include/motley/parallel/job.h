@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Refers to a callable of the caller, and calls it with the number of a worker. Two words, trivially copyable: a
@@ -26,3 +27,4 @@ class Job {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

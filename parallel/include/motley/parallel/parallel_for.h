@@ -7,6 +7,7 @@
 
 #include "motley/parallel/executor.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Calls body(begin, end) for consecutive chunks of at most `grain` elements that cover [0, count), on the executor's
@@ -53,3 +54,4 @@ void parallel_for(Executor& executor, std::int64_t count, std::int64_t grain, co
 }
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -13,6 +13,7 @@
 #include "motley/parallel/executor.h"
 #include "motley/soa/isa.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// What a solver runs on. None of it changes a bit of the result.
@@ -73,10 +74,11 @@ class Solver {
     [[nodiscard]] Executor& executor();
 
   private:
-    struct Impl;
+    struct [[gnu::visibility("hidden")]] Impl;
     std::unique_ptr<Impl> impl_;
 
     [[nodiscard]] Impl& impl() const;  ///< refuses when it has been moved from
 };
 
 }  // namespace motley
+#pragma GCC visibility pop
