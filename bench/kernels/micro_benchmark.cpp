@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -191,10 +190,7 @@ void hand_over(benchmark::State& state)
     struct Lender final : Executor {
         Solver solver{{}, {.threads = 2}};
         [[nodiscard]] int concurrency() const override { return 2; }
-        void run(int workers, const std::function<void(int)>& job) override
-        {
-            solver.executor().run(workers, job);
-        }
+        void run(int workers, Job job) override { solver.executor().run(workers, job); }
     } lender;
     StageRunner runner(&lender);
     runner.with_workers(false, [&] {

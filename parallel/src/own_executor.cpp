@@ -7,7 +7,7 @@ namespace {
 class InlineExecutor final : public Executor {
   public:
     [[nodiscard]] int concurrency() const override { return 1; }
-    void run(int, const std::function<void(int)>& job) override { job(0); }
+    void run(int, Job job) override { job(0); }
 };
 
 }  // namespace

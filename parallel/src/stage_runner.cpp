@@ -69,7 +69,7 @@ void StageRunner::open()
 }
 
 /// Returns what the executor throws, or null.
-std::exception_ptr StageRunner::run_on_executor(const std::function<void(int)>& job)
+std::exception_ptr StageRunner::run_on_executor(Job job)
 {
     try {
         executor_->run(workers_, job);
@@ -80,7 +80,7 @@ std::exception_ptr StageRunner::run_on_executor(const std::function<void(int)>& 
     return nullptr;
 }
 
-void StageRunner::publish(Job job, std::int64_t count)
+void StageRunner::publish(ChunkJob job, std::int64_t count)
 {
     done_.store(0, std::memory_order_relaxed);
     ++stage_;
@@ -94,7 +94,7 @@ void StageRunner::publish(Job job, std::int64_t count)
 }
 
 /// Publishes the caller's own share last: the other workers begin while it is still publishing.
-void StageRunner::hand_out(Job job, std::int64_t count)
+void StageRunner::hand_out(ChunkJob job, std::int64_t count)
 {
     double before = 1;  // the part of all workers before this one
     auto last = static_cast<std::uint64_t>(count);
@@ -123,7 +123,7 @@ void StageRunner::learn_sizes(std::int64_t count)
 }
 
 /// A chunk that throws counts as done, because the caller waits for it.
-void StageRunner::run_chunk(const Job& job, std::int64_t index, int worker)
+void StageRunner::run_chunk(const ChunkJob& job, std::int64_t index, int worker)
 {
     if (failed_.load(std::memory_order_relaxed)) return;
     try {

@@ -14,7 +14,6 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
-#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <type_traits>
@@ -49,8 +48,8 @@ class StageRunner {
             std::exception_ptr failure{};
         } own{body};
         open();
-        // The lambda captures two words, few enough that std::function does not allocate. No exception leaves a call:
-        // threads that wait for the caller would wait forever, and the host's threads need not be able to handle it.
+        // No exception leaves a call: threads that wait for the caller would wait forever, and the host's threads need
+        // not be able to handle it.
         std::exception_ptr executors = run_on_executor([this, &own](int worker) noexcept {
             if (worker < 0 || worker >= workers_) return;
             const StepFloats floats;
@@ -91,7 +90,8 @@ class StageRunner {
     [[nodiscard]] Executor* executor() const { return executor_; }
 
   private:
-    struct Job {
+    /// A Job of a stage: it is called with the chunk too.
+    struct ChunkJob {
         const void* self = nullptr;
         void (*call)(const void* self, std::int64_t index, int worker) = nullptr;
     };
@@ -108,16 +108,16 @@ class StageRunner {
     /// present stage: the caller does not move on before every claimed chunk is done.
     struct alignas(64) Share {
         std::atomic<std::uint64_t> word{0};  ///< a ShareWord
-        Job job;                             ///< of the stage that the word is of
+        ChunkJob job;                        ///< of the stage that the word is of
         std::int64_t ran = 0;                ///< chunks of this stage, of any share, that its worker ran
         double size = 0;                     ///< fraction of all chunks; only the caller uses it
     };
     void open();
-    std::exception_ptr run_on_executor(const std::function<void(int worker)>& job);
-    void publish(Job job, std::int64_t count);
-    void hand_out(Job job, std::int64_t count);
+    std::exception_ptr run_on_executor(Job job);
+    void publish(ChunkJob job, std::int64_t count);
+    void hand_out(ChunkJob job, std::int64_t count);
     void learn_sizes(std::int64_t count);
-    void run_chunk(const Job& job, std::int64_t index, int worker);
+    void run_chunk(const ChunkJob& job, std::int64_t index, int worker);
     bool claim_and_run(int whose, int worker, std::uint64_t stage, bool patient);
     bool help_others(int worker, std::uint64_t stage, bool patient);
     bool come_to_work(int worker, int spins);

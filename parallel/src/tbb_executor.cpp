@@ -22,12 +22,12 @@ class TbbExecutor final : public Executor {
         }
     }
     [[nodiscard]] int concurrency() const override { return threads_; }
-    void run(int workers, const std::function<void(int)>& job) override
+    void run(int workers, Job job) override
     {
         arena_.execute([&] {
             tbb::task_group group;
             try {
-                for (int worker = 1; worker < workers; ++worker) group.run([&job, worker] { job(worker); });
+                for (int worker = 1; worker < workers; ++worker) group.run([job, worker] { job(worker); });
             } catch (const std::bad_alloc&) {
                 // The step finishes with the workers that have started.
             }

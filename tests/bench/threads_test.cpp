@@ -43,7 +43,7 @@ TEST(Threads, RefusesOneThreadAndScenesThatAreNotThere)
 class Lonely final : public Executor {
   public:
     [[nodiscard]] int concurrency() const override { return 2; }
-    void run(int workers, const std::function<void(int)>& job) override
+    void run(int workers, Job job) override
     {
         for (int worker = 0; worker < workers; ++worker) job(worker);
     }

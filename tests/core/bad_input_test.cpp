@@ -580,6 +580,73 @@ TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
              f.scene.set_force(f.rigid, {}, {0, 0, infinity});
          },
          "set_forces.torques.z", "inf"},
+        {"orientations sizes",
+         [&](Fixture& f) {
+             const BodyId two[2] = {f.rigid, f.planar};
+             Quat<double> q[1];
+             f.scene.read_orientations(two, q);
+         },
+         "read_orientations.orientations.size()", "1"},
+        {"orientation of a removed body",
+         [&](Fixture& f) {
+             const BodyId two[2] = {f.rigid, f.removed};
+             Quat<double> q[2];
+             f.scene.read_orientations(two, q);
+         },
+         "read_orientations.bodies", "not alive"},
+        {"joint reports sizes",
+         [](Fixture& f) {
+             const ConstraintId one[1] = {f.joint};
+             JointReport reports[2];
+             f.scene.read_joint_reports(one, reports);
+         },
+         "read_joint_reports.reports.size()", "2"},
+        {"joint report of a removed joint",
+         [](Fixture& f) {
+             const ConstraintId two[2] = {f.joint, f.removed_joint};
+             JointReport reports[2];
+             f.scene.read_joint_reports(two, reports);
+         },
+         "read_joint_reports.joints", "not alive"},
+        {"user data of a removed body", [](Fixture& f) { f.scene.set_user_data(f.removed, 1); },
+         "set_user_data.body", "not alive"},
+        {"user data of nobody", [](Fixture& f) { (void)f.scene.user_data({}); }, "user_data.body", "null"},
+        {"mass of a removed body",
+         [](Fixture& f) {
+             f.scene.set_mass(f.removed, 1, {1, 0, 0, 1, 0, 1});
+         },
+         "set_mass.body", "not alive"},
+        {"mass of the ground",
+         [](Fixture& f) {
+             f.scene.set_mass(f.scene.ground(), 1, {1, 0, 0, 1, 0, 1});
+         },
+         "set_mass.body", "static"},
+        {"mass of a kinematic body",
+         [](Fixture& f) {
+             f.scene.set_mass(f.kinematic, 1, {1, 0, 0, 1, 0, 1});
+         },
+         "set_mass.body", "kinematic"},
+        {"mass zero", [](Fixture& f) { f.scene.set_mass(f.particle, 0, {}); }, "set_mass.mass", "0"},
+        {"mass NaN",
+         [](Fixture& f) {
+             f.scene.set_mass(f.rigid, nan, {1, 0, 0, 1, 0, 1});
+         },
+         "set_mass.mass", "nan"},
+        {"inertia of a planar body",
+         [](Fixture& f) {
+             f.scene.set_mass(f.planar, 1, {1, 0, 0, 1, 0, -1});
+         },
+         "set_mass.inertia.zz", "-1"},
+        {"inertia against the triangle inequality",
+         [](Fixture& f) {
+             f.scene.set_mass(f.rigid, 1, {1, 0, 0, 1, 0, 3});
+         },
+         "set_mass.inertia", "triangle"},
+        {"inertia indefinite",
+         [](Fixture& f) {
+             f.scene.set_mass(f.rigid, 1, {1, 2, 0, 1, 0, 1});
+         },
+         "set_mass.inertia", "positive definite"},
         {"revive a body that moves", [](Fixture& f) { f.scene.revive(f.rigid, {}, {}); }, "revive.body",
          "moves"},
         {"set_velocities sizes",

@@ -85,6 +85,7 @@ inline StepProblem seed_problem()
     scene.set_break_limit(rope, {1, 2});
     scene.set_iterations(rope, 3);
     scene.set_island_iterations(other, 2);
+    scene.set_user_data(other, 5);
     scene.remove_joint(gone);
     scene.remove_body(bodies[3]);
     Figure figure;

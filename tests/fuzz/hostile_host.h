@@ -88,7 +88,7 @@ class HostileHost {
 
     void call_something()
     {
-        switch (byte() % 16) {
+        switch (byte() % 17) {
             case 0:
             case 1:
                 return add_body();
@@ -127,6 +127,13 @@ class HostileHost {
                 demand(copy.state_hash() == scene_.state_hash(), "a copy has other bits");
                 scene_ = copy;
                 return;
+            }
+            case 14: {
+                const BodyId changed = body();
+                scene_.set_mass(changed, number(),
+                                {number(), number(), number(), number(), number(), number()});
+                scene_.set_user_data(changed, 7);
+                return demand(scene_.user_data(changed) == 7, "user data is lost");
             }
             default:
                 return step();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -17,11 +18,11 @@ class ThreadExecutor final : public Executor {
   public:
     ThreadExecutor(int concurrency, int lent) : concurrency_(concurrency), lent_(lent) {}
     [[nodiscard]] int concurrency() const override { return concurrency_; }
-    void run(int workers, const std::function<void(int)>& job) override
+    void run(int workers, Job job) override
     {
         std::vector<std::thread> threads;
         for (int worker = workers - 1; worker >= 1; --worker) {
-            if (worker <= lent_) threads.emplace_back([&job, worker] { job(worker); });
+            if (worker <= lent_) threads.emplace_back([job, worker] { job(worker); });
         }
         job(0);
         for (std::thread& thread : threads) thread.join();
@@ -88,6 +89,19 @@ TEST(Executor, StagesRunEachChunkOnceAndOneAfterTheOtherHoweverSlowAThreadIs)
     }
 }
 
+TEST(Executor, AJobIsTwoWordsThatAPoolMayCopy)
+{
+    static_assert(std::is_trivially_copyable_v<Job> && sizeof(Job) == 2 * sizeof(void*));
+    std::atomic<int> sum{0};
+    const auto work = [&](int worker) { sum += worker; };
+    const Job job = work;
+    const Job copy = job;
+    std::thread other([copy] { copy(3); });
+    job(4);
+    other.join();
+    EXPECT_EQ(sum, 7);
+}
+
 TEST(Executor, ThreadedLoopsCoverEveryElementOnce)
 {
     ThreadExecutor host(3, 3);
@@ -126,7 +140,7 @@ class FaultyExecutor final : public Executor {
     Fault fault = Fault::none;
     int said = 2;
     [[nodiscard]] int concurrency() const override { return said; }
-    void run(int, const std::function<void(int)>& job) override
+    void run(int, Job job) override
     {
         if (fault == Fault::throws_before) throw std::runtime_error("the pool is closed");
         if (fault == Fault::throws_an_int) throw 7;
@@ -235,7 +249,7 @@ class NestingExecutor final : public Executor {
     std::function<StepReport()> step;
     StepReport nested;
     [[nodiscard]] int concurrency() const override { return 2; }
-    void run(int, const std::function<void(int)>& job) override
+    void run(int, Job job) override
     {
         nested = step();
         job(0);

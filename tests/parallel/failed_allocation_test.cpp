@@ -155,6 +155,11 @@ TEST(FailedAllocation, ASceneWithoutMemoryRefusesAndIsAsItWas)
              m.scene.set_break_limit(m.joints[1], {1, 1});
          }},
         {"set_island_iterations", [](MixedScene& m) { m.scene.set_island_iterations(m.balls[3], 7); }},
+        {"set_user_data", [](MixedScene& m) { m.scene.set_user_data(m.balls[3], 7); }},
+        {"set_mass",
+         [](MixedScene& m) {
+             m.scene.set_mass(m.balls[5], 7, {1, 0, 0, 1, 0, 1});
+         }},
         {"renumber_bodies", [](MixedScene& m) { m.scene.renumber_bodies(); }},
     };
     for (const auto& [name, call] : calls) {

@@ -109,6 +109,81 @@ TEST(Snapshot, KeepsEveryTypeOfJointBetweenEveryPairOfBodies)
     }
 }
 
+/// The file with `what`, which occurs once in it, replaced by `instead`, and with a valid checksum.
+template <class T>
+std::string with_changed(const std::string& file, const T& what, const T& instead)
+{
+    const std::string old_bytes(reinterpret_cast<const char*>(&what), sizeof what);
+    const std::size_t at = file.find(old_bytes);
+    EXPECT_NE(at, std::string::npos);
+    EXPECT_EQ(file.find(old_bytes, at + 1), std::string::npos);
+    std::string changed = file;
+    changed.replace(at, sizeof instead, reinterpret_cast<const char*>(&instead), sizeof instead);
+    testing::make_whole(changed);
+    return changed;
+}
+
+TEST(Snapshot, InMemoryHasTheBytesOfAFile)
+{
+    const File file;
+    const StepProblem problem = testing::seed_problem();
+    const auto text_of = [](const std::vector<std::byte>& bytes) {
+        return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    const std::vector<std::byte> scene = save_scene(problem.scene), whole = save_problem(problem);
+    save_scene(problem.scene, file.path());
+    EXPECT_EQ(text_of(scene), file.read());
+    save_problem(problem, file.path());
+    EXPECT_EQ(text_of(whole), file.read());
+    EXPECT_EQ(save_scene(load_scene(scene)), scene);
+    EXPECT_EQ(save_problem(load_problem(whole)), whole);
+}
+
+TEST(Snapshot, InMemoryIsRefusedByNameWhenItIsNotWhole)
+{
+    const std::vector<std::byte> good = save_scene(testing::seed_problem().scene);
+    const auto refusal_of = [](std::span<const std::byte> bytes) -> std::string {
+        try {
+            static_cast<void>(load_scene(bytes));
+        } catch (const std::runtime_error& error) {
+            return error.what();
+        }
+        return {};
+    };
+    EXPECT_EQ(refusal_of(good), "");
+    EXPECT_EQ(refusal_of({}), "load_scene.bytes: is not a scene of motley");
+    EXPECT_EQ(refusal_of(std::span(good).first(31)), "load_scene.bytes: is not a scene of motley");
+    EXPECT_NE(refusal_of(std::span(good).first(good.size() - 1)).find("load_scene.bytes: is truncated"),
+              std::string::npos);
+    std::vector<std::byte> other = good;
+    other[other.size() / 2] ^= std::byte{1};
+    EXPECT_EQ(refusal_of(other), "load_scene.bytes: is corrupted: its checksum differs");
+    EXPECT_THROW(static_cast<void>(load_problem(good)), std::runtime_error) << "a scene is no problem";
+}
+
+TEST(Snapshot, KeepsUserDataAndRefusesThatOfNoBody)
+{
+    Scene scene;
+    const BodyId body = scene.add_body({}), gone = scene.add_body({}), late = scene.add_body({});
+    const std::uint64_t number = 0xFEDCBA9876543210U;
+    scene.set_user_data(body, number);
+    scene.remove_body(gone);
+    const std::vector<std::byte> good = save_scene(scene);
+    const Scene back = load_scene(good);
+    EXPECT_EQ(back.user_data(body), number);
+    EXPECT_EQ(back.user_data(late), 0U);
+    // The numbers of all slots, which lie one after the other.
+    std::string file(reinterpret_cast<const char*>(good.data()), good.size());
+    const std::array<std::uint64_t, 2> numbers{number, 0}, forged{number, 1};
+    file = with_changed(file, numbers, forged);
+    try {
+        static_cast<void>(load_scene(std::as_bytes(std::span(file))));
+        FAIL();
+    } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find("user data of no body"), std::string::npos) << error.what();
+    }
+}
+
 TEST(Snapshot, KeepsWishesAndBreakLimits)
 {
     const File file;
@@ -221,20 +296,6 @@ TEST(Snapshot, RefusesNonsenseWithAGoodChecksum)
     }
     EXPECT_GT(refused, 0);
     EXPECT_LT(refused, tried) << "a velocity more or less is a scene still";
-}
-
-/// The file with `what`, which occurs once in it, replaced by `instead`, and with a valid checksum.
-template <class T>
-std::string with_changed(const std::string& file, const T& what, const T& instead)
-{
-    const std::string old_bytes(reinterpret_cast<const char*>(&what), sizeof what);
-    const std::size_t at = file.find(old_bytes);
-    EXPECT_NE(at, std::string::npos);
-    EXPECT_EQ(file.find(old_bytes, at + 1), std::string::npos);
-    std::string changed = file;
-    changed.replace(at, sizeof instead, reinterpret_cast<const char*>(&instead), sizeof instead);
-    testing::make_whole(changed);
-    return changed;
 }
 
 TEST(Snapshot, RefusesWhatTheSceneWouldHaveRefused)

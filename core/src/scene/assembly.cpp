@@ -1,10 +1,12 @@
 // Copies of a figure.
 #include "motley/core/assembly.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "motley/core/invalid_input.h"
+#include "scene/scene_core.h"
+#include "stores/growth.h"
+#include "stores/joint_store.h"
 
 namespace motley {
 namespace {
@@ -43,23 +45,34 @@ BodyDefinition placed(BodyDefinition body, const Placing& placing, const Quat<do
 
 BodyId Figure::add_body(const BodyDefinition& definition)
 {
+    make_room_for(bodies_, 1);
     const BodyId id = sketch_.add_body(definition);
     bodies_.push_back(definition);
-    ids_.push_back(id);
     return id;
 }
 
-std::size_t Figure::index_of(BodyId body) const
+void Figure::refuse_ground(BodyId body) const
 {
-    const auto found = std::find(ids_.begin(), ids_.end(), body);
-    if (found == ids_.end())
+    if (body == sketch_.ground())
         refuse("joint.body_a or body_b", "the ground", "bodies of the figure; a static one for the world");
-    return static_cast<std::size_t>(found - ids_.begin());
 }
 
 void Figure::join(Scene& scene, std::span<const BodyId> bodies) const
 {
-    for (const auto& add : joints_) add(scene, bodies);
+    // Nothing is ever removed from the sketch: the slots of its bodies follow that of its ground, and those of its
+    // joints each other, in the order in which they were added.
+    const auto of_scene = [&](BodyId body) { return bodies[body.slot - sketch_.ground().slot - 1]; };
+    const JointStores& joints = *core_of(sketch_).joints;
+    for (const JointStores::Slot& slot : joints.slots) {
+        if (slot.live == 0) continue;
+        joints.for_each([&](const auto& store, int type) {
+            if (type != slot.type) return;
+            auto definition = store.definitions[slot.index];
+            definition.body_a = of_scene(definition.body_a);
+            definition.body_b = of_scene(definition.body_b);
+            scene.add_joint(definition);
+        });
+    }
 }
 
 std::vector<BodyId> add_assembly(Scene& scene, const Figure& figure, std::span<const Placing> copies)

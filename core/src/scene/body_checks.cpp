@@ -13,9 +13,10 @@ namespace {
 constexpr float largest_speed = 1e9F;
 constexpr double largest_position = 1e12;
 
-void check_moment(const char* field, float moment)
+void check_moment(const char* who, const char* field, float moment)
 {
-    if (!(moment >= least_moment && moment <= most_moment)) refuse(field, moment, "1e-20 to 1e20 (kg m2)");
+    if (!(moment >= least_moment && moment <= most_moment))
+        refuse(std::string(who) + field, moment, "1e-20 to 1e20 (kg m2)");
 }
 
 }  // namespace
@@ -71,20 +72,23 @@ void check_velocity_of(BodyModel model, BodyMotion motion, const Vec3<float>* li
 
 /// The principal moments of a real body, the eigenvalues of its tensor m, obey A + B >= C: none exceeds half of the
 /// trace. Checked by tr(m)/2 I - m being positive semi-definite, which needs no eigenvalues.
-void check_inertia(const Sym3<float>& inertia)
+void check_inertia(const char* who, const Sym3<float>& inertia)
 {
+    const auto refuse_all = [&](double value, const char* expected) {
+        refuse(std::string(who) + ".inertia", value, expected);
+    };
     const double xx = inertia.xx, xy = inertia.xy, xz = inertia.xz, yy = inertia.yy, yz = inertia.yz,
                  zz = inertia.zz;
     const double sum = xx + xy + xz + yy + yz + zz;
-    if (!std::isfinite(sum)) refuse("BodyDefinition.inertia", sum, "finite components (kg m2)");
-    check_moment("BodyDefinition.inertia.xx", inertia.xx);
-    check_moment("BodyDefinition.inertia.yy", inertia.yy);
-    check_moment("BodyDefinition.inertia.zz", inertia.zz);
+    if (!std::isfinite(sum)) refuse_all(sum, "finite components (kg m2)");
+    check_moment(who, ".inertia.xx", inertia.xx);
+    check_moment(who, ".inertia.yy", inertia.yy);
+    check_moment(who, ".inertia.zz", inertia.zz);
     const double trace = xx + yy + zz;
     const double minor = xx * yy - xy * xy;
     const double full = determinant(Sym3<double>{xx, xy, xz, yy, yz, zz});
     if (!(minor > 0) || !(full > 0)) {
-        refuse("BodyDefinition.inertia", full, "a positive definite tensor (determinant above 0)");
+        refuse_all(full, "a positive definite tensor (determinant above 0)");
     }
     const double half = trace / 2 * (1 + 1e-5);  // room for float rounding: a thin rod is on the boundary
     const Sym3<double> rest{half - xx, -xy, -xz, half - yy, -yz, half - zz};
@@ -92,8 +96,16 @@ void check_inertia(const Sym3<float>& inertia)
     const double edge = -1e-12;
     if (rest.xx < edge * trace || rest.yy < edge * trace || rest.zz < edge * trace ||
         rest.xx * rest.yy - rest.xy * rest.xy < edge * trace * trace || determinant(rest) < edge * scale) {
-        refuse("BodyDefinition.inertia", trace, "moments that obey the triangle inequality A + B >= C");
+        refuse_all(trace, "moments that obey the triangle inequality A + B >= C");
     }
+}
+
+void check_mass(const char* who, BodyModel model, float mass, const Sym3<float>& inertia)
+{
+    if (!(mass >= lightest_body && mass <= heaviest_body))
+        refuse(std::string(who) + ".mass", mass, "1e-10 to 1e10 (kg)");
+    if (model == BodyModel::planar) check_moment(who, ".inertia.zz", inertia.zz);
+    if (model == BodyModel::rigid) check_inertia(who, inertia);
 }
 
 void check_definition(const BodyDefinition& d)
@@ -117,9 +129,7 @@ void check_definition(const BodyDefinition& d)
     check_velocity_of(d.model, d.motion, &d.linear_velocity, &d.angular_velocity);
     if (fixed) return;
     check_model_is_built(d.model);
-    check("BodyDefinition.mass", d.mass, lightest_body, heaviest_body, "1e-10 to 1e10 (kg)");
-    if (d.model == BodyModel::planar) check_moment("BodyDefinition.inertia.zz", d.inertia.zz);
-    if (d.model == BodyModel::rigid) check_inertia(d.inertia);
+    check_mass("BodyDefinition", d.model, d.mass, d.inertia);
 }
 
 }  // namespace motley

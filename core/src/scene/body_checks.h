@@ -20,7 +20,9 @@ void check_vector(const char* who, const Vec3<float>& v, float limit, const char
 void check_velocity_of(BodyModel model, BodyMotion motion, const Vec3<float>* linear,
                        const Vec3<float>* angular);
 /// For a rigid body: must be positive definite, with moments that obey the triangle inequality.
-void check_inertia(const Sym3<float>& inertia);
+void check_inertia(const char* who, const Sym3<float>& inertia);
+/// `who`.mass, and of `who`.inertia what the model has.
+void check_mass(const char* who, BodyModel model, float mass, const Sym3<float>& inertia);
 void check_definition(const BodyDefinition& definition);
 
 }  // namespace motley

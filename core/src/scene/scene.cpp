@@ -60,7 +60,10 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
     make_room_for(core_->discs.free_walls, core_->discs.walls.size());
     core_->remove_joints_of(bodies);
     core_->remove_discs_of(bodies);
-    for (const BodyId body : bodies) core_->bodies.remove(body);
+    for (const BodyId body : bodies) {
+        core_->bodies.remove(body);
+        if (body.slot < core_->user_data.size()) core_->user_data[body.slot] = 0;
+    }
     std::erase_if(core_->island_iterations,
                   [&](const IslandIterations& asked) { return !is_alive(asked.body); });
     core_->body_count -= bodies.size();

@@ -115,7 +115,7 @@ void SceneArchive::check_bodies(const SceneCore& scene)
         if (kind == BodyKind::planar)
             demand(moment >= 1 / most_moment && moment <= 1 / least_moment,
                    "a moment of inertia that no body has");
-        if (kind == BodyKind::rigid) check_inertia(rows.inertia[where.row()]);
+        if (kind == BodyKind::rigid) check_inertia("BodyDefinition", rows.inertia[where.row()]);
         check_state(rows, kind, where.row(), model, motion);
     }
     check_free_list(
@@ -124,6 +124,9 @@ void SceneArchive::check_bodies(const SceneCore& scene)
     demand(alive == scene.body_count + 1, "bodies that are not counted");
     demand(bodies.is_alive(scene.ground) && bodies.motion(scene.ground) == BodyMotion::static_body,
            "no ground to stand on");
+    demand(scene.user_data.size() <= slots, "user data of no body");
+    for (std::uint32_t slot = 0; slot < scene.user_data.size(); ++slot)
+        demand(bodies.live_[slot] != 0 || scene.user_data[slot] == 0, "user data of no body");
     const Vec3<double> origin = scene.state(scene.ground).position;
     demand(dot(origin, origin) == 0, "a ground that is not at the origin");
 }

@@ -87,6 +87,7 @@ struct SceneArchive {
         visit_joints(archive, *scene.joints);
         visit_contacts(archive, scene.contacts);
         visit_discs(archive, scene.discs);
+        archive(scene.user_data);
         archive(scene.island_iterations);
         archive(scene.ground);
         archive(scene.body_count);

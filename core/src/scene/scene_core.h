@@ -32,6 +32,7 @@ struct SceneCore {
     DiscStore discs;
     std::vector<BreakEvent> break_events;             ///< with room for every watched joint
     std::vector<IslandIterations> island_iterations;  ///< of bodies alive
+    std::vector<std::uint64_t> user_data;             ///< by body slot, of the host; 0 beyond its end
     BodyId ground{};
     std::size_t body_count = 0;  ///< alive, without the ground
     BusyFlag busy;               ///< held by a step for as long as it lasts
@@ -40,6 +41,8 @@ struct SceneCore {
 
     [[nodiscard]] bool is_alive(ConstraintId joint) const;
     [[nodiscard]] BodyState state(BodyId body) const;
+    /// Body to world, unit; the identity for a particle.
+    [[nodiscard]] Quat<double> orientation(BodyRow where) const;
     [[nodiscard]] JointReport joint_report(ConstraintId joint) const;
     /// Whether any joint or island wants more sweeps than the settings say.
     [[nodiscard]] bool asks_for_iterations() const;
@@ -55,6 +58,7 @@ struct SceneCore {
         if (!bodies.is_alive(body)) refuse_dead(body, what);
     }
     void require_alive(std::span<const BodyId> named, const char* what) const;
+    void require_alive(ConstraintId joint, const char* what) const;
     [[noreturn]] static void refuse_dead(BodyId body, const char* what);
     JointBodies check_joint_bodies(int type, BodyId a, BodyId b) const;
     static void check_break_limit(const BreakLimit& limit);

@@ -63,6 +63,12 @@ std::size_t SceneCore::index_of_joint(ConstraintId joint, int type) const
     return slot.index;
 }
 
+void SceneCore::require_alive(ConstraintId joint, const char* what) const
+{
+    if (!is_alive(joint))
+        refuse(what, "slot " + std::to_string(joint.slot) + ", not alive", "a joint of this scene");
+}
+
 bool SceneCore::is_alive(ConstraintId joint) const
 {
     return joint.slot < joints->slots.size() && joints->slots[joint.slot].live != 0 &&
@@ -95,10 +101,7 @@ void SceneCore::remove_joint_at(int type, std::size_t index)
 
 void Scene::remove_joint(ConstraintId joint)
 {
-    if (!is_alive(joint)) {
-        refuse("remove_joint.joint", "slot " + std::to_string(joint.slot) + ", not alive",
-               "a joint of this scene");
-    }
+    core_->require_alive(joint, "remove_joint.joint");
     core_->remove_joint_at(core_->joints->slots[joint.slot].type, core_->joints->slots[joint.slot].index);
 }
 
@@ -139,10 +142,7 @@ void SceneCore::check_island_wish(const IslandIterations& asked) const
 
 void Scene::set_break_limit(ConstraintId joint, const BreakLimit& limit)
 {
-    if (!is_alive(joint)) {
-        refuse("set_break_limit.joint", "slot " + std::to_string(joint.slot) + ", not alive",
-               "a joint of this scene");
-    }
+    core_->require_alive(joint, "set_break_limit.joint");
     core_->check_break_limit(limit);
     JointStores::Slot& slot = core_->joints->slots[joint.slot];
     if (slot.watched == 0) core_->joints->watched.push_back(joint);
@@ -152,10 +152,7 @@ void Scene::set_break_limit(ConstraintId joint, const BreakLimit& limit)
 
 void Scene::set_iterations(ConstraintId joint, int at_least)
 {
-    if (!is_alive(joint)) {
-        refuse("set_iterations.joint", "slot " + std::to_string(joint.slot) + ", not alive",
-               "a joint of this scene");
-    }
+    core_->require_alive(joint, "set_iterations.joint");
     core_->check_wish("set_iterations.at_least", at_least);
     std::uint16_t& iterations = core_->joints->slots[joint.slot].iterations;
     core_->joints->with_iterations += (at_least != 0 ? 1U : 0U) - (iterations != 0 ? 1U : 0U);
@@ -203,10 +200,7 @@ Vec3<float> SceneCore::force_of(const Vec3<float>& impulse) const
 
 JointReport SceneCore::joint_report(ConstraintId joint) const
 {
-    if (!is_alive(joint)) {
-        refuse("joint_report.joint", "slot " + std::to_string(joint.slot) + ", not alive",
-               "a joint of this scene");
-    }
+    require_alive(joint, "joint_report.joint");
     const JointStores::Slot& entry = joints->slots[joint.slot];
     JointReport result;
     joints->for_each([&](const auto& store, int type) {
@@ -220,6 +214,16 @@ JointReport SceneCore::joint_report(ConstraintId joint) const
         result.torque = force_of(wrench.turn);
     });
     return result;
+}
+
+void Scene::read_joint_reports(std::span<const ConstraintId> joints, StridedSpan<JointReport> reports) const
+{
+    if (reports.size() != joints.size()) {
+        refuse("read_joint_reports.reports.size()", static_cast<double>(reports.size()),
+               "the size of joints");
+    }
+    for (const ConstraintId joint : joints) core_->require_alive(joint, "read_joint_reports.joints");
+    for (std::size_t i = 0; i < joints.size(); ++i) reports[i] = core_->joint_report(joints[i]);
 }
 
 JointReport Scene::contact_report(std::span<const Contact> contacts, std::size_t index) const

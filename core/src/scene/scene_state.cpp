@@ -10,6 +10,15 @@
 
 namespace motley {
 
+Quat<double> SceneCore::orientation(BodyRow where) const
+{
+    const BodyRows& rows = bodies.rows(where.kind());
+    if (quads_of(where.kind()) == 2) return convert<double>(rows.orientation[where.row()]);
+    if (where.kind() == BodyKind::particle) return {0, 0, 0, 1};
+    const auto yaw = static_cast<double>(rows.pose[where.row()].yaw);
+    return {0, 0, std::sin(yaw / 2), std::cos(yaw / 2)};
+}
+
 BodyState SceneCore::state(BodyId body) const
 {
     require_alive(body, "state.body");
@@ -19,6 +28,7 @@ BodyState SceneCore::state(BodyId body) const
     BodyState state;
     state.position = convert<double>(rows.pose[row].position);
     state.yaw = static_cast<double>(rows.pose[row].yaw);
+    state.orientation = orientation(where);
     const float* v = &rows.velocity[row * 4 * static_cast<std::size_t>(quads_of(where.kind()))];
     switch (where.kind()) {
         case BodyKind::particle:
@@ -27,13 +37,11 @@ BodyState SceneCore::state(BodyId body) const
         case BodyKind::planar:
             state.linear_velocity = {v[0], v[1], 0};
             state.angular_velocity = {0, 0, v[2]};
-            state.orientation = {0, 0, std::sin(state.yaw / 2), std::cos(state.yaw / 2)};
             break;
         case BodyKind::rigid:
         case BodyKind::fixed:
             state.linear_velocity = {v[0], v[1], v[2]};
             state.angular_velocity = {v[4], v[5], v[6]};
-            state.orientation = convert<double>(rows.orientation[row]);
             break;
     }
     return state;
@@ -235,6 +243,17 @@ void Scene::read_yaws(std::span<const BodyId> bodies, StridedSpan<double> yaws) 
         const BodyRow where = core_->bodies.row_of(bodies[i]);
         yaws[i] = static_cast<double>(core_->bodies.rows(where.kind()).pose[where.row()].yaw);
     }
+}
+
+void Scene::read_orientations(std::span<const BodyId> bodies, StridedSpan<Quat<double>> orientations) const
+{
+    if (orientations.size() != bodies.size()) {
+        refuse("read_orientations.orientations.size()", static_cast<double>(orientations.size()),
+               "the size of bodies");
+    }
+    core_->require_alive(bodies, "read_orientations.bodies");
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        orientations[i] = core_->orientation(core_->bodies.row_of(bodies[i]));
 }
 
 }  // namespace motley

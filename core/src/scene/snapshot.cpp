@@ -1,15 +1,18 @@
-// Files of scenes: a header, which says what they are and has a checksum of the fields, and the fields.
+// Scenes as bytes, in files and in memory: a header, which says what they are and has a checksum of the fields, and the
+// fields.
 #include "motley/core/snapshot.h"
 #include "stores/joint_store.h"
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstdio>
 #include <fstream>
 #include <type_traits>
+#include <utility>
 
 #include "scene/scene_archive.h"
 
@@ -18,11 +21,12 @@ namespace {
 
 /// To be increased with every change of what is written.
 constexpr std::uint32_t format_version = 4;
-constexpr std::array<char, 8> scene_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 's'};
-constexpr std::array<char, 8> problem_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 'p'};
+using Name = std::array<char, 8>;
+constexpr Name scene_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 's'};
+constexpr Name problem_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 'p'};
 
 struct Header {
-    std::array<char, 8> name;
+    Name name;
     std::uint32_t version;
     std::uint32_t layout;    ///< a hash of how numbers and definitions lie in memory
     std::uint64_t size;      ///< bytes after the header
@@ -69,80 +73,106 @@ std::uint32_t layout_of_numbers()
     return static_cast<std::uint32_t>(hash >> 32);
 }
 
-[[noreturn]] void fail(const std::string& file, const std::string& what)
+/// Runs `read`, and adds where it reads from to any error.
+template <class Read>
+auto reading(const std::string& from, const Read& read)
 {
-    throw std::runtime_error(file + ": " + what);
+    try {
+        return read();
+    } catch (const std::exception& error) {
+        throw std::runtime_error(from + ": " + error.what());
+    }
 }
-[[noreturn]] void fail_with_errno(const std::string& file, const std::string& what)
+
+[[noreturn]] void fail(const std::string& what)
 {
-    fail(file, what + ": " + std::strerror(errno));
+    throw std::runtime_error(what);
+}
+[[noreturn]] void fail_with_errno(const std::string& what)
+{
+    fail(what + ": " + std::strerror(errno));
+}
+
+/// Throws unless this motley reads what has such a header and `size` bytes in all.
+void check_header(const Header& header, const Name& name, std::uint64_t size)
+{
+    if (size < sizeof header || header.name != name)
+        fail(name == scene_name ? "is not a scene of motley" : "is not a step's problem of motley");
+    if (header.version != format_version) {
+        fail("has version " + std::to_string(header.version) + " of the format; this motley reads version " +
+             std::to_string(format_version));
+    }
+    if (header.layout != layout_of_numbers())
+        fail("was written by a machine or build whose numbers lie otherwise in memory");
+    if (size - sizeof header != header.size) {
+        fail("is truncated or has grown: " + std::to_string(size - sizeof header) + " bytes where " +
+             std::to_string(header.size) + " were written");
+    }
+}
+
+/// Runs `write` on an archive and puts the header before what it has written.
+template <class Write>
+std::vector<std::byte> with_header(const Name& name, const Write& write)
+{
+    ArchiveWriter archive;
+    Header header{name, format_version, layout_of_numbers(), 0, 0};
+    archive(header);
+    write(archive);
+    const std::span<const std::byte> fields = std::span(archive.bytes).subspan(sizeof header);
+    header.size = fields.size();
+    header.checksum = checksum_of(fields);
+    std::memcpy(archive.bytes.data(), &header, sizeof header);
+    return std::move(archive.bytes);
+}
+
+/// An archive of the fields behind the header of `bytes`.
+ArchiveReader behind_header(std::span<const std::byte> bytes, const Name& name)
+{
+    Header header{};
+    if (!bytes.empty()) std::memcpy(&header, bytes.data(), std::min(bytes.size(), sizeof header));
+    check_header(header, name, bytes.size());
+    const std::span<const std::byte> fields = bytes.subspan(sizeof header);
+    if (checksum_of(fields) != header.checksum) fail("is corrupted: its checksum differs");
+    return ArchiveReader(fields);
+}
+
+void require_done(const ArchiveReader& archive)
+{
+    if (!archive.is_done()) fail("goes on behind its last field");
 }
 
 /// Writes another file and renames it to `file`, so that a reader sees either the old file or the new one.
-void write_whole(const std::string& file, const Header& header, std::span<const std::byte> bytes)
+void write_whole(const std::string& file, std::span<const std::byte> bytes)
 {
     const std::string part = file + ".part";
     std::FILE* out = std::fopen(part.c_str(), "wb");
-    if (out == nullptr) fail_with_errno(part, "cannot be written");
-    const bool written = std::fwrite(&header, sizeof header, 1, out) == 1 &&
-                         std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size() &&
+    if (out == nullptr) fail_with_errno(part + ": cannot be written");
+    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size() &&
                          std::fflush(out) == 0 && fsync(fileno(out)) == 0;
     const int error = errno;
     if (std::fclose(out) != 0 || !written || std::rename(part.c_str(), file.c_str()) != 0) {
         const int why = written ? errno : error;
         std::remove(part.c_str());
         errno = why;
-        fail_with_errno(file, "cannot be written");
+        fail_with_errno(file + ": cannot be written");
     }
 }
 
-std::vector<std::byte> read_whole(const std::string& file, const std::array<char, 8>& name)
+/// The bytes of a file whose header is good.
+std::vector<std::byte> read_whole(const std::string& file, const Name& name)
 {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) fail_with_errno(file, "cannot be read");
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    if (!in) fail_with_errno("cannot be read");
+    const auto size = static_cast<std::uint64_t>(in.tellg());
+    in.seekg(0);
     Header header{};
     in.read(reinterpret_cast<char*>(&header), sizeof header);
-    if (in.gcount() != sizeof header || header.name != name)
-        fail(file, name == scene_name ? "is not a scene of motley" : "is not a step's problem of motley");
-    if (header.version != format_version) {
-        fail(file, "has version " + std::to_string(header.version) +
-                       " of the format; this motley reads version " + std::to_string(format_version));
-    }
-    if (header.layout != layout_of_numbers())
-        fail(file, "was written by a machine or build whose numbers lie otherwise in memory");
-    in.seekg(0, std::ios::end);
-    const auto size = static_cast<std::uint64_t>(in.tellg()) - sizeof header;
-    if (size != header.size) {
-        fail(file, "is truncated or has grown: " + std::to_string(size) + " bytes where " +
-                       std::to_string(header.size) + " were written");
-    }
-    in.seekg(sizeof header);
+    check_header(header, name, static_cast<std::uint64_t>(in.gcount()) < sizeof header ? 0 : size);
+    in.seekg(0);
     std::vector<std::byte> bytes(static_cast<std::size_t>(size));
     in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    if (in.gcount() != static_cast<std::streamsize>(bytes.size())) fail_with_errno(file, "cannot be read");
-    if (checksum_of(bytes) != header.checksum) fail(file, "is corrupted: its checksum differs");
+    if (in.gcount() != static_cast<std::streamsize>(bytes.size())) fail_with_errno("cannot be read");
     return bytes;
-}
-
-void write_archive(const std::string& file, const std::array<char, 8>& name, const ArchiveWriter& archive)
-{
-    write_whole(file,
-                {name, format_version, layout_of_numbers(), archive.bytes.size(), checksum_of(archive.bytes)},
-                archive.bytes);
-}
-
-/// Reads the fields of a file with `read`, and adds the file's name to any error.
-template <class Read>
-void read_archive(const std::string& file, const std::array<char, 8>& name, const Read& read)
-{
-    const std::vector<std::byte> bytes = read_whole(file, name);
-    try {
-        ArchiveReader archive(bytes);
-        read(archive);
-        if (!archive.is_done()) throw std::runtime_error("goes on behind its last field");
-    } catch (const std::exception& error) {
-        fail(file, error.what());
-    }
 }
 
 /// Reads settings as they lie in memory. A byte other than 0 or 1 must not be read as a bool, so these are checked
@@ -161,43 +191,73 @@ SolverSettings read_settings(ArchiveReader& archive)
     return settings;
 }
 
+Scene read_scene(std::span<const std::byte> bytes)
+{
+    ArchiveReader archive = behind_header(bytes, scene_name);
+    Scene scene;
+    SceneArchive::visit(archive, core_of(scene));
+    require_done(archive);
+    return scene;
+}
+
+StepProblem read_problem(std::span<const std::byte> bytes)
+{
+    ArchiveReader archive = behind_header(bytes, problem_name);
+    StepProblem problem;
+    SceneArchive::visit(archive, core_of(problem.scene));
+    problem.settings = read_settings(archive);
+    archive(problem.dt);
+    archive(problem.contacts);
+    require_done(archive);
+    return problem;
+}
+
 }  // namespace
+
+std::vector<std::byte> save_scene(const Scene& scene)
+{
+    return with_header(scene_name,
+                       [&](ArchiveWriter& archive) { SceneArchive::visit(archive, core_of(scene)); });
+}
+
+std::vector<std::byte> save_problem(const StepProblem& problem)
+{
+    return with_header(problem_name, [&](ArchiveWriter& archive) {
+        SceneArchive::visit(archive, core_of(problem.scene));
+        archive(problem.settings);
+        archive(problem.dt);
+        archive(problem.contacts);
+    });
+}
+
+Scene load_scene(std::span<const std::byte> bytes)
+{
+    return reading("load_scene.bytes", [&] { return read_scene(bytes); });
+}
+
+StepProblem load_problem(std::span<const std::byte> bytes)
+{
+    return reading("load_problem.bytes", [&] { return read_problem(bytes); });
+}
 
 void save_scene(const Scene& scene, const std::string& file)
 {
-    ArchiveWriter archive;
-    SceneArchive::visit(archive, core_of(scene));
-    write_archive(file, scene_name, archive);
-}
-
-Scene load_scene(const std::string& file)
-{
-    Scene scene;
-    read_archive(file, scene_name,
-                 [&](ArchiveReader& archive) { SceneArchive::visit(archive, core_of(scene)); });
-    return scene;
+    write_whole(file, save_scene(scene));
 }
 
 void save_problem(const StepProblem& problem, const std::string& file)
 {
-    ArchiveWriter archive;
-    SceneArchive::visit(archive, core_of(problem.scene));
-    archive(problem.settings);
-    archive(problem.dt);
-    archive(problem.contacts);
-    write_archive(file, problem_name, archive);
+    write_whole(file, save_problem(problem));
+}
+
+Scene load_scene(const std::string& file)
+{
+    return reading(file, [&] { return read_scene(read_whole(file, scene_name)); });
 }
 
 StepProblem load_problem(const std::string& file)
 {
-    StepProblem problem;
-    read_archive(file, problem_name, [&](ArchiveReader& archive) {
-        SceneArchive::visit(archive, core_of(problem.scene));
-        problem.settings = read_settings(archive);
-        archive(problem.dt);
-        archive(problem.contacts);
-    });
-    return problem;
+    return reading(file, [&] { return read_problem(read_whole(file, problem_name)); });
 }
 
 }  // namespace motley

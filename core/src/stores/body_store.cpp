@@ -206,6 +206,34 @@ BodyId BodyStore::add(const BodyDefinition& d)
     return {slot, slots_[slot].generation};
 }
 
+void BodyStore::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
+{
+    const BodyRow where = row_of(body);
+    BodyRows& r = rows(where.kind());
+    const std::size_t first = std::size_t{4} * static_cast<std::size_t>(quads_of(where.kind())) * where.row();
+    const bool planar = where.kind() == BodyKind::planar, moves = contained[body.slot] == 0;
+    // Accelerations are stored, not forces; of a rigid body the torque itself.
+    const auto rescale = [&](std::size_t i, float inverse, float new_inverse) {
+        r.acceleration[first + i] =
+            static_cast<float>(static_cast<double>(r.acceleration[first + i]) *
+                               static_cast<double>(new_inverse) / static_cast<double>(inverse));
+    };
+    const float inverse_mass = 1 / mass;
+    for (std::size_t i = 0; i < (planar ? 2 : 3); ++i) rescale(i, inverse_masses[body.slot], inverse_mass);
+    inverse_masses[body.slot] = inverse_mass;
+    if (moves) r.velocity[first + 3] = inverse_mass;
+    if (planar) {
+        const float inverse_inertia = 1 / inertia.zz;
+        rescale(2, inverse_inertias[body.slot], inverse_inertia);
+        inverse_inertias[body.slot] = inverse_inertia;
+        if (moves) r.delta[first + 3] = inverse_inertia;
+    } else if (where.kind() == BodyKind::rigid) {
+        r.inertia[where.row()] = inertia;
+        r.inverse_inertia[where.row()] = inverse_of(inertia);
+        if (moves) refresh_world_inertia(where.row());
+    }
+}
+
 void BodyStore::remove(BodyId body)
 {
     const BodyRow where = row_of(body);

@@ -85,6 +85,9 @@ class BodyStore {
     void make_room_to_remove(std::span<const BodyId> bodies);
     /// Frees the slot and row of a live body.
     void remove(BodyId body);
+    /// Changes the mass, kg, and the inertia, kg m2, of a dynamic body; both are checked. Its velocity stays, and so
+    /// does the force on it, to rounding.
+    void set_mass(BodyId body, float mass, const Sym3<float>& inertia);
     /// Gives every body a new row, in the order of a space-filling curve, and closes the gaps of free rows.
     void renumber();
     [[nodiscard]] bool is_alive(BodyId body) const

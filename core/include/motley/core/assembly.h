@@ -3,12 +3,12 @@
 // them together, one copy in each lane, as long as nothing else touches them.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "motley/core/scene.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Bodies and joints to be copied, in the frame of the figure.
@@ -23,29 +23,21 @@ class Figure {
     {
         static_assert(
             !requires { definition.point_a; }, "points of the world cannot be copied");
+        refuse_ground(definition.body_a);
+        refuse_ground(definition.body_b);
         sketch_.add_joint(definition);
-        joints_.push_back(
-            [definition, this_a = index_of(definition.body_a), this_b = index_of(definition.body_b)](
-                Scene& scene, std::span<const BodyId> bodies) {
-                Definition copy = definition;
-                copy.body_a = bodies[this_a];
-                copy.body_b = bodies[this_b];
-                scene.add_joint(copy);
-            });
     }
     [[nodiscard]] std::span<const BodyDefinition> bodies() const { return bodies_; }
-    [[nodiscard]] std::size_t joint_count() const { return joints_.size(); }
+    [[nodiscard]] std::size_t joint_count() const { return sketch_.joint_count(); }
     /// Adds this figure's joints to a scene, between `bodies`, which take the place of the figure's own in the same
     /// order.
     void join(Scene& scene, std::span<const BodyId> bodies) const;
 
   private:
-    Scene sketch_;  ///< a copy of the figure, made to check what is added
+    Scene sketch_;  ///< a copy of the figure: it checks what is added, and keeps the joints
     std::vector<BodyDefinition> bodies_;
-    std::vector<BodyId> ids_;
-    std::vector<std::function<void(Scene&, std::span<const BodyId>)>> joints_;
 
-    [[nodiscard]] std::size_t index_of(BodyId body) const;
+    void refuse_ground(BodyId body) const;
 };
 
 /// Where a copy is placed and how it moves as a whole, world frame.
@@ -60,3 +52,4 @@ struct Placing {
 std::vector<BodyId> add_assembly(Scene& scene, const Figure& figure, std::span<const Placing> copies);
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// The degrees of freedom of a body. Those that a model lacks cost neither memory nor time.
@@ -58,3 +59,4 @@ inline Vec3<double> anchor_separation(const BodyState& a, const BodyState& b, co
 }
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Owns a T, and copies it when copied. After a move it may only be assigned to or destroyed. A header declares
@@ -54,3 +55,4 @@ template <class T>
 Boxed<T>::~Boxed() = default;
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Names a body of one scene. Valid until the body is removed; after that it is refused, and never names another body
@@ -26,3 +27,4 @@ struct ConstraintId {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Thrown when a definition, handle, setting or other value is refused. The message names the field, the value and the
@@ -19,3 +20,4 @@ class InvalidInput : public std::invalid_argument {
 [[noreturn]] void refuse(std::string_view field, std::string_view value, std::string_view expected);
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// The linear and the angular impulse of a joint on its body b over some time, world frame.
@@ -48,3 +49,4 @@ struct BreakEvent {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -18,12 +18,13 @@
 #include "motley/core/step_report.h"
 #include "motley/core/strided_span.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
-struct SceneCore;
+struct [[gnu::visibility("hidden")]] SceneCore;
 struct SixDofDefinition;
 struct WheelDefinition;
-extern template class Boxed<SceneCore>;
+extern template class __attribute__((visibility("default"))) Boxed<SceneCore>;
 
 /// Holds everything that decides what the next step computes. A refused call throws InvalidInput and changes nothing. A
 /// call that runs out of memory throws std::bad_alloc and changes nothing either. A scene that was moved from, or whose
@@ -55,6 +56,9 @@ class Scene {
     [[nodiscard]] BodyId ground() const;
     /// Number of bodies alive, without the ground.
     [[nodiscard]] std::size_t body_count() const;
+    /// Replaces the contents of `bodies` by the bodies alive without the ground, in the order of their slots, as bulk
+    /// calls take them. Allocates only what the vector lacks.
+    void read_bodies(std::vector<BodyId>& bodies) const;
 
     [[nodiscard]] BodyModel model(BodyId body) const;
     [[nodiscard]] BodyMotion motion(BodyId body) const;
@@ -71,6 +75,17 @@ class Scene {
     /// Sets a force (N, at the centre of mass) and a torque (N m), world, finite, that act in every step until changed;
     /// on a contained body only after it is revived. Dynamic bodies only.
     void set_force(BodyId body, const Vec3<float>& force, const Vec3<float>& torque);
+    /// Changes the mass (kg, 1e-10 to 1e10) of a dynamic body, and its inertia (kg m2, about the centre of mass in the
+    /// body frame, of which the model reads what BodyDefinition::inertia says, in the same ranges). Its pose and
+    /// velocities stay; so do its force and torque, as far as their accelerations were finite, with a rounding more.
+    /// The next steps have the bits of a body that was added with this mass, if its force is set anew or 0. A
+    /// contained body takes it when it is revived. Refuses what add_body refuses, and static and kinematic bodies.
+    /// Where the body has joints, the next step lays out all joints anew.
+    void set_mass(BodyId body, float mass, const Sym3<float>& inertia);
+    /// A number of the host's own for a body: an index, or a pointer. 0 at birth; kept in copies and files of the
+    /// scene. No step reads it. The first call for a scene allocates eight bytes a body.
+    void set_user_data(BodyId body, std::uint64_t value);
+    [[nodiscard]] std::uint64_t user_data(BodyId body) const;
     /// Lets a contained body move again, from `position` (m, world) with the velocity `linear` (m/s, world) and no
     /// angular velocity; its orientation stays. Refuses a body that is not contained.
     void revive(BodyId body, const Vec3<double>& position, const Vec3<float>& linear);
@@ -85,11 +100,13 @@ class Scene {
     void set_forces(std::span<const BodyId> bodies, StridedSpan<const Vec3<float>> forces,
                     StridedSpan<const Vec3<float>> torques = {});
     /// Bulk reads into arrays of the host, world frame, m, m/s, rad/s and rad: element i belongs to bodies[i]. An empty
-    /// span of velocities is skipped.
+    /// span of velocities is skipped. Orientations are those of state(): body to world, unit, the identity for a
+    /// particle, and from the yaw for a planar body.
     void read_positions(std::span<const BodyId> bodies, StridedSpan<Vec3<double>> positions) const;
     void read_velocities(std::span<const BodyId> bodies, StridedSpan<Vec3<float>> linear,
                          StridedSpan<Vec3<float>> angular = {}) const;
     void read_yaws(std::span<const BodyId> bodies, StridedSpan<double> yaws) const;
+    void read_orientations(std::span<const BodyId> bodies, StridedSpan<Quat<double>> orientations) const;
 
     // ---- joints -------------------------------------------------------------------------------------------
     /// Adds a joint of any type of joint_definitions.h: add_joint(BallSocketDefinition{...}).
@@ -115,6 +132,8 @@ class Scene {
     [[nodiscard]] std::size_t joint_count() const;
     /// The mean force and torque that a joint applied over the last step, and its position error now.
     [[nodiscard]] JointReport joint_report(ConstraintId joint) const;
+    /// The same of many joints: reports[i] is of joints[i].
+    void read_joint_reports(std::span<const ConstraintId> joints, StridedSpan<JointReport> reports) const;
 
     /// Reports the joint in break_events() after every step in which it bore more than `limit`; an infinite limit
     /// reports nothing. The joint holds all the same: the host breaks it by removing it. Refuses limits that are not
@@ -191,3 +210,4 @@ class Scene {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

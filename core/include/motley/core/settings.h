@@ -4,6 +4,7 @@
 
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// How the constraints of a step are solved.
@@ -98,3 +99,4 @@ struct SolverSettings {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 
 #include "motley/core/scene.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// The limits of one coordinate of a joint of six degrees of freedom, and what drives it. Ranges as in DriveDefinition.
@@ -58,3 +59,4 @@ struct SixDofDefinition {
 std::vector<ConstraintId> add_six_dof(Scene& scene, const SixDofDefinition& definition);
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 
 #include "motley/core/ids.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// The stages of a step, in their order, for the time table.
@@ -105,3 +106,4 @@ struct StepReport {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 #include <span>
 #include <type_traits>
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// `size` elements of type T, `stride` bytes apart. Made from a std::span (its stride is sizeof(T)), or from a member
@@ -39,3 +40,4 @@ class StridedSpan {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -2,6 +2,7 @@
 // Nothing here branches on a value, so the same code serves one constraint or a bundle of lanes.
 #pragma once
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 template <class Real>
@@ -143,3 +144,4 @@ Quat<To> convert(const Quat<From>& q)
 }
 
 }  // namespace motley
+#pragma GCC visibility pop

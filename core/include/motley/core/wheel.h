@@ -5,6 +5,7 @@
 
 #include "motley/core/scene.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// A wheel b on a chassis a, composed of joints: its centre on the line of the suspension, its axle parallel to the one
@@ -42,3 +43,4 @@ Wheel add_wheel(Scene& scene, const WheelDefinition& definition);
 void steer(Scene& scene, const Wheel& wheel, const WheelDefinition& definition, float angle);
 
 }  // namespace motley
+#pragma GCC visibility pop

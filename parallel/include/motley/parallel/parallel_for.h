@@ -4,10 +4,10 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
-#include <functional>
 
 #include "motley/parallel/executor.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Calls body(begin, end) for consecutive chunks of at most `grain` elements that cover [0, count), on the executor's
@@ -47,11 +47,11 @@ void parallel_for(Executor& executor, std::int64_t count, std::int64_t grain, co
     if (executor.concurrency() <= 1 || chunks <= 1) {
         work(0);
     } else {
-        // A reference: std::function need not allocate for it.
-        executor.run(executor.concurrency(), std::ref(work));
+        executor.run(executor.concurrency(), work);
         work(0);  // runs what is left if the executor made no call
     }
     if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace motley
+#pragma GCC visibility pop

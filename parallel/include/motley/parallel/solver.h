@@ -13,6 +13,7 @@
 #include "motley/parallel/executor.h"
 #include "motley/soa/isa.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// What a solver runs on. None of it changes a bit of the result.
@@ -31,6 +32,22 @@ struct SolverOptions {
 /// Steps scenes. Holds buffers and threads but no state that decides a result: two solvers step copies of a scene to
 /// the same bits. One solver steps one scene at a time: step() is refused while the solver or the scene is in another
 /// step. A solver that has been moved from steps nothing: step() is refused, everything else throws InvalidInput.
+///
+/// Threads. The rules for one scene are at Scene; with solvers:
+/// - different solvers are independent: they may step different scenes at the same time, also with one list of
+///   contacts, which a step only reads;
+/// - during a step nothing may access its scene, not even by const calls, and only settings(), isa(), threads() and
+///   executor() may be called of its solver. A second step is refused; no other violation is detected;
+/// - one executor may serve any number of solvers and loops of parallel_for in turn. It may serve them at the same time
+///   if its run() may be called by several threads at once, as that of a solver's own executor may, even by a thread
+///   that it has lent: a loop over scenes may step each of them on the executor that runs the loop;
+/// - a step runs on the thread that called it and, unless it is small (SolverOptions::alone_below) or of
+///   Method::direct, on those that the executor lends. A lent thread stays until the step is over: it computes, or
+///   waits by spinning and, after some thousand spins, by yielding its core, never by sleeping. So an executor should
+///   lend no more threads than there are cores to spare. A thread that comes late helps with what is left, one that
+///   comes after the step leaves at once, and one that never comes is not missed;
+/// - a lent thread calls nothing of the host and throws nothing. While it is lent it rounds to nearest and takes
+///   denormals for zero; then it has the floating-point environment that it came with.
 class Solver {
   public:
     /// Throws InvalidInput for settings or options out of range, for an executor whose concurrency is out of range,
@@ -57,10 +74,11 @@ class Solver {
     [[nodiscard]] Executor& executor();
 
   private:
-    struct Impl;
+    struct [[gnu::visibility("hidden")]] Impl;
     std::unique_ptr<Impl> impl_;
 
     [[nodiscard]] Impl& impl() const;  ///< refuses when it has been moved from
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

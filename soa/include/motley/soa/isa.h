@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// One build of the kernels. Every one of them computes the same bits.
@@ -23,3 +24,4 @@ std::vector<Isa> available_isas();
 Isa default_isa();
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Holds an anchor p_a of body a on an anchor p_b of body b: C = p_b - p_a = 0. Three rows, but only x and y between
@@ -16,3 +17,4 @@ struct BallSocketDefinition {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// One contact point of the list that a step is given: C = n . (p_b - p_a) >= 0, lambda_n >= 0,
@@ -39,3 +40,4 @@ struct ContactImpulse {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

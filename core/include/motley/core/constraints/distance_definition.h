@@ -6,6 +6,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Keeps the distance between two anchors from min_length to max_length, with a spring along it if asked for. Equal
@@ -26,3 +27,4 @@ struct DistanceDefinition {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 
 #include "motley/core/constraints/frame_joint_definition.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Which coordinate a drive acts on.
@@ -69,3 +70,4 @@ using TwistDriveDefinition = DriveDefinition<DriveAxis::twist>;
 using EulerDriveDefinition = DriveDefinition<DriveAxis::euler>;
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -7,6 +7,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// A frame on a body: its position and rotation in the frame of the body.
@@ -60,3 +61,4 @@ using ParallelAxesDefinition = FrameJointDefinition<LinearLock::none, AngularLoc
 using PerpendicularAxesDefinition = FrameJointDefinition<LinearLock::none, AngularLock::perpendicular>;
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// A point where two surfaces face each other.
@@ -34,3 +35,4 @@ struct ManifoldDefinition {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -6,6 +6,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// A rope from an anchor p_a on a over two wheels fixed in the world to an anchor p_b on b. Keeps the length
@@ -24,3 +25,4 @@ struct PulleyDefinition {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

@@ -4,6 +4,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Couples the motion of b along an axis of a to its rotation about that axis: `pitch` metres for every turn. Used
@@ -20,3 +21,4 @@ struct ScrewDefinition {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

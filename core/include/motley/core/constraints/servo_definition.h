@@ -5,6 +5,7 @@
 
 #include "motley/core/constraints/frame_joint_definition.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Pulls an anchor on b to an anchor on a, like a rubber band of a given stiffness and strength: a mouse that drags a
@@ -35,3 +36,4 @@ struct AngularServoDefinition {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

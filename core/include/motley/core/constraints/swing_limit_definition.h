@@ -3,6 +3,7 @@
 
 #include "motley/core/constraints/frame_joint_definition.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Keeps the x axis of frame b within a cone about the x axis of frame a: the range of a shoulder or hip, used together
@@ -17,3 +18,4 @@ struct SwingLimitDefinition {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop

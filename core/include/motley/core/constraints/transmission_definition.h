@@ -4,6 +4,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// Turns b about its axis by `ratio` times the angle that a turns about its own: negative for two gears that mesh. Used
@@ -30,3 +31,4 @@ struct RackAndPinionDefinition {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop
