@@ -55,12 +55,20 @@ void NeighbourGrid::sort(std::span<const Vec3<double>> positions, std::span<cons
     low_ = {all.min_x, all.min_y};
     longest_reach_ = static_cast<double>(all.largest_radius + margin);
     double cell = std::max(1e-3, 1.0001 * static_cast<double>(2 * all.largest_radius + margin));
-    while ((all.max_x - all.min_x) / cell * ((all.max_y - all.min_y) / cell) > most_cells) cell *= 2;
+    // Plus one: a line of people has no area, but cells.
+    while (((all.max_x - all.min_x) / cell + 1) * ((all.max_y - all.min_y) / cell + 1) > most_cells)
+        cell *= 2;
     cells_per_metre_ = 1 / cell;
     width_ = static_cast<std::int32_t>((all.max_x - all.min_x) / cell) + 1;
     height_ = static_cast<std::int32_t>((all.max_y - all.min_y) / cell) + 1;
 
-    sort_into_bands(positions, radii, margin, executor);
+    // Coordinates are floats from the corner. Where their rounding is no longer small beside the margin, the search reaches
+    // farther, so that no pair is missed: two coordinates of two discs, each off by half a unit in the last place.
+    const double rounding = 4 * std::ldexp(std::max(all.max_x - all.min_x, all.max_y - all.min_y), -24);
+    const double reach =
+        static_cast<double>(margin) + (rounding > 0.01 * static_cast<double>(margin) ? rounding : 0);
+
+    sort_into_bands(positions, radii, static_cast<float>(reach), executor);
     starts_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) + 1);
     parallel_for(executor, band_count_, 1, [&](std::int64_t band, std::int64_t) { sort_band(band); });
     starts_.back() = static_cast<std::int32_t>(count);
@@ -147,12 +155,12 @@ std::size_t NeighbourGrid::find_pairs(std::int64_t chunk, std::vector<Pair>& pai
                 above_begin = starts_[index_of(x > 0 ? x - 1 : 0, y + 1)];
                 above_end = starts_[index_of(x + 1 < width_ ? x + 1 : x, y + 1) + 1];
             }
-            const std::size_t most =
-                found + static_cast<std::size_t>(end - begin) *
-                            static_cast<std::size_t>(right_end - begin + above_end - above_begin);
-            if (pairs.size() < most) pairs.resize(most + most / 2 + 1024);
-            Pair* const list = pairs.data();
             for (std::int32_t i = begin; i < end; ++i) {
+                // Room for what one disc may find: for all of a cell at once it would grow with the cell's square.
+                const std::size_t most =
+                    found + static_cast<std::size_t>(right_end - i - 1 + above_end - above_begin);
+                if (pairs.size() < most) pairs.resize(most + most / 2 + 1024);
+                Pair* const list = pairs.data();
                 const Sorted me = sorted_[static_cast<std::size_t>(i)];
                 const auto look = [&](std::int32_t from, std::int32_t to) {
                     for (std::int32_t j = from; j < to; ++j) {

@@ -20,7 +20,8 @@ class NeighbourGrid {
         std::int32_t a, b;
     };
 
-    /// Sorts the discs into cells. Discs are near each other when the gap between them is below `margin`, m.
+    /// Sorts the discs into cells. Discs are near each other when the gap between them is below `margin`, m. Where they
+    /// are so far apart that rounding to float is large beside the margin, some pairs beyond it are listed too.
     void sort(std::span<const Vec3<double>> positions, std::span<const float> radii, float margin,
               Executor& executor);
 

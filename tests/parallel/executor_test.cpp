@@ -9,30 +9,12 @@
 
 #include "mixed_scene.h"
 #include "stage_runner.h"
+#include "thread_executor.h"
 
 namespace motley {
 namespace {
 
-/// Starts a thread for every worker, in no fixed order, and may leave some workers out.
-class ThreadExecutor final : public Executor {
-  public:
-    ThreadExecutor(int concurrency, int lent) : concurrency_(concurrency), lent_(lent) {}
-    [[nodiscard]] int concurrency() const override { return concurrency_; }
-    void run(int workers, Job job) override
-    {
-        std::vector<std::thread> threads;
-        for (int worker = workers - 1; worker >= 1; --worker) {
-            if (worker <= lent_) threads.emplace_back([job, worker] { job(worker); });
-        }
-        job(0);
-        for (std::thread& thread : threads) thread.join();
-        ++runs;
-    }
-    int runs = 0;
-
-  private:
-    int concurrency_, lent_;
-};
+using testing::ThreadExecutor;
 
 std::uint64_t hash_after_steps(const SolverOptions& options)
 {
@@ -226,6 +208,82 @@ TEST(Executor, AChunkThatThrowsEndsItsStageAndTheNextOneRuns)
             EXPECT_THROW(step(true), std::length_error) << lent;
             EXPECT_EQ(step(false), 300) << lent;
         }
+    }
+}
+
+TEST(Executor, AChunkThatThrowsOnAnyWorkerEndsItsStageAndTheNextOneRuns)
+{
+    constexpr int workers = 4;
+    ThreadExecutor host(workers, workers - 1);
+    StageRunner runner(&host);
+    for (int bad = 0; bad < workers; ++bad) {
+        std::atomic<bool> thrown{false};
+        std::atomic<int> ran{0};
+        runner.with_workers(false, [&] {
+            EXPECT_THROW(runner.run(400,
+                                    [&](std::int64_t, int worker) {
+                                        // The others wait for the bad one, so that it does run a chunk.
+                                        while (worker != bad && !thrown) std::this_thread::yield();
+                                        if (worker != bad) return;
+                                        thrown = true;
+                                        throw std::length_error("chunk");
+                                    }),
+                         std::length_error)
+                << bad;
+            runner.run(400, [&](std::int64_t) { ++ran; });
+        });
+        EXPECT_TRUE(thrown);
+        EXPECT_EQ(ran, 400) << bad;
+    }
+}
+
+/// A pool of which one thread fails, before or after its job. Its run throws that once all threads have returned.
+class FailingPool final : public Executor {
+  public:
+    FailingPool(int bad, bool before) : bad_(bad), before_(before) {}
+    [[nodiscard]] int concurrency() const override { return 4; }
+    void run(int workers, Job job) override
+    {
+        std::exception_ptr failure;  // of one thread only
+        const auto call = [&](int worker) {
+            if (worker != bad_) return job(worker);
+            try {
+                if (before_) throw std::runtime_error("thread " + std::to_string(worker));
+                job(worker);
+                throw std::runtime_error("thread " + std::to_string(worker));
+            } catch (...) {
+                failure = std::current_exception();
+            }
+        };
+        std::vector<std::thread> threads;
+        for (int worker = 1; worker < workers; ++worker) threads.emplace_back(call, worker);
+        call(0);
+        for (std::thread& thread : threads) thread.join();
+        if (failure) std::rethrow_exception(failure);
+    }
+
+  private:
+    int bad_;
+    bool before_;
+};
+
+TEST(Executor, WhoseThreadFailsBeforeOrAfterItsJobStillDoesTheStep)
+{
+    testing::MixedScene alone;
+    Solver one({.gravity = {0, -9.81F, 0}}, {.threads = 1});
+    for (int step = 0; step < 5; ++step) one.step(alone.scene, 1.0F / 60, alone.contacts());
+    // Thread 0 is the caller. If it fails before its job the step is refused: see throws_before above.
+    for (const auto& [bad, before] :
+         {std::pair{1, true}, {2, true}, {3, true}, {0, false}, {1, false}, {3, false}}) {
+        testing::MixedScene mixed;
+        FailingPool pool(bad, before);
+        Solver solver({.gravity = {0, -9.81F, 0}}, {.alone_below = 0, .executor = &pool});
+        for (int step = 0; step < 5; ++step) {
+            const StepReport report = solver.step(mixed.scene, 1.0F / 60, mixed.contacts());
+            EXPECT_EQ(report.status, StepStatus::done);
+            EXPECT_EQ(report.error, "thread " + std::to_string(bad));
+        }
+        EXPECT_EQ(mixed.scene.state_hash(), alone.scene.state_hash()) << bad << before;
     }
 }
 

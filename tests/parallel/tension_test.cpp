@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "loaded_chain.h"
+#include "momentum_rounding.h"
 
 namespace motley {
 namespace {
@@ -128,27 +129,48 @@ TEST(Tension, PlanarBodiesHaveTheirOwnInertiaAgainWhenAStepIsDone)
                 frame_time * torque / static_cast<float>(LoadedChain::inertia_of_unit_mass), 1e-4);
 }
 
+/// What five seconds of free flight changed.
+struct Changes {
+    double momentum, angular;  ///< shares of 2 load + 10 kg at 1 m/s, and of the angular momentum
+    double energy;             ///< the largest share that was gained
+};
+Changes after_floating(double load, int relaxations)
+{
+    Scene scene;
+    LoadedChain chain(scene);
+    chain.set_afloat(load);
+    const Vec3<double> before = chain.momenta();
+    const double energy = chain.kinetic_energy();
+    Solver solver({.relaxations = relaxations});
+    double gain = 0;
+    for (int step = 0; step < testing::long_run(300); ++step) {
+        solver.step(scene, frame_time);
+        gain = std::max(gain, chain.kinetic_energy() / energy - 1);
+    }
+    const Vec3<double> after = chain.momenta();
+    const Changes changes{std::hypot(after.x - before.x, after.y - before.y) / (2 * load + 10),
+                          std::abs(after.z - before.z) / before.z, gain};
+    std::printf("%g kg afloat for 5 s, %d relaxations: p %.2g, L %.2g, energy grows by %.2g\n", load,
+                relaxations, changes.momentum, changes.angular, changes.energy);
+    return changes;
+}
+
 TEST(Tension, FloatingChainsKeepMomentumAndAngularMomentum)
 {
     for (const double load : {1.0, 100.0, 1e4}) {
-        Scene scene;
-        LoadedChain chain(scene);
-        chain.set_afloat(load);
-        const Vec3<double> before = chain.momenta();
-        const double energy = chain.kinetic_energy();
-        Solver solver;
-        double gain = 0;
-        for (int step = 0; step < testing::long_run(300); ++step) {
-            solver.step(scene, frame_time);
-            gain = std::max(gain, chain.kinetic_energy() / energy - 1);
+        const Changes relaxed = after_floating(load, 1), plain = after_floating(load, 0);
+        EXPECT_LT(relaxed.momentum, 1e-4) << load;
+        EXPECT_LT(plain.momentum, 1e-4) << load;
+        EXPECT_LT(relaxed.energy, 0.01) << load;
+        // 1,200 substeps store velocities five times, each off by 2^-24 in either direction, of two loads that have half
+        // of the momentum each; six standard deviations. Relaxation acts on arms that have turned: see momentum_test.
+        // Under 10 t, where links are stiffened, more is lost than that (1.4e-5): it has the bound of p.
+        const double rounding = testing::rounding_of_momenta(1200 * testing::stores_of(2, 1), 0.5);
+        if (load < 1e4) {
+            EXPECT_LT(plain.angular, rounding) << load;
+        } else {
+            EXPECT_LT(plain.angular, 1e-4) << load;
         }
-        const Vec3<double> after = chain.momenta();
-        std::printf("%g kg afloat for 5 s: p %.2g, L %.2g, energy grows by %.2g\n", load,
-                    std::hypot(after.x - before.x, after.y - before.y) / (0.1 * (2 * load + 10)),
-                    std::abs(after.z - before.z) / before.z, gain);
-        EXPECT_NEAR(after.x, before.x, 1e-4 * (2 * load + 10)) << load;
-        EXPECT_NEAR(after.y, before.y, 1e-4 * (2 * load + 10)) << load;
-        EXPECT_LT(gain, 0.01) << load;
     }
 }
 

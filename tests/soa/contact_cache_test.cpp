@@ -1,5 +1,5 @@
 // Contacts found again from step to step, against a std::map that is updated in the same way. RapidCheck generates
-// the lists.
+// the lists: short ones, which it can shrink, and long ones of several parts. Parts run on threads of their own.
 #include "stores/contact_cache.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,9 @@
 #include <random>
 #include <set>
 
+#include "large_property.h"
 #include "motley/parallel/parallel_for.h"
-#include "motley/parallel/solver.h"
+#include "thread_executor.h"
 
 namespace motley {
 namespace {
@@ -52,13 +53,13 @@ std::optional<std::vector<std::uint32_t>> take(ContactCache& cache, const Keys& 
 struct Checked {
     ContactCache cache;
     std::map<std::uint64_t, std::uint32_t> last;
-    Solver threads{{}, {.threads = 2}};
+    testing::ThreadExecutor threads{3, 2};
 
     /// Returns false if anything is wrong.
     bool take_in(const Keys& keys)
     {
         const bool unique = std::set<std::uint64_t>(keys.begin(), keys.end()).size() == keys.size();
-        const auto before = take(cache, keys, threads.executor());
+        const auto before = take(cache, keys, threads);
         if (before.has_value() != unique) return false;
         if (!before) return true;
         for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -81,6 +82,54 @@ RC_GTEST_PROP(ContactCache, FindsWhatTheLastAcceptedListHad,
         for (const std::uint8_t key : list) keys.push_back(key % 64 + (std::uint64_t{key} >> 6 << 33));
         RC_ASSERT(checked.take_in(keys));
     }
+}
+
+/// The list of the next step: a host drops some contacts, adds others anywhere, and now and then lists in another order.
+void change_as_a_host(Keys& keys, std::uint64_t& fresh, std::mt19937_64& random)
+{
+    // New keys of which many share their low or their high half.
+    const auto next_key = [&] {
+        const std::uint64_t key = fresh++;
+        return key % 5'000 + (key / 5'000 << 33);
+    };
+    const std::uint64_t order = random() % 4;
+    if (order == 1) std::shuffle(keys.begin(), keys.end(), random);
+    if (order == 2)
+        std::rotate(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(random() % keys.size()),
+                    keys.end());
+    Keys changed;
+    const std::size_t size = testing::any_size(4'200, 14'000);
+    for (const std::uint64_t key : keys) {
+        if (random() % 10 != 0 && changed.size() < size) changed.push_back(key);
+        if (random() % 10 == 0) changed.push_back(next_key());
+    }
+    while (changed.size() < size) changed.push_back(next_key());
+    keys = changed;
+}
+
+TEST(ContactCache, FindsInSeveralPartsWhatTheLastAcceptedListHad)
+{
+    testing::check_large(20, [] {
+        std::mt19937_64 random = testing::any_random();
+        Checked checked;
+        Keys keys(5'000);
+        std::iota(keys.begin(), keys.end(), 0);
+        std::uint64_t fresh = keys.size();
+        RC_ASSERT(checked.take_in(keys));
+        for (int step = 0; step < 6; ++step) {
+            change_as_a_host(keys, fresh, random);
+            if (step % 3 == 2) {
+                // Refused: the next list is matched with the one before this.
+                Keys twice = keys;
+                twice[random() % twice.size()] = twice.front();
+                twice.push_back(twice.back());
+                RC_ASSERT(checked.take_in(twice));
+            }
+            RC_ASSERT(checked.take_in(keys));
+            RC_ASSERT(checked.last.size() == keys.size());
+            RC_ASSERT(checked.cache.part_count() >= 3);
+        }
+    });
 }
 
 /// Keys of two lists that fall into few buckets, against a std::map of the first entry with each key.
@@ -107,6 +156,39 @@ RC_GTEST_PROP(KeyTable, HasEachKeyOnce, (const std::vector<std::pair<bool, std::
         const bool is_fresh = known != first.end() && list_at(known->second) == List::fresh;
         RC_ASSERT(table.is_fresh(low << 58 | low, key_at) == is_fresh);
     }
+}
+
+TEST(KeyTable, HasEachKeyOnceWhenThreadsEnterItAtOnce)
+{
+    using List = KeyTable::List;
+    testing::check_large(10, [] {
+        std::mt19937_64 random = testing::any_random();
+        // Each key comes about four times, most often on different threads.
+        Keys keys(testing::any_size(8'000, 20'000));
+        for (std::uint64_t& key : keys) key = random() % (keys.size() / 4) << 20;
+        const auto key_at = [&](List, std::uint32_t i) { return keys[i]; };
+        const auto list_at = [](std::uint32_t i) { return i % 3 == 0 ? List::fresh : List::lost; };
+        KeyTable table;
+        table.clear(keys.size(), keys.size());
+        std::vector<KeyTable::Found> found(keys.size());
+        testing::ThreadExecutor threads(3, 2);
+        parallel_for(
+            threads, static_cast<std::int64_t>(keys.size()), 64, [&](std::int64_t begin, std::int64_t end) {
+                for (auto i = static_cast<std::uint32_t>(begin); i < static_cast<std::uint32_t>(end); ++i)
+                    found[i] = table.enter(keys[i], list_at(i), i, key_at);
+            });
+        std::map<std::uint64_t, std::uint32_t> entered;  // who came first with a key
+        for (std::uint32_t i = 0; i < keys.size(); ++i) {
+            if (found[i].index == KeyTable::Found::none) RC_ASSERT(entered.try_emplace(keys[i], i).second);
+        }
+        RC_ASSERT(entered.size() < keys.size() / 2);
+        for (std::uint32_t i = 0; i < keys.size(); ++i) {
+            const std::uint32_t first = entered.at(keys[i]);
+            RC_ASSERT(found[i].index == (first == i ? KeyTable::Found::none : first));
+            RC_ASSERT(found[i].list == list_at(first));
+            RC_ASSERT(table.is_fresh(keys[i], key_at) == (list_at(first) == List::fresh));
+        }
+    });
 }
 
 TEST(ContactCache, ListsMayShrinkAndGrowByAnyAmount)

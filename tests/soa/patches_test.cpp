@@ -43,7 +43,8 @@ void for_each_lane(const SweepChunk& chunk, const Visit& visit)
 }
 
 struct Counts {
-    std::size_t inside = 0, across = 0;
+    std::size_t inside = 0, across = 0, overflow = 0;
+    std::size_t patches = 0;  ///< with contacts
 };
 
 /// Exactly one patch lists each body that can move and that a contact touches: the patch with the contacts inside it.
@@ -75,8 +76,7 @@ void check_bodies(const Layout& layout, const Scene& scene, const std::map<Mover
     }
 }
 
-/// Every contact is in one lane. No moving body is in a chunk, which has one colour, twice, and none is in two
-/// patches.
+/// Every contact is in one lane. No moving body is in a chunk of a colour twice, and none is in two patches.
 Counts check(const Layout& layout, const Scene& scene, std::size_t contacts)
 {
     Counts counts;
@@ -97,8 +97,17 @@ Counts check(const Layout& layout, const Scene& scene, std::size_t contacts)
         for (const SweepChunk& chunk : sweeps.of_colour(colour))
             check_chunk(chunk, counts.across, [](const Mover&) {});
     }
+    // The overflow is swept block after block: there a body may be in several blocks, but in each only once.
+    for (SweepChunk chunk : sweeps.of_colour(overflow_colour)) {
+        const std::int32_t end = chunk.end;
+        for (; chunk.begin < end; ++chunk.begin) {
+            chunk.end = chunk.begin + 1;
+            check_chunk(chunk, counts.overflow, [](const Mover&) {});
+        }
+    }
     std::map<Mover, std::size_t> patch_of;
     for (std::size_t patch = 0; patch < sweeps.patches.size(); ++patch) {
+        counts.patches += sweeps.of_patch(static_cast<std::int64_t>(patch)).empty() ? 0 : 1;
         for (const SweepChunk& chunk : sweeps.of_patch(static_cast<std::int64_t>(patch))) {
             check_chunk(chunk, counts.inside, [&](const Mover& mover) {
                 EXPECT_EQ(patch_of.try_emplace(mover, patch).first->second, patch);
@@ -126,6 +135,29 @@ TEST(Patches, HoldMostContactsOfAListInSpaceAndShareNoMovingBody)
         const Counts counts = check(layout, crowd.scene, crowd.pairs.size());
         EXPECT_GT(counts.inside, crowd.pairs.size() * 3 / 4);
         EXPECT_GT(counts.across, 0U);
+        EXPECT_EQ(counts.patches, crowd.pairs.size() / Patches::contacts_a_patch + 1);
+        EXPECT_EQ(counts.overflow, 0U);
+    }
+}
+
+/// People who touch more than thirty others, as somebody does whose contacts are listed at several points each.
+TEST(Patches, HoldNoContactThatFoundNoColour)
+{
+    LatticeCrowd crowd;
+    const std::size_t before = crowd.pairs.size();
+    for (const int hub : {LatticeCrowd::side * 10 + 10, LatticeCrowd::side * 90 + 77}) {
+        std::vector<std::pair<int, int>> more;
+        for (int i = 2; i < 60; ++i) more.emplace_back(hub, hub + i);
+        const auto at = static_cast<std::ptrdiff_t>(hub) * 3;
+        crowd.pairs.insert(crowd.pairs.begin() + at, more.begin(), more.end());
+    }
+    Layout layout(kernel_table(Isa::scalar));
+    for (int step = 0; step < 2; ++step) {
+        testing::lay_out(layout, crowd.scene, crowd.contacts());
+        const Counts counts = check(layout, crowd.scene, before + 2 * 58);
+        EXPECT_GT(counts.patches, 10U);
+        EXPECT_GE(counts.overflow, 2U * (58 - parallel_colours));
+        EXPECT_LT(counts.overflow, 2U * (58 + 8));
     }
 }
 

@@ -38,6 +38,8 @@ void Scene::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
         refuse("set_mass.body", "a static or kinematic body", "a dynamic body");
     check_mass("set_mass", core_->bodies.model(body), mass, inertia);
     core_->bodies.set_mass(body, mass, inertia);
+    // Contacts of discs keep their effective mass from search to search.
+    if (core_->has_disc(body)) core_->discs.is_stale = true;
     // Which joints are solved at once depends on the ratio of the masses that they connect.
     if (core_->bodies.first_ends[body.slot] != 0) core_->joints->version.reset();
 }

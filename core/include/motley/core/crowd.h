@@ -7,6 +7,7 @@
 #include "motley/core/ids.h"
 #include "motley/core/vector.h"
 
+#pragma GCC visibility push(default)
 namespace motley {
 
 /// The shape of a planar body: a disc about its centre of mass. Two discs, or a disc and a wall, touch if each has a
@@ -51,3 +52,4 @@ struct DiscContact {
 };
 
 }  // namespace motley
+#pragma GCC visibility pop
