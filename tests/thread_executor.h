@@ -2,7 +2,6 @@
 // of oneTBB (.ci/tsan.supp).
 #pragma once
 
-#include <functional>
 #include <thread>
 #include <vector>
 

@@ -16,4 +16,20 @@ inline double median(std::vector<double> values)
     return *middle;
 }
 
+/// The median over means of eight values one after another: of steps that search for contacts every few steps, each
+/// mean has its share of searches.
+inline double median_of_eights(const std::vector<double>& values)
+{
+    constexpr std::size_t eight = 8;
+    std::vector<double> means;
+    for (std::size_t first = 0; first < values.size(); first += eight) {
+        const std::size_t last = std::min(first + eight, values.size());
+        if (last - first < eight && first > 0) break;
+        double sum = 0;
+        for (std::size_t i = first; i < last; ++i) sum += values[i];
+        means.push_back(sum / static_cast<double>(last - first));
+    }
+    return median(means);
+}
+
 }  // namespace motley::bench

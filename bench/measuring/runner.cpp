@@ -160,7 +160,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     const auto steps =
         static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));
     Progress progress(outputs.progress, entry.name, steps);
-    std::vector<double> step_seconds, solver_seconds;
+    std::vector<double> step_seconds, solver_seconds, unsteered_seconds;
     double blocks = 0;
     for (std::int64_t step = 0; step < steps; ++step) {
         const double time = static_cast<double>(step) * static_cast<double>(options.dt);
@@ -189,6 +189,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         times.solver += solved - found;
         step_seconds.push_back((solved - found) + searched + (steered - began));
         solver_seconds.push_back(solved - found);
+        unsteered_seconds.push_back((solved - found) + searched);
         for (std::size_t s = 0; s < stage_count; ++s) times.stages[s] += result.last.seconds[s];
         const auto constraints = static_cast<double>(result.last.contacts + result.last.joints);
         result.constraints += constraints;
@@ -218,8 +219,9 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         result.bytes_per_constraint /= result.constraints;
     }
     result.constraints /= count;
-    result.median_step_seconds = median(step_seconds);
-    result.median_solver_seconds = median(solver_seconds);
+    result.median_step_seconds = median_of_eights(step_seconds);
+    result.median_solver_seconds = median_of_eights(solver_seconds);
+    result.median_unsteered_seconds = median_of_eights(unsteered_seconds);
     result.errors = scene->scene.errors();
     result.state_hash = scene->scene.state_hash();
     judge_contacts(result, *scene, executor);

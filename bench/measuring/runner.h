@@ -25,15 +25,16 @@ struct RunResult {
     std::string scene, isa, method;
     int threads = 1;
     std::int64_t steps = 0;
-    double bodies = 0;                 ///< mean over the steps
-    RunTimes times;                    ///< of all steps but the first, which allocates for the others
-    double median_step_seconds = 0;    ///< of a whole step: solver, steering and search
-    double median_solver_seconds = 0;  ///< of the solver's part
-    double constraints = 0;            ///< mean
-    double lane_occupancy = 0;         ///< of all steps: constraints / (16 blocks); 0 without constraints
-    double bytes_per_constraint = 0;   ///< of all steps: streamed by one sweep of solve
-    int colours = 0;                   ///< most of any step
-    std::int64_t overflow = 0;         ///< likewise
+    double bodies = 0;                    ///< mean over the steps
+    RunTimes times;                       ///< of all steps but the first, which allocates for the others
+    double median_step_seconds = 0;       ///< of a whole step: solver, steering and search
+    double median_solver_seconds = 0;     ///< of the solver's part
+    double median_unsteered_seconds = 0;  ///< of solver and search, without the host's steering
+    double constraints = 0;               ///< mean
+    double lane_occupancy = 0;            ///< of all steps: constraints / (16 blocks); 0 without constraints
+    double bytes_per_constraint = 0;      ///< of all steps: streamed by one sweep of solve
+    int colours = 0;                      ///< most of any step
+    std::int64_t overflow = 0;            ///< likewise
     StepReport last;
     double overlap_p50 = 0, overlap_p99 = 0,
            overlap_max = 0;  ///< deepest overlap of each person, share of radius

@@ -128,8 +128,11 @@ void Sweeper::sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel)
 {
     const std::int64_t bands = layout_.disc_bands();
     if (bands == 0) return;
+    // The bodies of a band fit a core's first cache, and neighbours lie together.
+    KernelContext at_hand = layout_.context;
+    at_hand.bodies_are_far = false;
     const auto run = [&](std::int64_t band) {
-        run_chunks(layout_.context, layout_.kernels(), layout_.discs_of_band(band), kernel, every_block);
+        run_chunks(at_hand, layout_.kernels(), layout_.discs_of_band(band), kernel, every_block);
     };
     const bool wide_last = kernel == &ConstraintKernels::relax;
     if (!wide_last) run(0);

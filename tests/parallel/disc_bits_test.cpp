@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstring>
 #include <numeric>
 
 #include "disc_crowd.h"
+#include "rig.h"
 
 namespace motley {
 namespace {
@@ -62,7 +64,7 @@ TEST(DiscBits, AreEqualForEveryInstructionSetAndNumberOfThreads)
             for (const Isa isa : available_isas()) {
                 for (const int threads : {1, 2, 3}) {
                     if (isa == Isa::scalar && threads == 1) continue;
-                    EXPECT_EQ(run(crowd, settings, {.threads = threads, .isa = isa, .alone_below = 0}),
+                    EXPECT_EQ(run(crowd, settings, {.threads = threads, .alone_below = 0, .isa = isa}),
                               scalar)
                         << isa_name(isa) << " x " << threads << ", friction " << friction;
                 }
@@ -94,7 +96,7 @@ TEST(DiscBits, ContinueFromCopiesFilesAndNewRows)
     const BodyId door = crowd.scene.add_body(arm);
     const Vec2<double> ends[] = {{-2, 0}, {2, 0}};
     crowd.scene.add_wall({.points = ends, .body = door, .friction = 0.2F});
-    Solver solver({}), other({});
+    Solver solver(SolverSettings{}), other(SolverSettings{});
     const std::string file = ::testing::TempDir() + "disc_bits.motley";
     for (int step = 0; step < 60; ++step) {
         DiscCrowd copy = crowd;
@@ -122,7 +124,7 @@ TEST(DiscBits, ContinueFromCopiesFilesAndNewRows)
 TEST(DiscBits, SurviveComingAndGoing)
 {
     DiscCrowd crowd({.people = 600, .spacing = 0.5});
-    Solver solver({}, {.threads = 2, .alone_below = 0});
+    Solver solver(SolverSettings{}, {.threads = 2, .alone_below = 0});
     Random random;
     for (int step = 0; step < testing::long_run(300); ++step) {
         const auto who = static_cast<std::size_t>(random.below(static_cast<int>(crowd.people.size())));

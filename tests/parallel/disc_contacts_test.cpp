@@ -3,9 +3,12 @@
 // pair by brute force.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "disc_crowd.h"
+#include "rig.h"
+#include "scene/scene_core.h"
 
 namespace motley {
 namespace {
@@ -47,7 +50,9 @@ TEST(DiscContacts, OfAPushedChainCarryTheSumOfWhatIsBehind)
         scene.set_disc(people.back(), {.radius = 0.2F});
         scene.set_force(people.back(), {-force, 0, 0}, {});
     }
-    Solver solver({});
+    SolverSettings settings;
+    settings.contact_hertz = 30;
+    Solver solver(settings);
     take_steps(solver, scene, 600);
     const std::vector<DiscContact> contacts = scene.disc_contacts();
     ASSERT_EQ(contacts.size(), std::size_t{n});
@@ -61,7 +66,11 @@ TEST(DiscContacts, OfAPushedChainCarryTheSumOfWhatIsBehind)
             behind = static_cast<std::size_t>(n - std::lround((a + b) / 2 / 0.4));
         }
         EXPECT_NEAR(contact.normal_force, force * static_cast<float>(behind), 0.01F * force * n);
-        EXPECT_LT(-contact.separation, 0.01F * 0.2F);
+        // A soft contact sinks by F / (m w^2), m being the effective mass of the pair.
+        if (contact.wall == wall) continue;
+        const float w = 2 * 3.14159265F * settings.contact_hertz;
+        const float sunk = contact.normal_force / (40 * w * w);
+        EXPECT_NEAR(-contact.separation, sunk, 0.05F * sunk + 1e-5F);
     }
     std::vector<BodyLoad> loads(people.size());
     scene.read_loads(people, {}, std::span(loads));
@@ -86,7 +95,7 @@ TEST(DiscContacts, PassAPulseOnAtTheTimesOfPlasticImpacts)
         people.push_back(scene.add_body(body));
         scene.set_disc(people.back(), {.radius = 0.2F});
     }
-    Solver solver({});
+    Solver solver(SolverSettings{});
     std::vector<double> hit(n, -1);
     double time = 0;
     constexpr float step = 1.0F / 240;
@@ -116,7 +125,7 @@ TEST(DiscContacts, SlideUntilTheyRoll)
     const BodyId disc = scene.add_body(person_at(0, 0.2));
     scene.set_disc(disc, {.radius = 0.2F, .friction = mu});
     scene.set_velocity(disc, {v, 0, 0}, {});
-    Solver solver({.gravity = {0, -a, 0}});
+    Solver solver(SolverSettings{.gravity = {0, -a, 0}});
     const float rolls_at = v / (3 * mu * a);
     const int before = static_cast<int>(0.5F * rolls_at / dt);
     take_steps(solver, scene, before);
@@ -152,7 +161,7 @@ TEST(DiscContacts, ConserveMomentumAndAngularMomentum)
         return std::array<double, 3>{p[0], p[1], p[2]};
     };
     const std::array<double, 3> before = momenta();
-    Solver solver({});
+    Solver solver(SolverSettings{});
     take_steps(solver, crowd.scene, 120);
     const std::array<double, 3> after = momenta();
     // Rounding of 400 people of 80 kg at 2 m/s, 8 m from the origin, in 120 steps of 4 substeps with 8 impulses each.
@@ -173,7 +182,7 @@ TEST(DiscContacts, MissNoOverlapWhateverTheSpeedAndSize)
             crowd.discs[large].radius = 0.9F;
             crowd.scene.set_disc(crowd.people[large], crowd.discs[large]);
         }
-        Solver solver({}, {.threads = 2, .alone_below = 0});
+        Solver solver(SolverSettings{}, {.threads = 2, .alone_below = 0});
         take_steps(solver, crowd.scene, 240);  // the large ones push their neighbours away
         EXPECT_LT(crowd.deepest_overlap(), 0.01 * 0.2) << "at " << speed << " m/s";
     }
@@ -190,7 +199,7 @@ TEST(DiscContacts, ActWithListedContactsAndJoints)
     for (const BodyId disc : {a, b}) scene.set_disc(disc, {.radius = 0.2F});
     scene.add_joint(BallSocketDefinition{scene.ground(), a, {}, {}});
     scene.set_force(c, {-100, 0, 0}, {});
-    Solver solver({});
+    Solver solver(SolverSettings{});
     for (int i = 0; i < 300; ++i) {
         const double gap = scene.state(c).position.x - scene.state(b).position.x - 0.4;
         Contact contact;
@@ -217,7 +226,7 @@ TEST(DiscContacts, OnlyOfThoseWhoseCategoriesMeet)
     scene.set_velocity(ghost, {1, 0, 0}, {});
     const Vec2<double> ends[] = {{2, -1}, {2, 1}};
     scene.add_wall({.points = ends, .category = 4});
-    Solver solver({});
+    Solver solver(SolverSettings{});
     take_steps(solver, scene, 240);
     EXPECT_EQ(scene.state(person).position.x, 1);
     EXPECT_NEAR(scene.state(ghost).position.x, 1.8, 0.01);

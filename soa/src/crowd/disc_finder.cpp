@@ -9,6 +9,13 @@
 namespace motley {
 namespace {
 
+/// A disc lists at most so many that come after it in a strip. Equal discs beside each other have fewer than ten; of a
+/// million at one spot each then pushes some, and not all others at once.
+constexpr std::size_t most_later_neighbours = 32;
+
+/// m: discs further apart than this start without the impulse that they had.
+constexpr double still_touching = 0.005;
+
 /// The square of the distance of a point from a segment, m2.
 double distance2(const Vec2<double>& point, const Vec2<double>& from, const Vec2<double>& to)
 {
@@ -110,12 +117,14 @@ void DiscFinder::list_pairs(std::int32_t strip, std::vector<Pair>& pairs) const
         const PlacedDisc& me = here[i];
         const double limit = me.along + static_cast<double>(me.reach) + most;
         while (behind < next.size() && next[behind].along < me.along - 2 * most) ++behind;
+        const std::size_t most_found = found + here.size() - i + next.size() - behind;
+        if (pairs.size() < most_found) pairs.resize(with_room_to_grow(most_found));
         const auto look = [&](std::span<const PlacedDisc> others, std::size_t from, std::uint32_t first) {
-            for (std::size_t j = from; j < others.size() && others[j].along <= limit; ++j) {
+            const std::size_t full = found + most_later_neighbours;
+            for (std::size_t j = from; j < others.size() && others[j].along <= limit && found < full; ++j) {
                 const double along = others[j].along - me.along, across = others[j].across - me.across;
                 const double near = static_cast<double>(others[j].reach + me.reach);
                 // The pair is always written, and counted only when near: a branch would often mispredict.
-                if (pairs.size() <= found) pairs.resize(with_room_to_grow(found + 64));
                 pairs[found] = {first_here + static_cast<std::uint32_t>(i),
                                 first + static_cast<std::uint32_t>(j)};
                 found += along * along + across * across < near * near ? 1 : 0;
@@ -141,7 +150,12 @@ void DiscFinder::add_pair(SceneCore& scene, DiscBand& band, Worker& worker, cons
         if (!shape_a.meets(shape_b.category, shape_b.mask)) return;
         friction = friction_of(shape_a.friction, shape_b.friction);
     }
-    const CarriedImpulses::Impulse impulse = carried.of_pair(a.row, b.row);
+    // Only discs that still touch, or nearly, are looked up.
+    const double along = b.along - a.along, across = b.across - a.across;
+    const double near = static_cast<double>(a.radius + b.radius) + still_touching;
+    const CarriedImpulses::Impulse impulse = along * along + across * across < near * near
+                                                 ? carried.of_pair(a.row, b.row)
+                                                 : CarriedImpulses::Impulse{};
     with_disc_class(friction > 0 ? DiscClass::rough_pair : DiscClass::smooth_pair, [&](auto c) {
         if constexpr (!is_wall(c.value)) {
             using Fields = DiscFieldsOf<c.value>;

@@ -11,7 +11,7 @@ namespace motley {
 namespace {
 
 /// m: a disc at rest may go so far before its neighbours are found again.
-constexpr float skin_at_rest = 0.02F;
+constexpr float skin_at_rest = 0.03F;
 /// People of a band: few enough for a core's first cache, and enough that blocks are full.
 constexpr std::uint32_t discs_per_band = 512;
 
