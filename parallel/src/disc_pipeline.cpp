@@ -2,15 +2,14 @@
 #include "disc_pipeline.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace motley {
 namespace {
 
 constexpr std::int64_t rows_per_chunk = 1024;
-/// The most steps for which a search looks ahead.
-constexpr int longest_horizon = 8;
+/// The most steps from one search of all discs to the next.
+constexpr int longest_age = 20;
 /// m: a disc that may come so near the end of its skin is searched for anew. It allows for the speed that a disc gains
 /// within a step.
 constexpr double slack = 0.005;
@@ -25,20 +24,22 @@ void DiscPipeline::find(SceneCore& scene, float dt)
         return;
     }
     find_wall_ends(scene, wall_ends_);
-    if (!is_outdated(scene, dt)) {
-        ++discs.age;
-        return;
-    }
-    // A search looks as far ahead as the last one lasted, and a little further.
-    if (!discs.is_stale) {
-        if (discs.age + 1 < discs.horizon) discs.horizon = std::max(1, discs.horizon - 1);
-        if (discs.age + 1 >= discs.horizon) discs.horizon = std::min(longest_horizon, discs.horizon + 1);
+    if (!discs.is_stale && ++discs.age < longest_age && !have_walls_left(scene, dt)) {
+        list_leaving(scene, dt);
+        // A few are searched for one by one; of many, all.
+        const std::size_t few = discs.count / 16 + 8;
+        if (leaving_.size() <= few && discs.late.size() + 4 * leaving_.size() <= discs.count / 2 + 64) {
+            if (leaving_.empty()) return;
+            discs.is_stale = true;
+            finder_.find_late(scene, leaving_, dt);
+            discs.is_stale = false;
+            return;
+        }
     }
     // Should memory run out on the way, the next step searches again.
     discs.is_stale = true;
     carry_impulses(scene);
-    discs.wall_skin =
-        0.02F + static_cast<float>(fastest_wall_end(scene) * static_cast<double>(dt) * discs.horizon);
+    discs.wall_skin = 0.02F + static_cast<float>(5 * fastest_wall_end(scene) * static_cast<double>(dt));
     discs.wall_ends = wall_ends_;
     sort_into_strips(scene, dt);
     find_contacts(scene);
@@ -46,39 +47,49 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     discs.is_stale = false;
 }
 
-/// Whether two discs, or a disc and a wall, may touch in this step that were not found near each other.
-bool DiscPipeline::is_outdated(const SceneCore& scene, float dt)
+/// Whether a wall may go further in this step than the last search allowed for.
+bool DiscPipeline::have_walls_left(const SceneCore& scene, float dt) const
+{
+    const double goes = fastest_wall_end(scene) * static_cast<double>(dt);
+    for (std::size_t end = 0; end < wall_ends_.size(); ++end) {
+        const Vec2<double> went = wall_ends_[end] - scene.discs.wall_ends[end];
+        if (std::sqrt(dot(went, went)) + goes + slack > static_cast<double>(scene.discs.wall_skin))
+            return true;
+    }
+    return false;
+}
+
+/// Lists the discs that may leave their skins in this step: only these may touch others that are not near them yet.
+void DiscPipeline::list_leaving(const SceneCore& scene, float dt)
 {
     const DiscStore& discs = scene.discs;
     const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
-    if (discs.is_stale) return true;
     const double seconds = static_cast<double>(dt);
-    const double wall_goes = fastest_wall_end(scene) * seconds;
-    for (std::size_t end = 0; end < wall_ends_.size(); ++end) {
-        const Vec2<double> went = wall_ends_[end] - discs.wall_ends[end];
-        if (std::sqrt(dot(went, went)) + wall_goes + slack > static_cast<double>(discs.wall_skin))
-            return true;
-    }
-    std::atomic<bool> outdated{false};
-    const std::int64_t size = rows.size();
-    runner_.run((size + rows_per_chunk - 1) / rows_per_chunk, [&](std::int64_t chunk) {
-        if (outdated.load(std::memory_order_relaxed)) return;
-        const auto first = static_cast<std::size_t>(chunk * rows_per_chunk);
-        const auto last = static_cast<std::size_t>(std::min((chunk + 1) * rows_per_chunk, size));
-        bool any = false;
-        for (std::size_t row = first; row < last; ++row) {
+    const auto size = static_cast<std::int64_t>(std::min<std::size_t>(rows.size(), discs.anchors.size()));
+    const std::int64_t chunks = (size + rows_per_chunk - 1) / rows_per_chunk;
+    if (leaving_of_.size() < static_cast<std::size_t>(chunks))
+        leaving_of_.resize(static_cast<std::size_t>(chunks));
+    runner_.run(chunks, [&](std::int64_t chunk) {
+        std::vector<std::uint32_t>& leaving = leaving_of_[static_cast<std::size_t>(chunk)];
+        leaving.clear();
+        const auto first = static_cast<std::uint32_t>(chunk * rows_per_chunk);
+        const auto last = static_cast<std::uint32_t>(std::min((chunk + 1) * rows_per_chunk, size));
+        for (std::uint32_t row = first; row < last; ++row) {
             const DiscAnchor& anchor = discs.anchors[row];
             const Vec3<PoseReal>& at = rows.pose[row].position;
-            const double x = static_cast<double>(at.x) - discs.origin.x - static_cast<double>(anchor.x);
-            const double y = static_cast<double>(at.y) - discs.origin.y - static_cast<double>(anchor.y);
-            const float* v = &rows.velocity[4 * row];
+            const double x = static_cast<double>(at.x) - discs.frame.origin.x - static_cast<double>(anchor.x);
+            const double y = static_cast<double>(at.y) - discs.frame.origin.y - static_cast<double>(anchor.y);
+            const float* v = &rows.velocity[std::size_t{4} * row];
             const auto vx = static_cast<double>(v[0]), vy = static_cast<double>(v[1]);
             const double goes = std::sqrt(x * x + y * y) + seconds * std::sqrt(vx * vx + vy * vy) + slack;
-            any = any || !(goes <= static_cast<double>(anchor.skin));
+            if (!(goes <= static_cast<double>(anchor.skin))) leaving.push_back(row);
         }
-        if (any) outdated.store(true, std::memory_order_relaxed);
     });
-    return outdated;
+    leaving_.clear();
+    for (std::int64_t chunk = 0; chunk < chunks; ++chunk) {
+        const std::vector<std::uint32_t>& leaving = leaving_of_[static_cast<std::size_t>(chunk)];
+        leaving_.insert(leaving_.end(), leaving.begin(), leaving.end());
+    }
 }
 
 void DiscPipeline::carry_impulses(SceneCore& scene)
@@ -103,9 +114,12 @@ void DiscPipeline::sort_into_strips(SceneCore& scene, float dt)
     const std::int64_t chunks = strips.chunk_count();
     runner_.run(chunks, [&](std::int64_t chunk) { strips.measure(scene, discs, chunk); });
     strips.choose(discs);
-    runner_.run(chunks, [&](std::int64_t chunk) { strips.count(scene, discs, chunk); });
+    runner_.run(chunks, [&](std::int64_t chunk) {
+        DiscStrips::anchor(scene, chunk);
+        strips.count(scene, chunk);
+    });
     strips.open();
-    runner_.run(chunks, [&](std::int64_t chunk) { strips.place(scene, discs, chunk); });
+    runner_.run(chunks, [&](std::int64_t chunk) { strips.place(scene, chunk); });
     runner_.run(strips.group_count() + 1, [&](std::int64_t group) { strips.sort(scene, group); });
     strips.divide();
 }

@@ -14,7 +14,7 @@ class DiscPipeline {
   public:
     DiscPipeline(StageRunner& runner, Layout& layout) : runner_(runner), layout_(layout) {}
 
-    /// Before a step of dt seconds: finds contacts anew, unless those of the last search are still all there can be.
+    /// Before a step of dt seconds: finds contacts anew, or those of discs that may have new neighbours.
     void find(SceneCore& scene, float dt);
     /// Makes the rows of this step.
     void prepare(SceneCore& scene);
@@ -24,8 +24,11 @@ class DiscPipeline {
     Layout& layout_;
     DiscFinder finder_;
     std::vector<Vec2<double>> wall_ends_;  ///< now
+    std::vector<std::uint32_t> leaving_;   ///< rows of discs that may leave their skins in this step
+    std::vector<std::vector<std::uint32_t>> leaving_of_;  ///< the same by chunk of rows
 
-    [[nodiscard]] bool is_outdated(const SceneCore& scene, float dt);
+    [[nodiscard]] bool have_walls_left(const SceneCore& scene, float dt) const;
+    void list_leaving(const SceneCore& scene, float dt);
     void sort_into_strips(SceneCore& scene, float dt);
     void carry_impulses(SceneCore& scene);
     void find_contacts(SceneCore& scene);

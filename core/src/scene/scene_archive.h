@@ -155,9 +155,12 @@ struct SceneArchive {
         archive(discs.anchors);
         archive(discs.wall_ends);
         archive(discs.wall_skin);
-        archive(discs.origin);
+        archive(discs.found_at);
+        archive(discs.frame);
+        archive(discs.late);
+        archive(discs.late_reach);
+        archive(discs.late_drift);
         archive(discs.age);
-        archive(discs.horizon);
         archive(discs.is_stale);
         auto bands = static_cast<std::uint64_t>(discs.band_count);
         archive(bands);

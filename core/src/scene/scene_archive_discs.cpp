@@ -55,6 +55,27 @@ void check_walls(const SceneCore& scene)
     }
 }
 
+void check_anchors(const SceneCore& scene)
+{
+    const DiscStore& discs = scene.discs;
+    const BodyRows& planar = scene.bodies.rows(BodyKind::planar);
+    const StripFrame& frame = discs.frame;
+    demand(discs.anchors.size() >= planar.size() && discs.found_at.size() == discs.anchors.size(),
+           "discs that were not searched for");
+    demand(frame.per_metre > 0 && std::isfinite(frame.per_metre) && frame.most_reach >= 0 &&
+               frame.strips >= 1 && frame.strips <= 4 * static_cast<std::int64_t>(discs.shapes.size()) + 65 &&
+               std::isfinite(frame.origin.x) && std::isfinite(frame.origin.y),
+           "strips that nobody made");
+    for (std::size_t row = 0; row < discs.found_at.size(); ++row) {
+        for (const DiscAnchor& anchor : {discs.found_at[row], discs.anchors[row]}) {
+            if (anchor.skin == INFINITY) continue;
+            demand(row < planar.size() && is_planar_disc(scene, planar.slot[row]) && anchor.skin >= 0 &&
+                       std::isfinite(anchor.x) && std::isfinite(anchor.y),
+                   "an anchor of no disc");
+        }
+    }
+}
+
 /// No two lanes of a block may share a moving body, nor two bands that are solved at the same time.
 void check_blocks(const SceneCore& scene)
 {
@@ -112,12 +133,11 @@ void SceneArchive::check_discs(const SceneCore& scene)
     const DiscStore& discs = scene.discs;
     check_shapes(scene);
     check_walls(scene);
-    demand(discs.horizon >= 1 && discs.horizon <= 100 && discs.age >= 0, "a search of no time");
+    demand(discs.age >= 0, "a search of no time");
     // After a change, blocks may name bodies and walls that are gone: the next step searches anew before it uses them.
     if (discs.is_stale) return;
-    demand(discs.anchors.size() >= scene.bodies.rows(BodyKind::planar).size() &&
-               discs.wall_ends.size() == 2 * discs.segments.size(),
-           "discs that were not searched for");
+    check_anchors(scene);
+    demand(discs.wall_ends.size() == 2 * discs.segments.size(), "walls that were not searched for");
     check_blocks(scene);
 }
 

@@ -2,6 +2,7 @@
 #include "stores/disc_store.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace motley {
@@ -73,10 +74,19 @@ void DiscStore::forget_row(std::uint32_t row)
 void DiscStore::renumber(std::span<const std::uint32_t> new_rows)
 {
     if (anchors.empty()) return;
-    AlignedVector<DiscAnchor> moved(anchors.size());
-    for (std::size_t row = 0; row < std::min(new_rows.size(), anchors.size()); ++row)
-        moved[new_rows[row]] = anchors[row];
-    anchors = std::move(moved);
+    for (AlignedVector<DiscAnchor>* places : {&anchors, &found_at}) {
+        AlignedVector<DiscAnchor> moved(places->size(), DiscAnchor{0, 0, INFINITY});
+        for (std::size_t row = 1; row < std::min(new_rows.size(), places->size()); ++row) {
+            if (new_rows[row] != 0) moved[new_rows[row]] = (*places)[row];
+        }
+        *places = std::move(moved);
+    }
+    for (std::uint64_t& key : late) {
+        const auto row_a = static_cast<std::uint32_t>(key >> 32), row_b = static_cast<std::uint32_t>(key);
+        key = (key >> 63) != 0 ? key - row_b + new_rows[row_b] : late_key(new_rows[row_a], new_rows[row_b]);
+    }
+    std::sort(late.begin(), late.end());
+    search.reset();
     constexpr std::int32_t a_row = offsets_a_row(BodyKind::planar);
     const auto renumber_offset = [&](std::int32_t& offset) {
         offset = static_cast<std::int32_t>(new_rows[static_cast<std::size_t>(offset / a_row)]) * a_row;

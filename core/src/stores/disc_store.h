@@ -8,7 +8,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -69,11 +71,31 @@ struct DiscBand {
     std::array<DiscBlocks, disc_class_count> blocks;
 };
 
+/// How the last search of all discs laid out its strips.
+struct StripFrame {
+    Vec2<double> origin{};  ///< m, world: the low corner of all discs
+    double per_metre = 1;   ///< strips a metre
+    float most_reach = 0;   ///< m: discs that reach further are in band 0
+    std::int32_t strips = 1;
+    std::int32_t is_turned = 0;  ///< 1: strips run along y and are stacked along x
+    std::int32_t unused = 0;     ///< so that files have no undefined bytes
+};
+
 /// Where a body was when its neighbours were found, and how far it may go before they must be found again.
 struct DiscAnchor {
-    float x = 0, y = 0;  ///< m, from DiscStore::origin
-    float skin = 0;      ///< m; infinite for rows without a disc
+    float x = 0, y = 0;     ///< m, from StripFrame::origin
+    float skin = INFINITY;  ///< m; infinite for rows without a disc
 };
+
+/// Names a contact of two discs by their rows, or of a disc and a segment.
+constexpr std::uint64_t late_key(std::uint32_t row_a, std::uint32_t row_b)
+{
+    return std::uint64_t{row_a < row_b ? row_a : row_b} << 32 | (row_a < row_b ? row_b : row_a);
+}
+constexpr std::uint64_t late_wall_key(std::uint32_t row, std::uint32_t segment)
+{
+    return std::uint64_t{1} << 63 | std::uint64_t{segment} << 32 | row;
+}
 
 struct DiscStore {
     std::vector<DiscShape> shapes;   ///< by slot of the body; may be shorter than the table of slots
@@ -92,12 +114,18 @@ struct DiscStore {
     // What the last search found:
     std::vector<DiscBand> bands;  ///< the first `band_count` of them
     std::size_t band_count = 0;
-    AlignedVector<DiscAnchor> anchors;    ///< by row of planar bodies
+    AlignedVector<DiscAnchor> anchors;   ///< by row of planar bodies
+    AlignedVector<DiscAnchor> found_at;  ///< the same as of the last search of all discs
+    StripFrame frame;                    ///< of that search
+    std::shared_ptr<const char>
+        search;  ///< the same in copies for which that search is the same; null after a file
+    /// Contacts that were found since, sorted: see late_key().
+    std::vector<std::uint64_t> late;
+    float late_reach = 0;                 ///< m, the most that a disc reaches that was searched for since
+    float late_drift = 0;                 ///< m, the most that one of them is from its place in found_at
     std::vector<Vec2<double>> wall_ends;  ///< two a segment: where the ends were, world
     float wall_skin = 0;                  ///< m: how far an end may move before a new search
-    Vec2<double> origin{};                ///< m, world
     int age = 0;                          ///< steps since then
-    int horizon = 1;                      ///< steps for which that search looked ahead
     /// Whether a body, a disc or a wall was added, removed or teleported since then.
     bool is_stale = true;
 
@@ -113,6 +141,18 @@ struct DiscStore {
     }
     /// Gives a body a disc, or takes it away with radius 0. `shapes` is long enough.
     void set_shape(std::uint32_t slot, const DiscShape& shape);
+    /// Puts the anchor of a row where its body is. Anchors are floats: the skin grows by what rounding moves them.
+    void place_anchor(std::uint32_t row, const Vec3<PoseReal>& at)
+    {
+        DiscAnchor& anchor = anchors[row];
+        const double x = static_cast<double>(at.x) - frame.origin.x,
+                     y = static_cast<double>(at.y) - frame.origin.y;
+        anchor.x = static_cast<float>(x);
+        anchor.y = static_cast<float>(y);
+        const double off =
+            std::abs(x - static_cast<double>(anchor.x)) + std::abs(y - static_cast<double>(anchor.y));
+        anchor.skin += static_cast<float>(off);
+    }
     /// Counts the discs anew.
     void derive();
     /// Frees the slot and the segments of a live wall. There is room in free_walls.

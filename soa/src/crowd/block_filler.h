@@ -19,8 +19,13 @@ class BlockFiller {
     /// `bodies` - 1.
     void begin(DiscBlocks& blocks, int row_floats, int impulse_floats, std::size_t bodies)
     {
-        blocks_ = &blocks;
         blocks.count = 0;
+        go_on(blocks, row_floats, impulse_floats, bodies);
+    }
+    /// The same with new blocks behind those that there are.
+    void go_on(DiscBlocks& blocks, int row_floats, int impulse_floats, std::size_t bodies)
+    {
+        blocks_ = &blocks;
         row_floats_ = static_cast<std::size_t>(row_floats);
         impulse_floats_ = static_cast<std::size_t>(impulse_floats);
         if (masks_.size() < bodies) masks_.resize(with_room_to_grow(bodies), 0);

@@ -53,6 +53,10 @@ void DiscFinder::open(SceneCore& scene, int workers)
 {
     DiscStore& discs = scene.discs;
     workers_.resize(static_cast<std::size_t>(workers));
+    search_ = discs.search = std::make_shared<const char>('\0');
+    places_.clear();
+    discs.late.clear();
+    discs.late_reach = discs.late_drift = 0;
     discs.band_count = static_cast<std::size_t>(strips.band_count()) + 1;
     if (discs.bands.size() < discs.band_count) discs.bands.resize(discs.band_count);
     place_segments(discs);
@@ -90,17 +94,27 @@ void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
     } else if (strips.wide().empty()) {
         numbers = 0;
     }
-    for_each_disc_class([&](auto c) {
-        using Fields = DiscFieldsOf<c.value>;
-        const auto i = static_cast<std::size_t>(c.value);
-        own.fillers[i].begin(found.blocks[i], Fields::row_floats, Fields::impulse_floats, numbers);
-    });
+    begin_fillers(found, own, numbers, false);
     if (band == 0) {
         find_wide(scene, own);
     } else {
         find_in_strips(scene, band, own);
     }
     for (BlockFiller& filler : own.fillers) filler.finish();
+}
+
+void DiscFinder::begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers, bool goes_on)
+{
+    for_each_disc_class([&](auto c) {
+        using Fields = DiscFieldsOf<c.value>;
+        const auto i = static_cast<std::size_t>(c.value);
+        BlockFiller& filler = worker.fillers[i];
+        if (goes_on) {
+            filler.go_on(band.blocks[i], Fields::row_floats, Fields::impulse_floats, numbers);
+        } else {
+            filler.begin(band.blocks[i], Fields::row_floats, Fields::impulse_floats, numbers);
+        }
+    });
 }
 
 /// The pairs of a strip with itself and with the next one, in order.
@@ -136,10 +150,19 @@ void DiscFinder::list_pairs(std::int32_t strip, std::vector<Pair>& pairs) const
     pairs.resize(found);
 }
 
+/// The impulse that two discs had, if they still touch, or nearly.
+CarriedImpulses::Impulse DiscFinder::carried_of(const PlacedDisc& a, const PlacedDisc& b) const
+{
+    const double along = b.along - a.along, across = b.across - a.across;
+    const double near = static_cast<double>(a.radius + b.radius) + still_touching;
+    if (along * along + across * across >= near * near) return {};
+    return carried.of_pair(a.row, b.row);
+}
+
 /// A contact of two discs, if they may meet.
-template <class Number>
 void DiscFinder::add_pair(SceneCore& scene, DiscBand& band, Worker& worker, const PlacedDisc& a,
-                          const PlacedDisc& b, const Number& number_of) const
+                          const PlacedDisc& b, const CarriedImpulses::Impulse& impulse,
+                          std::uint32_t number_a, std::uint32_t number_b) const
 {
     DiscStore& discs = scene.discs;
     float friction = 0;
@@ -150,18 +173,12 @@ void DiscFinder::add_pair(SceneCore& scene, DiscBand& band, Worker& worker, cons
         if (!shape_a.meets(shape_b.category, shape_b.mask)) return;
         friction = friction_of(shape_a.friction, shape_b.friction);
     }
-    // Only discs that still touch, or nearly, are looked up.
-    const double along = b.along - a.along, across = b.across - a.across;
-    const double near = static_cast<double>(a.radius + b.radius) + still_touching;
-    const CarriedImpulses::Impulse impulse = along * along + across * across < near * near
-                                                 ? carried.of_pair(a.row, b.row)
-                                                 : CarriedImpulses::Impulse{};
     with_disc_class(friction > 0 ? DiscClass::rough_pair : DiscClass::smooth_pair, [&](auto c) {
         if constexpr (!is_wall(c.value)) {
             using Fields = DiscFieldsOf<c.value>;
             const auto i = static_cast<std::size_t>(c.value);
             DiscBlocks& blocks = band.blocks[i];
-            const BlockFiller::Place at = worker.fillers[i].take(number_of(a), number_of(b));
+            const BlockFiller::Place at = worker.fillers[i].take(number_a, number_b);
             blocks.bodies[at.block].a[at.lane] = offset_of(BodyRow(BodyKind::planar, a.row));
             blocks.bodies[at.block].b[at.lane] = offset_of(BodyRow(BodyKind::planar, b.row));
             typename Fields::Row row{};
@@ -182,20 +199,24 @@ void DiscFinder::add_pair(SceneCore& scene, DiscBand& band, Worker& worker, cons
     });
 }
 
+bool DiscFinder::is_near(const DiscStore& discs, const PlacedSegment& segment, const PlacedDisc& disc)
+{
+    const double near = static_cast<double>(disc.reach) + static_cast<double>(discs.wall_skin);
+    return distance2({disc.along, disc.across}, segment.from, segment.to) < near * near;
+}
+
 /// A contact of a disc with a wall, if it is near and they may meet.
-template <class Number>
 void DiscFinder::add_touch(SceneCore& scene, DiscBand& band, Worker& worker, const PlacedSegment& segment,
-                           const PlacedDisc& disc, const Number& number_of) const
+                           const PlacedDisc& disc, CarriedImpulses::Impulse impulse,
+                           std::uint32_t number) const
 {
     DiscStore& discs = scene.discs;
-    const double near = static_cast<double>(disc.reach) + static_cast<double>(discs.wall_skin);
-    if (!(distance2({disc.along, disc.across}, segment.from, segment.to) < near * near)) return;
+    if (!is_near(discs, segment, disc)) return;
     const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
     const WallSegment& wall = discs.segments[segment.index];
     const DiscShape& shape = discs.shapes[rows.slot[disc.row]];
     if (!shape.meets(wall.category, wall.mask)) return;
     const float friction = friction_of(shape.friction, wall.friction);
-    CarriedImpulses::Impulse impulse = carried.of_wall(disc.row, segment.index);
     if (impulse.side == 0) {
         const Vec2<double>& from = discs.wall_ends[2 * std::size_t{segment.index}];
         const Vec2<double>& to = discs.wall_ends[2 * std::size_t{segment.index} + 1];
@@ -208,7 +229,7 @@ void DiscFinder::add_touch(SceneCore& scene, DiscBand& band, Worker& worker, con
             using Fields = DiscFieldsOf<c.value>;
             const auto i = static_cast<std::size_t>(c.value);
             DiscBlocks& blocks = band.blocks[i];
-            const BlockFiller::Place at = worker.fillers[i].take(BlockFiller::no_body, number_of(disc));
+            const BlockFiller::Place at = worker.fillers[i].take(BlockFiller::no_body, number);
             blocks.bodies[at.block].a[at.lane] = offset_of(scene.bodies.row_of(wall.body));
             blocks.bodies[at.block].b[at.lane] = offset_of(BodyRow(BodyKind::planar, disc.row));
             grow_to(blocks.touches, block_lanes * (at.block + 1));
@@ -237,11 +258,11 @@ void DiscFinder::find_in_strips(SceneCore& scene, std::size_t band, Worker& work
     const std::int32_t last = strips.first_strip(static_cast<std::int32_t>(band));
     const std::uint32_t base = strips.first_of(first);
     const PlacedDisc* const zero = &strips.disc(base);
-    const auto number_of = [&](const PlacedDisc& disc) { return static_cast<std::uint32_t>(&disc - zero); };
     for (std::int32_t strip = first; strip < last; ++strip) {
         list_pairs(strip, worker.pairs);
         for (const Pair& pair : worker.pairs)
-            add_pair(scene, found, worker, strips.disc(pair.a), strips.disc(pair.b), number_of);
+            add_pair(scene, found, worker, strips.disc(pair.a), strips.disc(pair.b),
+                     carried_of(strips.disc(pair.a), strips.disc(pair.b)), pair.a - base, pair.b - base);
     }
     const double skin = static_cast<double>(scene.discs.wall_skin);
     const double reach = static_cast<double>(strips.most_reach()) + skin;
@@ -256,7 +277,8 @@ void DiscFinder::find_in_strips(SceneCore& scene, std::size_t band, Worker& work
             auto disc = std::lower_bound(discs.begin(), discs.end(), near.low - reach,
                                          [](const PlacedDisc& d, double along) { return d.along < along; });
             for (; disc != discs.end() && disc->along <= near.high + reach; ++disc)
-                add_touch(scene, found, worker, segment, *disc, number_of);
+                add_touch(scene, found, worker, segment, *disc, carried.of_wall(disc->row, segment.index),
+                          static_cast<std::uint32_t>(&*disc - zero));
         }
     }
 }
@@ -265,7 +287,6 @@ void DiscFinder::find_in_strips(SceneCore& scene, std::size_t band, Worker& work
 void DiscFinder::find_wide(SceneCore& scene, Worker& worker)
 {
     DiscBand& found = scene.discs.bands[0];
-    const auto number_of = [](const PlacedDisc& disc) { return disc.row; };
     const std::span<const PlacedDisc> wide = strips.wide();
     for (std::size_t w = 0; w < wide.size(); ++w) {
         const PlacedDisc& me = wide[w];
@@ -273,7 +294,7 @@ void DiscFinder::find_wide(SceneCore& scene, Worker& worker)
             const double along = other.along - me.along, across = other.across - me.across;
             const double near = static_cast<double>(other.reach + me.reach);
             if (along * along + across * across < near * near)
-                add_pair(scene, found, worker, me, other, number_of);
+                add_pair(scene, found, worker, me, other, carried_of(me, other), me.row, other.row);
         };
         for (std::size_t v = w + 1; v < wide.size(); ++v) try_pair(wide[v]);
         const double reach = static_cast<double>(me.reach) + static_cast<double>(strips.most_reach());
@@ -285,7 +306,7 @@ void DiscFinder::find_wide(SceneCore& scene, Worker& worker)
             for (; disc != discs.end() && disc->along <= me.along + reach; ++disc) try_pair(*disc);
         }
         for (const PlacedSegment& segment : segments_[0])
-            add_touch(scene, found, worker, segment, me, number_of);
+            add_touch(scene, found, worker, segment, me, carried.of_wall(me.row, segment.index), me.row);
     }
 }
 

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "crowd/block_filler.h"
@@ -20,6 +22,9 @@ class DiscFinder {
     void open(SceneCore& scene, int workers);
     /// ...and every band is found; band 0 has the contacts of discs that reach far.
     void find(SceneCore& scene, std::size_t band, int worker);
+    /// Between searches of all discs: gives the discs in these rows of planar bodies new anchors and skins, and adds
+    /// the contacts that they may have now to band 0. The rows may be in any order; they are sorted.
+    void find_late(SceneCore& scene, std::span<std::uint32_t> rows, float dt);
 
   private:
     struct Pair {
@@ -29,6 +34,11 @@ class DiscFinder {
         std::vector<Pair> pairs;
         std::array<BlockFiller, disc_class_count> fillers;
     };
+    /// Names the search of which the strips are, and the place of each row in them.
+    std::shared_ptr<const char> search_;
+    std::vector<std::uint32_t> places_;
+    std::vector<std::uint64_t> fresh_;  ///< contacts that find_late() has added
+    std::vector<std::uint8_t> is_new_;  ///< by row: it has a new anchor in this call of find_late()
     struct PlacedSegment {
         Vec2<double> from, to;  ///< in the frame of the strips
         std::uint32_t index;
@@ -37,15 +47,24 @@ class DiscFinder {
     std::vector<std::vector<PlacedSegment>> segments_;  ///< by band
 
     void place_segments(const DiscStore& discs);
+    void make_strips_of(SceneCore& scene);
+    void begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers, bool goes_on);
+    void find_late_of(SceneCore& scene, std::uint32_t row, float dt);
+    void find_late_pairs(SceneCore& scene, const PlacedDisc& me);
+    void find_late_walls(SceneCore& scene, const PlacedDisc& me);
+    [[nodiscard]] bool is_listed(const DiscStore& discs, std::uint64_t key, bool may_be_fresh) const;
+    /// The band of a strip, counted from 1.
+    [[nodiscard]] std::size_t band_of(std::int32_t strip) const;
     void find_in_strips(SceneCore& scene, std::size_t band, Worker& worker);
     void find_wide(SceneCore& scene, Worker& worker);
     void list_pairs(std::int32_t strip, std::vector<Pair>& pairs) const;
-    template <class Number>
     void add_pair(SceneCore& scene, DiscBand& band, Worker& worker, const PlacedDisc& a, const PlacedDisc& b,
-                  const Number& number_of) const;
-    template <class Number>
+                  const CarriedImpulses::Impulse& impulse, std::uint32_t number_a,
+                  std::uint32_t number_b) const;
     void add_touch(SceneCore& scene, DiscBand& band, Worker& worker, const PlacedSegment& segment,
-                   const PlacedDisc& disc, const Number& number_of) const;
+                   const PlacedDisc& disc, CarriedImpulses::Impulse impulse, std::uint32_t number) const;
+    static bool is_near(const DiscStore& discs, const PlacedSegment& segment, const PlacedDisc& disc);
+    [[nodiscard]] CarriedImpulses::Impulse carried_of(const PlacedDisc& a, const PlacedDisc& b) const;
 };
 
 /// Where the ends of the segments of walls are now, world, two a segment.

@@ -11,7 +11,9 @@ namespace motley {
 namespace {
 
 /// m: a disc at rest may go so far before its neighbours are found again.
-constexpr float skin_at_rest = 0.03F;
+constexpr float skin_at_rest = 0.02F;
+/// Steps for which a search looks ahead, at the speed that a disc has.
+constexpr double steps_ahead = 5;
 /// People of a band: few enough for a core's first cache, and enough that blocks are full.
 constexpr std::uint32_t discs_per_band = 512;
 
@@ -29,26 +31,32 @@ float DiscStrips::upper_end_of(int bucket)
     return std::bit_cast<float>(static_cast<std::uint32_t>(bucket + 1 + ((127 - 20) << 3)) << 20);
 }
 
+float DiscStrips::skin_of(const float* v, float dt)
+{
+    const auto x = static_cast<double>(v[0]), y = static_cast<double>(v[1]);
+    const double goes = std::sqrt(x * x + y * y) * static_cast<double>(dt) * steps_ahead;
+    return skin_at_rest + static_cast<float>(std::min(goes, 1e9));
+}
+
 void DiscStrips::begin(SceneCore& scene, float dt)
 {
-    const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
-    DiscStore& discs = scene.discs;
-    steps_ = static_cast<double>(dt) * discs.horizon;
-    chunks_ = (std::int64_t{rows.size()} + rows_per_chunk - 1) / rows_per_chunk;
+    const std::uint32_t rows = scene.bodies.rows(BodyKind::planar).size();
+    dt_ = dt;
+    chunks_ = (std::int64_t{rows} + rows_per_chunk - 1) / rows_per_chunk;
     measured_.resize(static_cast<std::size_t>(chunks_));
-    grow_to(discs.anchors, rows.size());
+    grow_to(scene.discs.anchors, rows);
+    scene.discs.found_at.resize(scene.discs.anchors.size());
 }
 
 template <class Work>
-void DiscStrips::for_each_disc(const SceneCore& scene, const DiscStore& discs, std::int64_t chunk,
-                               const Work& work) const
+void DiscStrips::for_each_disc(const SceneCore& scene, std::int64_t chunk, const Work& work)
 {
     const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
     const auto first = static_cast<std::uint32_t>(chunk * rows_per_chunk);
     const auto last =
         static_cast<std::uint32_t>(std::min<std::int64_t>((chunk + 1) * rows_per_chunk, rows.size()));
     for (std::uint32_t row = first; row < last; ++row) {
-        if (discs.anchors[row].skin < INFINITY) work(row, rows);
+        if (scene.discs.found_at[row].skin < INFINITY) work(row, rows);
     }
 }
 
@@ -63,13 +71,12 @@ void DiscStrips::measure(const SceneCore& scene, DiscStore& discs, std::int64_t 
     for (std::uint32_t row = first; row < last; ++row) {
         DiscAnchor& anchor = discs.anchors[row];
         anchor.skin = INFINITY;
+        discs.found_at[row] = anchor;
         const std::uint32_t slot = rows.slot[row];
         const DiscShape* shape = slot == 0 ? nullptr : discs.shape_of(slot);
         if (shape == nullptr || bodies.contained[slot] != 0) continue;
-        const float* v = &rows.velocity[std::size_t{4} * row];
-        const double speed = std::sqrt(static_cast<double>(v[0]) * static_cast<double>(v[0]) +
-                                       static_cast<double>(v[1]) * static_cast<double>(v[1]));
-        anchor.skin = skin_at_rest + static_cast<float>(std::min(speed * steps_, 1e9));
+        anchor.skin = skin_of(&rows.velocity[std::size_t{4} * row], dt_);
+        discs.found_at[row] = anchor;
         const Vec3<PoseReal>& at = rows.pose[row].position;
         const auto x = static_cast<double>(at.x), y = static_cast<double>(at.y);
         m.low = {std::min(m.low.x, x), std::min(m.low.y, y)};
@@ -98,14 +105,20 @@ void DiscStrips::choose(DiscStore& discs)
         above += all.reaches[static_cast<std::size_t>(bucket)];
         if (above * one_in > discs_) break;
     }
-    most_reach_ = upper_end_of(bucket);
-    low_ = discs.origin = all.low;
-    is_turned_ = all.high.x - all.low.x > all.high.y - all.low.y;
-    const double extent = is_turned_ ? all.high.x - all.low.x : all.high.y - all.low.y;
+    const bool is_turned = all.high.x - all.low.x > all.high.y - all.low.y;
+    const double extent = is_turned ? all.high.x - all.low.x : all.high.y - all.low.y;
     const double most_strips = std::min(4.0 * static_cast<double>(discs_) + 64, 1e7);
-    const double width = std::max(2.0001 * static_cast<double>(most_reach_), extent / most_strips);
-    per_metre_ = 1 / width;
-    strips_ = static_cast<std::int32_t>(extent * per_metre_) + 1;
+    const float most_reach = upper_end_of(bucket);
+    const double per_metre = 1 / std::max(2.0001 * static_cast<double>(most_reach), extent / most_strips);
+    frame_ = {all.low, per_metre, most_reach, static_cast<std::int32_t>(extent * per_metre) + 1,
+              is_turned ? 1 : 0};
+    discs.frame = frame_;
+    make_room();
+}
+
+void DiscStrips::make_room()
+{
+    strips_ = frame_.strips;
     strips_per_group_ = (strips_ + most_groups - 1) / most_groups;
     groups_ = (strips_ + strips_per_group_ - 1) / strips_per_group_;
     places_.assign(static_cast<std::size_t>(chunks_) * static_cast<std::size_t>(groups_ + 1), 0);
@@ -116,17 +129,39 @@ void DiscStrips::choose(DiscStore& discs)
     first_.resize(static_cast<std::size_t>(strips_) + 1);
 }
 
-void DiscStrips::count(const SceneCore& scene, DiscStore& discs, std::int64_t chunk)
+void DiscStrips::restore(const SceneCore& scene)
+{
+    const DiscStore& discs = scene.discs;
+    const std::uint32_t rows = scene.bodies.rows(BodyKind::planar).size();
+    chunks_ = (std::int64_t{rows} + rows_per_chunk - 1) / rows_per_chunk;
+    discs_ = std::count_if(discs.found_at.begin(), discs.found_at.begin() + rows,
+                           [](const DiscAnchor& anchor) { return anchor.skin < INFINITY; });
+    frame_ = discs.frame;
+    make_room();
+    for (std::int64_t chunk = 0; chunk < chunks_; ++chunk) count(scene, chunk);
+    open();
+    for (std::int64_t chunk = 0; chunk < chunks_; ++chunk) place(scene, chunk);
+    for (std::int64_t group = 0; group <= groups_; ++group) sort(scene, group);
+    divide();
+}
+
+/// The anchor is a float; the skin grows by what rounding moves it.
+void DiscStrips::anchor(SceneCore& scene, std::int64_t chunk)
+{
+    for_each_disc(scene, chunk, [&](std::uint32_t row, const BodyRows& rows) {
+        scene.discs.place_anchor(row, rows.pose[row].position);
+        scene.discs.found_at[row] = scene.discs.anchors[row];
+    });
+}
+
+void DiscStrips::count(const SceneCore& scene, std::int64_t chunk)
 {
     std::uint32_t* places = &places_[static_cast<std::size_t>(chunk * (groups_ + 1))];
-    for_each_disc(scene, discs, chunk, [&](std::uint32_t row, const BodyRows& rows) {
-        const Vec3<PoseReal>& at = rows.pose[row].position;
-        const Vec2<double> world{static_cast<double>(at.x), static_cast<double>(at.y)};
-        const float reach = discs.shapes[rows.slot[row]].radius + discs.anchors[row].skin;
-        ++places[group_of(to_strips(world).y, reach)];
-        const Vec2<double> from_origin = world - low_;
-        discs.anchors[row].x = static_cast<float>(from_origin.x);
-        discs.anchors[row].y = static_cast<float>(from_origin.y);
+    const DiscStore& discs = scene.discs;
+    for_each_disc(scene, chunk, [&](std::uint32_t row, const BodyRows& rows) {
+        const DiscAnchor& anchor = discs.found_at[row];
+        const float reach = discs.shapes[rows.slot[row]].radius + anchor.skin;
+        ++places[group_of(to_strips(anchor).y, reach)];
     });
 }
 
@@ -141,13 +176,14 @@ void DiscStrips::open()
     first_in_group_[static_cast<std::size_t>(groups_) + 1] = next;
 }
 
-void DiscStrips::place(const SceneCore& scene, const DiscStore& discs, std::int64_t chunk)
+void DiscStrips::place(const SceneCore& scene, std::int64_t chunk)
 {
     std::uint32_t* places = &places_[static_cast<std::size_t>(chunk * (groups_ + 1))];
-    for_each_disc(scene, discs, chunk, [&](std::uint32_t row, const BodyRows& rows) {
-        const Vec3<PoseReal>& position = rows.pose[row].position;
-        const Vec2<double> at = to_strips({static_cast<double>(position.x), static_cast<double>(position.y)});
-        const float radius = discs.shapes[rows.slot[row]].radius, reach = radius + discs.anchors[row].skin;
+    const DiscStore& discs = scene.discs;
+    for_each_disc(scene, chunk, [&](std::uint32_t row, const BodyRows& rows) {
+        const DiscAnchor& anchor = discs.found_at[row];
+        const Vec2<double> at = to_strips(anchor);
+        const float radius = discs.shapes[rows.slot[row]].radius, reach = radius + anchor.skin;
         placed_[places[group_of(at.y, reach)]++] = {
             at.x, at.y, reach, radius, rows.velocity[std::size_t{4} * row + 3], row};
     });

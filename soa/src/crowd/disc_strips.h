@@ -29,17 +29,23 @@ struct PlacedDisc {
 
 class DiscStrips {
   public:
-    /// Starts over. Then, chunk by chunk on any threads, measure(); then choose(); then count() of every chunk; then
-    /// open(); then place() of every chunk; then sort() of every group; then divide().
+    /// Starts over. Then, chunk by chunk on any threads, measure(); then choose(); then anchor() and count() of every
+    /// chunk; then open(); then place() of every chunk; then sort() of every group; then divide().
     void begin(SceneCore& scene, float dt);
+    /// Makes the strips of the last search of all discs once more, on this thread.
+    void restore(const SceneCore& scene);
+    /// How far a disc with velocity `v` may go before it is searched for again, m, in steps of dt.
+    static float skin_of(const float* v, float dt);
     [[nodiscard]] std::int64_t chunk_count() const { return chunks_; }
     /// How far each disc of a chunk of rows may reach before the next search; writes the skins of the anchors.
     void measure(const SceneCore& scene, DiscStore& discs, std::int64_t chunk);
     void choose(DiscStore& discs);
-    /// Counts the discs of each group, and writes the places of the anchors.
-    void count(const SceneCore& scene, DiscStore& discs, std::int64_t chunk);
+    /// Writes the places of the anchors.
+    static void anchor(SceneCore& scene, std::int64_t chunk);
+    /// Counts the discs of each group.
+    void count(const SceneCore& scene, std::int64_t chunk);
     void open();
-    void place(const SceneCore& scene, const DiscStore& discs, std::int64_t chunk);
+    void place(const SceneCore& scene, std::int64_t chunk);
     [[nodiscard]] std::int64_t group_count() const { return groups_; }
     void sort(const SceneCore& scene, std::int64_t group);
     /// Divides the strips into bands of about this many discs.
@@ -61,7 +67,7 @@ class DiscStrips {
         return std::span(sorted_).subspan(first_[static_cast<std::size_t>(strips_)]);
     }
     /// The most that a disc in a strip reaches, m.
-    [[nodiscard]] float most_reach() const { return most_reach_; }
+    [[nodiscard]] float most_reach() const { return frame_.most_reach; }
     /// The number of bands, and the first strip of each, and one past the last.
     [[nodiscard]] std::int32_t band_count() const
     {
@@ -74,17 +80,25 @@ class DiscStrips {
     /// The strip of a place across the strips, m; also for places beyond the first and last one.
     [[nodiscard]] std::int32_t strip_at(double across) const
     {
-        const double s = across * per_metre_;
+        const double s = across * frame_.per_metre;
         return s <= 0 ? 0 : s >= strips_ - 1 ? strips_ - 1 : static_cast<std::int32_t>(s);
     }
     /// Where a strip begins across the strips, m.
-    [[nodiscard]] double low_edge_of(std::int32_t s) const { return static_cast<double>(s) / per_metre_; }
+    [[nodiscard]] double low_edge_of(std::int32_t s) const
+    {
+        return static_cast<double>(s) / frame_.per_metre;
+    }
     /// From the world into the frame of the strips, x along and y across.
     [[nodiscard]] Vec2<double> to_strips(const Vec2<double>& world) const
     {
-        const Vec2<double> at = world - low_;
-        return is_turned_ ? Vec2<double>{at.y, at.x} : at;
+        return turned(world - frame_.origin);
     }
+    [[nodiscard]] Vec2<double> to_strips(const DiscAnchor& anchor) const
+    {
+        return turned({static_cast<double>(anchor.x), static_cast<double>(anchor.y)});
+    }
+    /// All discs in order, the wide ones last.
+    [[nodiscard]] std::span<const PlacedDisc> discs() const { return sorted_; }
 
   private:
     static constexpr std::int64_t rows_per_chunk = 1024;
@@ -98,11 +112,8 @@ class DiscStrips {
     };
     std::vector<Measured> measured_;  ///< by chunk
     std::int64_t chunks_ = 0;
-    double steps_ = 0;  ///< s for which the search looks ahead
-    Vec2<double> low_{};
-    bool is_turned_ = false;  ///< strips run along y and are stacked along x
-    double per_metre_ = 1;
-    float most_reach_ = 0;
+    float dt_ = 0;
+    StripFrame frame_;
     std::int64_t discs_ = 0;
     std::int32_t strips_ = 1, groups_ = 1, strips_per_group_ = 1;
     std::vector<std::uint32_t>
@@ -114,11 +125,15 @@ class DiscStrips {
     std::vector<std::int32_t> band_strips_;
 
     template <class Work>
-    void for_each_disc(const SceneCore& scene, const DiscStore& discs, std::int64_t chunk,
-                       const Work& work) const;
+    static void for_each_disc(const SceneCore& scene, std::int64_t chunk, const Work& work);
+    void make_room();
+    [[nodiscard]] Vec2<double> turned(const Vec2<double>& at) const
+    {
+        return frame_.is_turned != 0 ? Vec2<double>{at.y, at.x} : at;
+    }
     [[nodiscard]] std::int32_t group_of(double across, float reach) const
     {
-        return reach > most_reach_ ? groups_ : strip_at(across) / strips_per_group_;
+        return reach > frame_.most_reach ? groups_ : strip_at(across) / strips_per_group_;
     }
     [[nodiscard]] static int bucket_of(float reach);
     [[nodiscard]] static float upper_end_of(int bucket);
