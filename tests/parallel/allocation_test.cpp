@@ -6,6 +6,7 @@
 #include <new>
 
 #include "allocator.h"
+#include "disc_crowd.h"
 #include "lattice_crowd.h"
 #include "mixed_scene.h"
 
@@ -92,6 +93,18 @@ long allocations_of_patches(int threads)
     return allocations - before;
 }
 
+/// The same for discs that jostle, so that some leave their skins, and all are searched for again several times.
+long allocations_of_discs(int threads)
+{
+    testing::DiscCrowd crowd({.people = 3000, .friction = 0.2F, .speed = 1});
+    crowd.pull_together(100);
+    Solver solver(SolverSettings{}, {.threads = threads, .alone_below = 0});
+    for (int step = 0; step < 400; ++step) solver.step(crowd.scene, 1.0F / 60);
+    const long before = allocations;
+    for (int step = 0; step < 60; ++step) solver.step(crowd.scene, 1.0F / 60);
+    return allocations - before;
+}
+
 /// The same for steps in which every contact has a new key.
 long allocations_of_new_contacts()
 {
@@ -171,6 +184,11 @@ TEST(Allocation, WarmFiguresAllocateNothing)
 TEST(Allocation, AWarmStepThatMeasuresAndStopsIslandsAllocatesNothing)
 {
     EXPECT_EQ(allocations_of_warm_steps(2, 1e-3F), 0);
+}
+
+TEST(Allocation, WarmDiscsAllocateNothing)
+{
+    for (const int threads : {1, 2}) EXPECT_EQ(allocations_of_discs(threads), 0) << threads << " threads";
 }
 
 TEST(Allocation, AWarmStepInPatchesAllocatesNothing)

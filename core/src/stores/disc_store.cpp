@@ -86,7 +86,7 @@ void DiscStore::renumber(std::span<const std::uint32_t> new_rows)
         key = (key >> 63) != 0 ? key - row_b + new_rows[row_b] : late_key(new_rows[row_a], new_rows[row_b]);
     }
     std::sort(late.begin(), late.end());
-    search.reset();
+    searcher.reset();
     constexpr std::int32_t a_row = offsets_a_row(BodyKind::planar);
     const auto renumber_offset = [&](std::int32_t& offset) {
         offset = static_cast<std::int32_t>(new_rows[static_cast<std::size_t>(offset / a_row)]) * a_row;

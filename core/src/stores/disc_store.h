@@ -16,6 +16,7 @@
 
 #include "motley/core/crowd.h"
 #include "stores/aligned_vector.h"
+#include "stores/disc_class.h"
 #include "stores/lane_block.h"
 
 namespace motley {
@@ -45,18 +46,6 @@ struct WallTouch {
     float side =
         1;  ///< 1: the disc is to the left of the segment as it runs from `from` to `to`; -1: to the right
 };
-
-/// What contacts are solved as, in the order in which a sweep visits them.
-enum class DiscClass : std::uint8_t { smooth_pair, rough_pair, smooth_wall, rough_wall };
-inline constexpr int disc_class_count = 4;
-constexpr bool is_wall(DiscClass c)
-{
-    return c == DiscClass::smooth_wall || c == DiscClass::rough_wall;
-}
-constexpr bool is_rough(DiscClass c)
-{
-    return c == DiscClass::rough_pair || c == DiscClass::rough_wall;
-}
 
 /// The contacts of one class in one band. The vectors may be longer than `count` blocks.
 struct DiscBlocks {
@@ -117,8 +106,9 @@ struct DiscStore {
     AlignedVector<DiscAnchor> anchors;   ///< by row of planar bodies
     AlignedVector<DiscAnchor> found_at;  ///< the same as of the last search of all discs
     StripFrame frame;                    ///< of that search
-    std::shared_ptr<const char>
-        search;  ///< the same in copies for which that search is the same; null after a file
+    /// Who made that search, and its number there; nobody after a file or a renumbering.
+    std::shared_ptr<const char> searcher;
+    std::uint64_t search = 0;
     /// Contacts that were found since, sorted: see late_key().
     std::vector<std::uint64_t> late;
     float late_reach = 0;                 ///< m, the most that a disc reaches that was searched for since

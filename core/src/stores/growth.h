@@ -18,6 +18,13 @@ void grow_to(Vector& values, std::size_t size)
 {
     if (values.size() < size) values.resize(with_room_to_grow(size));
 }
+/// values.assign(size, value), with room to grow.
+template <class Vector>
+void assign_with_room(Vector& values, std::size_t size, const typename Vector::value_type& value)
+{
+    if (values.capacity() < size) values.reserve(with_room_to_grow(size));
+    values.assign(size, value);
+}
 /// Reserves room for `more` elements, so that adding them cannot fail half-way. At least doubles the capacity when it
 /// is too small, so that repeated calls stay cheap.
 template <class Vector>

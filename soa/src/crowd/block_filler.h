@@ -106,11 +106,15 @@ class BlockFiller {
     {
         const auto block = static_cast<std::size_t>(blocks_->count++);
         const std::size_t rows = row_floats_ * block_lanes, impulses = impulse_floats_ * block_lanes;
-        grow_to(blocks_->bodies, block + 1);
-        grow_to(blocks_->lanes, block + 1);
-        grow_to(blocks_->rows, (block + 1) * rows);
-        grow_to(blocks_->impulses, (block + 1) * impulses);
-        grow_to(blocks_->sums, (block + 1) * impulses);
+        // Twice the room, because a band that is searched for again has a few blocks more or less than before.
+        if (blocks_->lanes.size() <= block) {
+            const std::size_t room = 2 * (block + 4);
+            blocks_->bodies.resize(room);
+            blocks_->rows.resize(room * rows);
+            blocks_->impulses.resize(room * impulses);
+            blocks_->sums.resize(room * impulses);
+            blocks_->lanes.resize(room);
+        }
         blocks_->bodies[block] = {};
         blocks_->lanes[block] = 0;
         std::memset(&blocks_->rows[block * rows], 0, rows * sizeof(float));

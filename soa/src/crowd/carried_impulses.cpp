@@ -11,8 +11,8 @@ namespace motley {
 
 void CarriedImpulses::begin(const SceneCore& scene)
 {
-    heads_.assign(scene.bodies.rows(BodyKind::planar).size(), none);
-    places_.assign(scene.discs.band_count, 0);
+    assign_with_room(heads_, scene.bodies.rows(BodyKind::planar).size(), none);
+    assign_with_room(places_, scene.discs.band_count, 0);
 }
 
 /// Calls work(row, other, impulse) for each contact that pushed, and for each wall.

@@ -53,8 +53,7 @@ void DiscFinder::open(SceneCore& scene, int workers)
 {
     DiscStore& discs = scene.discs;
     workers_.resize(static_cast<std::size_t>(workers));
-    search_ = discs.search = std::make_shared<const char>('\0');
-    places_.clear();
+    name_search(discs);
     discs.late.clear();
     discs.late_reach = discs.late_drift = 0;
     discs.band_count = static_cast<std::size_t>(strips.band_count()) + 1;

@@ -34,11 +34,12 @@ class DiscFinder {
         std::vector<Pair> pairs;
         std::array<BlockFiller, disc_class_count> fillers;
     };
-    /// Names the search of which the strips are, and the place of each row in them.
-    std::shared_ptr<const char> search_;
-    std::vector<std::uint32_t> places_;
-    std::vector<std::uint64_t> fresh_;  ///< contacts that find_late() has added
-    std::vector<std::uint8_t> is_new_;  ///< by row: it has a new anchor in this call of find_late()
+    std::shared_ptr<const char> self_ =
+        std::make_shared<const char>('\0');  ///< its address names this finder
+    std::uint64_t searches_ = 0;             ///< the last one is that of the strips
+    std::vector<std::uint32_t> places_;      ///< of each row in the strips; empty until they are asked for
+    std::vector<std::uint64_t> fresh_;       ///< contacts that find_late() has added
+    std::vector<std::uint8_t> is_new_;       ///< by row: it has a new anchor in this call of find_late()
     struct PlacedSegment {
         Vec2<double> from, to;  ///< in the frame of the strips
         std::uint32_t index;
@@ -47,6 +48,7 @@ class DiscFinder {
     std::vector<std::vector<PlacedSegment>> segments_;  ///< by band
 
     void place_segments(const DiscStore& discs);
+    void name_search(DiscStore& discs);
     void make_strips_of(SceneCore& scene);
     void begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers, bool goes_on);
     void find_late_of(SceneCore& scene, std::uint32_t row, float dt);

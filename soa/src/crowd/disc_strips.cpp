@@ -121,7 +121,7 @@ void DiscStrips::make_room()
     strips_ = frame_.strips;
     strips_per_group_ = (strips_ + most_groups - 1) / most_groups;
     groups_ = (strips_ + strips_per_group_ - 1) / strips_per_group_;
-    places_.assign(static_cast<std::size_t>(chunks_) * static_cast<std::size_t>(groups_ + 1), 0);
+    assign_with_room(places_, static_cast<std::size_t>(chunks_) * static_cast<std::size_t>(groups_ + 1), 0);
     first_in_group_.resize(static_cast<std::size_t>(groups_) + 2);
     grow_to(starts_, static_cast<std::size_t>(groups_));
     grow_to(placed_, static_cast<std::size_t>(discs_));
@@ -228,7 +228,7 @@ void DiscStrips::sort(const SceneCore& scene, std::int64_t group)
         return static_cast<std::size_t>((strip_at(disc.across) - first_strip) * bins + bin);
     };
     std::vector<std::uint32_t>& starts = starts_[static_cast<std::size_t>(group)];
-    starts.assign(static_cast<std::size_t>(strips * bins) + 1, 0);
+    assign_with_room(starts, static_cast<std::size_t>(strips * bins) + 1, 0);
     for (const PlacedDisc& disc : discs) ++starts[bin_of(disc) + 1];
     starts[0] = begin;
     for (std::size_t b = 1; b < starts.size(); ++b) starts[b] += starts[b - 1];

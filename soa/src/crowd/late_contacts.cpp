@@ -18,18 +18,34 @@ bool are_near(const Vec2<double>& p, const Vec2<double>& q, float near)
     return along * along + across * across < distance * distance;
 }
 
+/// Merges a sorted list into another one, from the back, in place.
+void merge_into(std::vector<std::uint64_t>& all, const std::vector<std::uint64_t>& more)
+{
+    std::size_t left = all.size(), take = more.size();
+    make_room_for(all, take);
+    all.resize(left + take);
+    for (std::size_t to = all.size(); take > 0;)
+        all[--to] = left > 0 && all[left - 1] > more[take - 1] ? all[--left] : more[--take];
+}
+
 }  // namespace
+
+/// Notes that the strips are those of the scene's last search of all discs.
+void DiscFinder::name_search(DiscStore& discs)
+{
+    discs.searcher = self_;
+    discs.search = ++searches_;
+    places_.clear();
+}
 
 /// Makes the strips of the scene's last search of all discs, unless they are those that are there.
 void DiscFinder::make_strips_of(SceneCore& scene)
 {
     DiscStore& discs = scene.discs;
-    if (discs.search == nullptr || search_ != discs.search) {
+    if (discs.searcher != self_ || discs.search != searches_) {
         strips.restore(scene);
         place_segments(discs);
-        if (discs.search == nullptr) discs.search = std::make_shared<const char>('\0');
-        search_ = discs.search;
-        places_.clear();
+        name_search(discs);
     }
     if (workers_.empty()) workers_.resize(1);
     const std::size_t rows = scene.bodies.rows(BodyKind::planar).size();
@@ -52,10 +68,8 @@ void DiscFinder::find_late(SceneCore& scene, std::span<std::uint32_t> rows, floa
     for (const std::uint32_t row : rows) find_late_of(scene, row, dt);
     for (BlockFiller& filler : workers_[0].fillers) filler.finish();
     for (const std::uint32_t row : rows) is_new_[row] = 0;
-    const auto before = static_cast<std::ptrdiff_t>(discs.late.size());
     std::sort(fresh_.begin(), fresh_.end());
-    discs.late.insert(discs.late.end(), fresh_.begin(), fresh_.end());
-    std::inplace_merge(discs.late.begin(), discs.late.begin() + before, discs.late.end());
+    merge_into(discs.late, fresh_);
 }
 
 void DiscFinder::find_late_of(SceneCore& scene, std::uint32_t row, float dt)

@@ -10,7 +10,7 @@
 #include "maths/step_constants.h"
 #include "motley/soa/isa.h"
 #include "scene/joint_pose.h"
-#include "stores/disc_store.h"
+#include "stores/disc_class.h"
 #include "stores/lane_block.h"
 
 namespace motley {

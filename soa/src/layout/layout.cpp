@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "stores/disc_store.h"
 #include "stores/growth.h"
 #include "stores/joint_store.h"
 
