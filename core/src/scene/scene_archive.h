@@ -161,10 +161,13 @@ struct SceneArchive {
         archive(discs.late_reach);
         archive(discs.late_drift);
         archive(discs.age);
-        archive(discs.is_stale);
+        auto is_stale = static_cast<std::uint8_t>(discs.is_stale);
+        archive(is_stale);
         auto bands = static_cast<std::uint64_t>(discs.band_count);
         archive(bands);
         if constexpr (Archive::reads) {
+            if (is_stale > 1) throw std::runtime_error("has discs that are neither found nor not");
+            discs.is_stale = is_stale != 0;
             if (bands > discs.anchors.size() + 2) throw std::runtime_error("has more bands than discs");
             discs.band_count = static_cast<std::size_t>(bands);
             discs.bands.resize(discs.band_count);
