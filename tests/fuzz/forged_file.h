@@ -61,7 +61,7 @@ void add_one_of_each(Scene& scene, BodyId a, BodyId b, TypeList<Types...>)
 }
 
 /// A scene some steps old that has something of everything that a file holds: each body model and type of joint,
-/// figures in lockstep, requested iterations, break limits, contacts, and slots that removed bodies and joints have
+/// discs and walls, figures in lockstep, requested iterations, break limits, contacts, and slots that removed bodies and joints have
 /// left free.
 inline StepProblem seed_problem()
 {
@@ -86,6 +86,13 @@ inline StepProblem seed_problem()
     scene.set_iterations(rope, 3);
     scene.set_island_iterations(other, 2);
     scene.set_user_data(other, 5);
+    const BodyId neighbour = scene.add_body({.model = BodyModel::planar, .position = {1.3, 0.1, 0}});
+    scene.set_disc(bodies[1], {.radius = 0.2F});
+    scene.set_disc(neighbour, {.radius = 0.2F, .friction = 0.5F});
+    const Vec2<double> ends[] = {{-2, -0.1}, {3, -0.1}};
+    scene.remove_wall(scene.add_wall({.points = ends}));
+    scene.add_wall({.points = ends, .friction = 0.3F});
+    scene.add_wall({.points = ends, .body = bodies[4]});
     scene.remove_joint(gone);
     scene.remove_body(bodies[3]);
     Figure figure;

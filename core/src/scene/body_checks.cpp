@@ -132,4 +132,24 @@ void check_definition(const BodyDefinition& d)
     check_mass("BodyDefinition", d.model, d.mass, d.inertia);
 }
 
+void check_disc(const DiscDefinition& disc)
+{
+    check("DiscDefinition.radius", disc.radius, 1e-6, 1e6, "1e-6 to 1e6 (m)");
+    check("DiscDefinition.friction", disc.friction, 0, 1e9, "0 to 1e9");
+}
+
+void check_segment(const char* name, const Vec2<double>& from, const Vec2<double>& to)
+{
+    constexpr double shortest = 1e-6;  // m
+    check_position(name, {from.x, from.y, 0});
+    const Vec2<double> along = to - from;
+    if (dot(along, along) < shortest * shortest)
+        refuse(name, "at the next point", "neighbours at least 1e-6 m apart");
+}
+
+void check_wall_friction(float friction)
+{
+    check("WallDefinition.friction", friction, 0, 1e9, "0 to 1e9");
+}
+
 }  // namespace motley

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "motley/core/body.h"
+#include "motley/core/crowd.h"
 
 namespace motley {
 
@@ -24,5 +25,9 @@ void check_inertia(const char* who, const Sym3<float>& inertia);
 /// `who`.mass, and of `who`.inertia what the model has.
 void check_mass(const char* who, BodyModel model, float mass, const Sym3<float>& inertia);
 void check_definition(const BodyDefinition& definition);
+void check_disc(const DiscDefinition& disc);
+/// One piece of a wall, `name` being that of its first point.
+void check_segment(const char* name, const Vec2<double>& from, const Vec2<double>& to);
+void check_wall_friction(float friction);
 
 }  // namespace motley

@@ -2,29 +2,12 @@
 #include "scene/scene_archive.h"
 
 #include <cmath>
-#include <string>
 
+#include "scene/archive_checks.h"
 #include "scene/body_checks.h"
 
 namespace motley {
 namespace {
-
-void demand(bool holds, const char* what)
-{
-    if (!holds) throw std::runtime_error(std::string("is no scene: ") + what);
-}
-
-/// A list of free handles or rows: each index must be valid, not taken, and listed only once.
-template <class IsTaken>
-void check_free_list(const std::vector<std::uint32_t>& free, std::size_t size, const IsTaken& is_taken,
-                     const char* what)
-{
-    std::vector<std::uint8_t> listed(size, 0);
-    for (const std::uint32_t one : free) {
-        demand(one > 0 && one < size && !is_taken(one) && listed[one] == 0, what);
-        listed[one] = 1;
-    }
-}
 
 template <class Real>
 bool are_finite(std::initializer_list<Real> values)

@@ -10,15 +10,6 @@
 namespace motley {
 namespace {
 
-constexpr double least_radius = 1e-6, most_radius = 1e6;
-constexpr double least_length = 1e-6;  // m, of a segment
-
-void check_disc(const DiscDefinition& disc)
-{
-    check("DiscDefinition.radius", disc.radius, least_radius, most_radius, "1e-6 to 1e6 (m)");
-    check("DiscDefinition.friction", disc.friction, 0, 1e9, "0 to 1e9");
-}
-
 void check_points(const WallDefinition& wall)
 {
     const std::size_t least = wall.closed ? 3 : 2, count = wall.points.size();
@@ -27,11 +18,11 @@ void check_points(const WallDefinition& wall)
                wall.closed ? "3 or more of a closed wall" : "2 or more");
     for (std::size_t i = 0; i < count; ++i) {
         const std::string name = "WallDefinition.points[" + std::to_string(i) + "]";
-        check_position(name.c_str(), {wall.points[i].x, wall.points[i].y, 0});
-        if (i + 1 == count && !wall.closed) break;
-        const Vec2<double> along = wall.points[(i + 1) % count] - wall.points[i];
-        if (dot(along, along) < least_length * least_length)
-            refuse(name, "at the next point", "neighbours at least 1e-6 m apart");
+        if (i + 1 < count || wall.closed) {
+            check_segment(name.c_str(), wall.points[i], wall.points[(i + 1) % count]);
+        } else {
+            check_position(name.c_str(), {wall.points[i].x, wall.points[i].y, 0});
+        }
     }
 }
 
@@ -81,7 +72,7 @@ bool Scene::has_disc(BodyId body) const
 WallId Scene::add_wall(const WallDefinition& wall)
 {
     check_points(wall);
-    check("WallDefinition.friction", wall.friction, 0, 1e9, "0 to 1e9");
+    check_wall_friction(wall.friction);
     const BodyId body = wall.body == BodyId{} ? core_->ground : wall.body;
     core_->require_alive(body, "WallDefinition.body");
     if (core_->bodies.motion(body) == BodyMotion::dynamic_body)

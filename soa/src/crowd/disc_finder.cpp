@@ -64,7 +64,8 @@ void DiscFinder::open(SceneCore& scene, int workers)
 /// Lists for every band the walls near its strips.
 void DiscFinder::place_segments(const DiscStore& discs)
 {
-    if (segments_.size() < discs.band_count) segments_.resize(discs.band_count);
+    const auto bands = static_cast<std::size_t>(strips.band_count()) + 1;
+    if (segments_.size() < bands) segments_.resize(bands);
     for (std::vector<PlacedSegment>& list : segments_) list.clear();
     const double reach = static_cast<double>(strips.most_reach()) + static_cast<double>(discs.wall_skin);
     for (std::size_t i = 0; i < discs.segments.size(); ++i) {
