@@ -7,7 +7,6 @@
 namespace motley {
 namespace {
 
-constexpr std::int64_t rows_per_chunk = 1024;
 /// The most steps from one search of all discs to the next.
 constexpr int longest_age = 20;
 /// m: a disc that may come so near the end of its skin is searched for anew. It allows for the speed that a disc gains
@@ -39,7 +38,7 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     // Should memory run out on the way, the next step searches again.
     discs.is_stale = true;
     carry_impulses(scene);
-    discs.wall_skin = 0.02F + static_cast<float>(5 * fastest_wall_end(scene) * static_cast<double>(dt));
+    discs.wall_skin = DiscStrips::skin_at(fastest_wall_end(scene), dt);
     discs.wall_ends = wall_ends_;
     sort_into_strips(scene, dt);
     find_contacts(scene);
@@ -65,25 +64,23 @@ void DiscPipeline::list_leaving(const SceneCore& scene, float dt)
     const DiscStore& discs = scene.discs;
     const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
     const double seconds = static_cast<double>(dt);
-    const auto size = static_cast<std::int64_t>(std::min<std::size_t>(rows.size(), discs.anchors.size()));
-    const std::int64_t chunks = (size + rows_per_chunk - 1) / rows_per_chunk;
+    // Bodies that were added since the last search have no disc.
+    const auto size = static_cast<std::uint32_t>(std::min<std::size_t>(rows.size(), discs.anchors.size()));
+    const std::int64_t chunks = disc_chunks(size);
     if (leaving_of_.size() < static_cast<std::size_t>(chunks))
         leaving_of_.resize(static_cast<std::size_t>(chunks));
     runner_.run(chunks, [&](std::int64_t chunk) {
         std::vector<std::uint32_t>& leaving = leaving_of_[static_cast<std::size_t>(chunk)];
         leaving.clear();
-        const auto first = static_cast<std::uint32_t>(chunk * rows_per_chunk);
-        const auto last = static_cast<std::uint32_t>(std::min((chunk + 1) * rows_per_chunk, size));
-        for (std::uint32_t row = first; row < last; ++row) {
+        for_each_row_of_chunk(chunk, size, [&](std::uint32_t row) {
             const DiscAnchor& anchor = discs.anchors[row];
             const Vec3<PoseReal>& at = rows.pose[row].position;
             const double x = static_cast<double>(at.x) - discs.frame.origin.x - static_cast<double>(anchor.x);
             const double y = static_cast<double>(at.y) - discs.frame.origin.y - static_cast<double>(anchor.y);
-            const float* v = &rows.velocity[std::size_t{4} * row];
-            const auto vx = static_cast<double>(v[0]), vy = static_cast<double>(v[1]);
-            const double goes = std::sqrt(x * x + y * y) + seconds * std::sqrt(vx * vx + vy * vy) + slack;
+            const double speed = speed_of(&rows.velocity[std::size_t{4} * row]);
+            const double goes = std::sqrt(x * x + y * y) + seconds * speed + slack;
             if (!(goes <= static_cast<double>(anchor.skin))) leaving.push_back(row);
-        }
+        });
     });
     leaving_.clear();
     for (std::int64_t chunk = 0; chunk < chunks; ++chunk) {

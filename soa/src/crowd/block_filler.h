@@ -56,7 +56,7 @@ class BlockFiller {
     /// Closes all blocks.
     void finish()
     {
-        for (; open_ != 0;) close(std::countr_zero(open_));
+        while (open_ != 0) close(std::countr_zero(open_));
     }
 
   private:

@@ -271,14 +271,12 @@ void DiscFinder::find_in_strips(SceneCore& scene, std::size_t band, Worker& work
                      high = std::max(segment.from.y, segment.to.y) + reach;
         for (std::int32_t s = std::max(first, strips.strip_at(low));
              s <= std::min(last - 1, strips.strip_at(high)); ++s) {
-            const std::span<const PlacedDisc> discs = strips.strip(s);
             const Range near = range_within(segment.from, segment.to, strips.low_edge_of(s) - reach,
                                             strips.low_edge_of(s + 1) + reach);
-            auto disc = std::lower_bound(discs.begin(), discs.end(), near.low - reach,
-                                         [](const PlacedDisc& d, double along) { return d.along < along; });
-            for (; disc != discs.end() && disc->along <= near.high + reach; ++disc)
-                add_touch(scene, found, worker, segment, *disc, carried.of_wall(disc->row, segment.index),
-                          static_cast<std::uint32_t>(&*disc - zero));
+            strips.for_each_between(s, near.low - reach, near.high + reach, [&](const PlacedDisc& disc) {
+                add_touch(scene, found, worker, segment, disc, carried.of_wall(disc.row, segment.index),
+                          static_cast<std::uint32_t>(&disc - zero));
+            });
         }
     }
 }
@@ -299,12 +297,8 @@ void DiscFinder::find_wide(SceneCore& scene, Worker& worker)
         for (std::size_t v = w + 1; v < wide.size(); ++v) try_pair(wide[v]);
         const double reach = static_cast<double>(me.reach) + static_cast<double>(strips.most_reach());
         for (std::int32_t s = strips.strip_at(me.across - reach); s <= strips.strip_at(me.across + reach);
-             ++s) {
-            const std::span<const PlacedDisc> discs = strips.strip(s);
-            auto disc = std::lower_bound(discs.begin(), discs.end(), me.along - reach,
-                                         [](const PlacedDisc& d, double along) { return d.along < along; });
-            for (; disc != discs.end() && disc->along <= me.along + reach; ++disc) try_pair(*disc);
-        }
+             ++s)
+            strips.for_each_between(s, me.along - reach, me.along + reach, try_pair);
         for (const PlacedSegment& segment : segments_[0])
             add_touch(scene, found, worker, segment, me, carried.of_wall(me.row, segment.index), me.row);
     }

@@ -20,7 +20,7 @@ class DiscFinder {
     CarriedImpulses carried;  ///< the impulses of the bands as they were are kept
     /// Then there is space for the contacts of every band, for so many workers...
     void open(SceneCore& scene, int workers);
-    /// ...and every band is found; band 0 has the contacts of discs that reach far.
+    /// ...and the contacts of every band are found; band 0 has those of discs that reach far.
     void find(SceneCore& scene, std::size_t band, int worker);
     /// Between searches of all discs: gives the discs in these rows of planar bodies new anchors and skins, and adds
     /// the contacts that they may have now to band 0. The rows may be in any order; they are sorted.

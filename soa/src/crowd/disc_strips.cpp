@@ -31,10 +31,9 @@ float DiscStrips::upper_end_of(int bucket)
     return std::bit_cast<float>(static_cast<std::uint32_t>(bucket + 1 + ((127 - 20) << 3)) << 20);
 }
 
-float DiscStrips::skin_of(const float* v, float dt)
+float DiscStrips::skin_at(double speed, float dt)
 {
-    const auto x = static_cast<double>(v[0]), y = static_cast<double>(v[1]);
-    const double goes = std::sqrt(x * x + y * y) * static_cast<double>(dt) * steps_ahead;
+    const double goes = speed * static_cast<double>(dt) * steps_ahead;
     return skin_at_rest + static_cast<float>(std::min(goes, 1e9));
 }
 
@@ -42,7 +41,7 @@ void DiscStrips::begin(SceneCore& scene, float dt)
 {
     const std::uint32_t rows = scene.bodies.rows(BodyKind::planar).size();
     dt_ = dt;
-    chunks_ = (std::int64_t{rows} + rows_per_chunk - 1) / rows_per_chunk;
+    chunks_ = disc_chunks(rows);
     measured_.resize(static_cast<std::size_t>(chunks_));
     grow_to(scene.discs.anchors, rows);
     scene.discs.found_at.resize(scene.discs.anchors.size());
@@ -52,12 +51,9 @@ template <class Work>
 void DiscStrips::for_each_disc(const SceneCore& scene, std::int64_t chunk, const Work& work)
 {
     const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
-    const auto first = static_cast<std::uint32_t>(chunk * rows_per_chunk);
-    const auto last =
-        static_cast<std::uint32_t>(std::min<std::int64_t>((chunk + 1) * rows_per_chunk, rows.size()));
-    for (std::uint32_t row = first; row < last; ++row) {
+    for_each_row_of_chunk(chunk, rows.size(), [&](std::uint32_t row) {
         if (scene.discs.found_at[row].skin < INFINITY) work(row, rows);
-    }
+    });
 }
 
 void DiscStrips::measure(const SceneCore& scene, DiscStore& discs, std::int64_t chunk)
@@ -65,17 +61,14 @@ void DiscStrips::measure(const SceneCore& scene, DiscStore& discs, std::int64_t 
     const BodyStore& bodies = scene.bodies;
     const BodyRows& rows = bodies.rows(BodyKind::planar);
     Measured m;
-    const auto first = static_cast<std::uint32_t>(chunk * rows_per_chunk);
-    const auto last =
-        static_cast<std::uint32_t>(std::min<std::int64_t>((chunk + 1) * rows_per_chunk, rows.size()));
-    for (std::uint32_t row = first; row < last; ++row) {
+    for_each_row_of_chunk(chunk, rows.size(), [&](std::uint32_t row) {
         DiscAnchor& anchor = discs.anchors[row];
         anchor.skin = INFINITY;
         discs.found_at[row] = anchor;
         const std::uint32_t slot = rows.slot[row];
         const DiscShape* shape = slot == 0 ? nullptr : discs.shape_of(slot);
-        if (shape == nullptr || bodies.contained[slot] != 0) continue;
-        anchor.skin = skin_of(&rows.velocity[std::size_t{4} * row], dt_);
+        if (shape == nullptr || bodies.contained[slot] != 0) return;
+        anchor.skin = skin_at(speed_of(&rows.velocity[std::size_t{4} * row]), dt_);
         discs.found_at[row] = anchor;
         const Vec3<PoseReal>& at = rows.pose[row].position;
         const auto x = static_cast<double>(at.x), y = static_cast<double>(at.y);
@@ -83,7 +76,7 @@ void DiscStrips::measure(const SceneCore& scene, DiscStore& discs, std::int64_t 
         m.high = {std::max(m.high.x, x), std::max(m.high.y, y)};
         ++m.reaches[static_cast<std::size_t>(bucket_of(shape->radius + anchor.skin))];
         ++m.discs;
-    }
+    });
     measured_[static_cast<std::size_t>(chunk)] = m;
 }
 
@@ -133,7 +126,7 @@ void DiscStrips::restore(const SceneCore& scene)
 {
     const DiscStore& discs = scene.discs;
     const std::uint32_t rows = scene.bodies.rows(BodyKind::planar).size();
-    chunks_ = (std::int64_t{rows} + rows_per_chunk - 1) / rows_per_chunk;
+    chunks_ = disc_chunks(rows);
     discs_ = std::count_if(discs.found_at.begin(), discs.found_at.begin() + rows,
                            [](const DiscAnchor& anchor) { return anchor.skin < INFINITY; });
     frame_ = discs.frame;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,6 +18,26 @@
 #include "stores/disc_store.h"
 
 namespace motley {
+
+/// Rows of planar bodies are measured and sorted in chunks, which do not depend on the number of threads.
+inline constexpr std::uint32_t disc_rows_per_chunk = 1024;
+constexpr std::int64_t disc_chunks(std::uint32_t rows)
+{
+    return (std::int64_t{rows} + disc_rows_per_chunk - 1) / disc_rows_per_chunk;
+}
+/// Calls work(row) for each row of a chunk.
+template <class Work>
+void for_each_row_of_chunk(std::int64_t chunk, std::uint32_t rows, const Work& work)
+{
+    const auto first = static_cast<std::uint32_t>(chunk) * disc_rows_per_chunk;
+    for (std::uint32_t row = first; row < std::min(first + disc_rows_per_chunk, rows); ++row) work(row);
+}
+/// The length of a velocity, m/s, whose first two numbers are vx and vy.
+inline double speed_of(const float* v)
+{
+    const auto x = static_cast<double>(v[0]), y = static_cast<double>(v[1]);
+    return std::sqrt(x * x + y * y);
+}
 
 /// A disc at its place in the order.
 struct PlacedDisc {
@@ -34,8 +55,8 @@ class DiscStrips {
     void begin(SceneCore& scene, float dt);
     /// Makes the strips of the last search of all discs once more, on this thread.
     void restore(const SceneCore& scene);
-    /// How far a disc with velocity `v` may go before it is searched for again, m, in steps of dt.
-    static float skin_of(const float* v, float dt);
+    /// How far something that moves at `speed`, m/s, may go before it is searched for again, m, in steps of dt.
+    static float skin_at(double speed, float dt);
     [[nodiscard]] std::int64_t chunk_count() const { return chunks_; }
     /// How far each disc of a chunk of rows may reach before the next search; writes the skins of the anchors.
     void measure(const SceneCore& scene, DiscStore& discs, std::int64_t chunk);
@@ -48,7 +69,7 @@ class DiscStrips {
     void place(const SceneCore& scene, std::int64_t chunk);
     [[nodiscard]] std::int64_t group_count() const { return groups_; }
     void sort(const SceneCore& scene, std::int64_t group);
-    /// Divides the strips into bands of about this many discs.
+    /// Divides the strips into bands of some hundred discs.
     void divide();
 
     [[nodiscard]] std::int32_t strip_count() const { return strips_; }
@@ -58,10 +79,19 @@ class DiscStrips {
                    last = first_[static_cast<std::size_t>(s) + 1];
         return std::span(sorted_).subspan(first, last - first);
     }
+    /// Calls work(disc) for each disc of a strip whose place along it is from `low` to `high`, m.
+    template <class Work>
+    void for_each_between(std::int32_t s, double low, double high, const Work& work) const
+    {
+        const std::span<const PlacedDisc> placed = strip(s);
+        auto disc = std::lower_bound(placed.begin(), placed.end(), low,
+                                     [](const PlacedDisc& d, double along) { return d.along < along; });
+        for (; disc != placed.end() && disc->along <= high; ++disc) work(*disc);
+    }
     /// The place in the order of the first disc of a strip.
     [[nodiscard]] std::uint32_t first_of(std::int32_t s) const { return first_[static_cast<std::size_t>(s)]; }
     [[nodiscard]] const PlacedDisc& disc(std::uint32_t place) const { return sorted_[place]; }
-    /// Discs that reach further than a strip is made for, by row.
+    /// Discs that reach further than a strip is made for, in the same order along and across.
     [[nodiscard]] std::span<const PlacedDisc> wide() const
     {
         return std::span(sorted_).subspan(first_[static_cast<std::size_t>(strips_)]);
@@ -101,7 +131,6 @@ class DiscStrips {
     [[nodiscard]] std::span<const PlacedDisc> discs() const { return sorted_; }
 
   private:
-    static constexpr std::int64_t rows_per_chunk = 1024;
     static constexpr std::int32_t most_groups = 256;
     static constexpr int buckets = 320;  ///< of reaches, eight an octave
 

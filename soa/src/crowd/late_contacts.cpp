@@ -77,7 +77,7 @@ void DiscFinder::find_late_of(SceneCore& scene, std::uint32_t row, float dt)
     DiscStore& discs = scene.discs;
     const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
     const float* v = &rows.velocity[std::size_t{4} * row];
-    discs.anchors[row].skin = DiscStrips::skin_of(v, dt);
+    discs.anchors[row].skin = DiscStrips::skin_at(speed_of(v), dt);
     discs.place_anchor(row, rows.pose[row].position);
     is_new_[row] = 1;
     const float radius = discs.shapes[rows.slot[row]].radius;
@@ -117,12 +117,8 @@ void DiscFinder::find_late_pairs(SceneCore& scene, const PlacedDisc& me)
     };
     const double reach = static_cast<double>(me.reach) + static_cast<double>(discs.late_drift) +
                          static_cast<double>(std::max(strips.most_reach(), discs.late_reach));
-    for (std::int32_t s = strips.strip_at(me.across - reach); s <= strips.strip_at(me.across + reach); ++s) {
-        const std::span<const PlacedDisc> placed = strips.strip(s);
-        auto disc = std::lower_bound(placed.begin(), placed.end(), me.along - reach,
-                                     [](const PlacedDisc& d, double along) { return d.along < along; });
-        for (; disc != placed.end() && disc->along <= me.along + reach; ++disc) try_pair(*disc);
-    }
+    for (std::int32_t s = strips.strip_at(me.across - reach); s <= strips.strip_at(me.across + reach); ++s)
+        strips.for_each_between(s, me.along - reach, me.along + reach, try_pair);
     for (const PlacedDisc& disc : strips.wide()) try_pair(disc);
 }
 
