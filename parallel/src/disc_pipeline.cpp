@@ -20,6 +20,7 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     DiscStore& discs = scene.discs;
     if (!discs.is_in_use()) {
         discs.band_count = 0;
+        discs.band_rows.clear();
         return;
     }
     find_wall_ends(scene, wall_ends_);
@@ -42,6 +43,8 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     discs.wall_ends = wall_ends_;
     sort_into_strips(scene, dt);
     find_contacts(scene);
+    DiscFinder::make_room_for_pairs(discs);
+    discs.wants_sorting = DiscFinder::are_rows_scattered(discs);
     discs.age = 0;
     discs.is_stale = false;
 }

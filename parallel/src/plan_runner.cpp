@@ -13,6 +13,8 @@ namespace motley {
 void PlanRunner::run(const Plan& plan, const Plan& figure_plan, const Step& step, StepClock& clock)
 {
     layout_.context.replay = plan.replays_warm_starts ? Replay::next_time : Replay::nothing;
+    layout_.context.discs_are_measured =
+        step.settings.method == Method::soft_step && step.settings.relaxations > 0;
     int of_substep = -1;
     for_each_stage(plan, [&](const PlanStage& stage, int substep) {
         if (substep != of_substep) solves_in_substep_ = 0;
@@ -43,8 +45,8 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
         case Operation::stiffen:
             if (layout_.is_overloaded()) sweeper_.sweep(&ConstraintKernels::stiffen);
             break;
-        case Operation::list_bodies_beside_patches:
-            sweeper_.list_beside_patches();
+        case Operation::list_bodies_beside:
+            sweeper_.list_beside();
             break;
         case Operation::step_figures:
             sweeper_.step_lone_figures(figure_plan);
@@ -57,11 +59,16 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
             break;
         }
         case Operation::add_up_impulses:
-            sweeper_.add_up();
+            stage.where == Where::beside_bands ? sweeper_.add_up_beside_bands() : sweeper_.add_up();
             break;
         case Operation::integrate_velocities:
-            sweeper_.integrate(substep == 0 ? &BodyKernels::begin_velocities
-                                            : &BodyKernels::integrate_velocities);
+            if (stage.where == Where::beside_bands) {
+                sweeper_.integrate_beside(&BodyKernels::integrate_listed_velocities,
+                                          &BodyKernels::integrate_velocities);
+            } else {
+                sweeper_.integrate(substep == 0 ? &BodyKernels::begin_velocities
+                                                : &BodyKernels::integrate_velocities);
+            }
             break;
         case Operation::factor_trees:
             sweeper_.prepare_touched_trees();
@@ -85,11 +92,18 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
         case Operation::visit_patches:
             sweeper_.visit_patches(plan.visit);
             break;
+        case Operation::visit_odd_bands:
+            sweeper_.visit_odd_bands(plan.odd_visit, substep, plan.substeps);
+            break;
+        case Operation::visit_even_bands:
+            sweeper_.visit_even_bands(plan.visit, substep, plan.substeps);
+            break;
         case Operation::integrate_positions:
-            if (stage.where == Where::beside_patches) {
-                sweeper_.move_beside_patches();
-            } else {
+            if (stage.where == Where::everywhere) {
                 sweeper_.integrate(&BodyKernels::integrate_positions);
+            } else {
+                sweeper_.integrate_beside(&BodyKernels::integrate_listed_positions,
+                                          &BodyKernels::integrate_positions);
             }
             break;
         case Operation::integrate_on:
@@ -122,8 +136,14 @@ void PlanRunner::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, cons
                        const Step& step)
 {
     int sweeps = stage.times;
+    // Visits of patches and bands are the rest of the same sweep.
     if (stage.where == Where::beside_patches) {
-        sweeper_.sweep_beside_patches(kernel);  // the visit of the patches is the rest of the same sweep
+        sweeper_.sweep_beside_patches(kernel);
+    } else if (stage.where == Where::beside_bands) {
+        sweeper_.sweep_beside_bands(kernel);
+    } else if (stage.where == Where::odd_bands) {
+        sweeper_.sweep_odd_bands(kernel);
+        return;
     } else {
         sweeps = step.picks_islands ? iterate_by_island(kernel, stage.times, step)
                                     : iterate(kernel, stage.times, step);

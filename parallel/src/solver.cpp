@@ -145,6 +145,7 @@ struct Solver::Impl {
     [[nodiscard]] bool tells_blocks_apart(const SceneCore& scene) const;
     [[nodiscard]] FigureUse use_of_figures(const SceneCore& scene) const;
     [[nodiscard]] bool can_visit_patches_once(const SceneCore& scene) const;
+    [[nodiscard]] bool can_visit_bands_once(const SceneCore& scene) const;
     [[nodiscard]] bool anything_bounces(const SceneCore& scene) const;
 };
 
@@ -214,6 +215,7 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> co
     const std::exception_ptr late = runner.with_workers(runs_alone(host_scene, contacts), [&] {
         StepClock clock(report);
         clock.enter(Stage::intake);
+        if (scene.discs.wants_sorting) scene.sort_disc_rows();
         take_in(scene, contacts, report);
         if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);
         if (dt == 0 || !report.error.empty()) return clock.leave();
@@ -304,6 +306,7 @@ void Solver::Impl::plan_step(const SceneCore& scene)
     fuse_integrations(plan);
     if (layout.has_constant_responses()) replay_warm_starts(plan);
     if (can_visit_patches_once(scene)) visit_patches_once(plan);
+    if (can_visit_bands_once(scene)) visit_bands_once(plan);
 }
 
 /// After the bodies have moved: updates the scene and fills in the report.
@@ -358,6 +361,16 @@ bool Solver::Impl::can_visit_patches_once(const SceneCore& scene) const
     return layout.intake.patches.are_wanted() && settings.method == Method::soft_step &&
            settings.relaxations > 0 && !PlanRunner::sweeps_long(settings) && !tells_blocks_apart(scene) &&
            layout.figures.touched_trees().empty() && layout.disc_bands() == 0;
+}
+
+/// Whether visit_bands_once() may rewrite the plan. Not where a wall moves: a visit both solves and relaxes, and between
+/// the two all walls would have to move.
+bool Solver::Impl::can_visit_bands_once(const SceneCore& scene) const
+{
+    return layout.has_disc_rows() && plan.replays_warm_starts && settings.method == Method::soft_step &&
+           settings.iterations == 1 && settings.relaxations == 1 && !tells_blocks_apart(scene) &&
+           layout.figures.touched_trees().empty() && !layout.intake.patches.are_wanted() &&
+           fastest_wall_end(scene) == 0;
 }
 
 }  // namespace motley

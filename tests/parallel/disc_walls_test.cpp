@@ -135,6 +135,104 @@ TEST(DiscWalls, ThatAreRemovedLetPeoplePass)
     EXPECT_GT(scene.state(person).position.x, 3);
 }
 
+/// Evidence: the path is prescribed, and clear of the wall.
+TEST(DiscWalls, LetPeopleWalkAroundTheirEnds)
+{
+    Scene scene;
+    const Vec2<double> ends[] = {{0, 0}, {0, 5}};
+    scene.add_wall({.points = ends});
+    const BodyId person = scene.add_body(person_at(0.25, 1));
+    scene.set_disc(person, {.radius = 0.2F});
+    Solver solver(SolverSettings{});
+    Vec2<double> at{0.25, 1};
+    for (const Vec2<double>& goal : {Vec2<double>{0.25, -0.25}, {-0.25, -0.25}, {-0.25, 1}}) {
+        const Vec2<double> way = goal - at;
+        for (int step = 0; step < 60; ++step) {
+            scene.set_velocity(person, {static_cast<float>(way.x), static_cast<float>(way.y), 0}, {});
+            ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
+            at = at + static_cast<double>(dt) * way;
+            ASSERT_NEAR(scene.state(person).position.x, at.x, 1e-5) << "on the way to " << goal.y;
+            ASSERT_NEAR(scene.state(person).position.y, at.y, 1e-5);
+        }
+    }
+    scene.set_velocity(person, {}, {});
+    scene.set_force(person, {50, 0, 0}, {});
+    for (int step = 0; step < 120; ++step) ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
+    EXPECT_NEAR(scene.state(person).position.x, -0.2, 0.002) << "held on the side on which it is now";
+}
+
+/// A turnstile. Evidence: nobody pushes who passes it, so the motion is that of a free body.
+TEST(DiscWalls, OneWayLetPassFromTheRight)
+{
+    Scene scene;
+    const Vec2<double> ends[] = {{0, -5}, {0, 5}};  // the left side is that of negative x
+    scene.add_wall({.points = ends, .one_way = true});
+    const BodyId person = scene.add_body(person_at(1, 0)), free = scene.add_body(person_at(1, 0));
+    scene.set_disc(person, {.radius = 0.2F});
+    Solver solver(SolverSettings{});
+    const auto go = [&](float force, int steps) {
+        for (const BodyId body : {person, free}) scene.set_force(body, {force, 0, 0}, {});
+        for (int step = 0; step < steps; ++step) {
+            ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
+        }
+    };
+    go(-50, 60);
+    ASSERT_NEAR(scene.state(person).position.x, 1 - 0.5 * 50 / 80, 0.01) << "beside the wall";
+    go(50, 30);
+    go(-50, 90);  // back and through
+    EXPECT_LT(scene.state(person).position.x, -0.5);
+    EXPECT_NEAR(scene.state(person).position.x, scene.state(free).position.x, 1e-6);
+    EXPECT_NEAR(scene.state(person).linear_velocity.x, scene.state(free).linear_velocity.x, 1e-6);
+    go(50, 400);
+    EXPECT_NEAR(scene.state(person).position.x, -0.2, 0.002) << "no way back";
+    EXPECT_GT(scene.state(free).position.x, 1);
+}
+
+/// A disc pressed on a belt slides until it rolls: v = u / 3 and w r = 2 u / 3 of the belt's speed u, as of a solid disc,
+/// after t = u m / (3 mu N).
+TEST(DiscWalls, WithASurfaceThatMovesTakePeopleAlong)
+{
+    for (const double side : {1.0, -1.0}) {
+        Scene scene;
+        const Vec2<double> ends[] = {{-10, 0}, {10, 0}};
+        scene.add_wall({.points = ends, .friction = 0.5F, .surface_speed = 1});
+        const BodyId person = scene.add_body(person_at(0, 0.2 * side));
+        scene.set_disc(person, {.radius = 0.2F, .friction = 0.5F});
+        scene.set_force(person, {0, static_cast<float>(-100 * side), 0}, {});
+        Solver solver(SolverSettings{});
+        for (int step = 0; step < 24; ++step) ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
+        EXPECT_NEAR(scene.state(person).linear_velocity.x, 0.4 * 0.5 * 100 / 80, 0.003);
+        for (int step = 0; step < 60; ++step) ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
+        EXPECT_NEAR(scene.state(person).linear_velocity.x, 1.0 / 3, 0.002);
+        EXPECT_NEAR(scene.state(person).angular_velocity.z * 0.2, 2.0 / 3 * side, 0.004);
+    }
+}
+
+TEST(DiscWalls, PushWithNoMoreThanTheirForce)
+{
+    Scene scene;
+    const Vec2<double> ends[] = {{0, -5}, {0, 5}};
+    scene.add_wall({.points = ends, .max_force = 300});
+    const BodyId person = scene.add_body(person_at(0.2, 0));
+    scene.set_disc(person, {.radius = 0.2F});
+    scene.set_force(person, {-200, 0, 0}, {});
+    Solver solver(SolverSettings{});
+    for (int step = 0; step < 120; ++step) ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
+    EXPECT_NEAR(scene.state(person).position.x, 0.2, 0.002);
+    ASSERT_EQ(scene.disc_contacts().size(), std::size_t{1});
+    EXPECT_NEAR(scene.disc_contacts()[0].normal_force, 200, 1);
+    scene.set_force(person, {-400, 0, 0}, {});
+    const float before = scene.state(person).linear_velocity.x;
+    for (int step = 0; step < 12; ++step) {
+        ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
+        ASSERT_EQ(scene.disc_contacts().size(), std::size_t{1});
+        EXPECT_NEAR(scene.disc_contacts()[0].normal_force, 300, 0.3);
+    }
+    EXPECT_NEAR(scene.state(person).linear_velocity.x - before, -0.2 * (400 - 300) / 80, 0.002);
+    for (int step = 0; step < 120; ++step) ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
+    EXPECT_LT(scene.state(person).position.x, -1) << "who pushes harder passes";
+}
+
 TEST(DiscWalls, RefuseWhatIsNoDiscOrWall)
 {
     Scene scene;
@@ -164,6 +262,12 @@ TEST(DiscWalls, RefuseWhatIsNoDiscOrWall)
               "WallDefinition.points.size() is 2; expected 3 or more of a closed wall");
     EXPECT_EQ(message_of([&] { scene.add_wall({.points = twice}); }),
               "WallDefinition.points[1] is at the next point; expected neighbours at least 1e-6 m apart");
+    EXPECT_EQ(message_of([&] { scene.add_wall({.points = two, .surface_speed = 1}); }),
+              "WallDefinition.surface_speed is 1; expected 0 for a wall without friction");
+    EXPECT_EQ(message_of([&] { scene.add_wall({.points = two, .friction = 1, .surface_speed = NAN}); }),
+              "WallDefinition.surface_speed is nan; expected -1e6 to 1e6 (m/s)");
+    for (const float force : {0.0F, -1.0F, NAN})
+        EXPECT_NE(message_of([&] { scene.add_wall({.points = two, .max_force = force}); }), "accepted");
     EXPECT_EQ(message_of([&] { scene.add_wall({.points = two, .body = ball}); }),
               "WallDefinition.body is a dynamic body; expected a static or kinematic body");
     EXPECT_EQ(message_of([&] {

@@ -2,10 +2,11 @@
 // constraints/contact.h:
 //
 //   C   = |x_b - x_a| - r_a - r_b >= 0 of two discs,  n . (x_b - q) - r_b >= 0 of a disc and the point q of a wall
-//   J   = [-n, 0, n, 0], lambda >= 0;   friction along t = n turned by +90 degrees: |lambda_t| <= mu lambda
+//   J   = [-n, 0, n, 0], 0 <= lambda <= h f_max (h: substep; f_max: of a wall);   friction along t = n turned by +90 degrees: |lambda_t| <= mu lambda
 //
 // x: centres; r: radii; n: normal; mu: friction coefficient. The normal stays as it was when the step began, and C
-// follows from the displacement since then. A disc's normal passes through its centre, so that only friction turns it,
+// follows from the displacement since then. It is measured once a substep, by relax, which runs where bodies have just
+// moved: `solve` then reads no displacements, and with them half as much of each body. A disc's normal passes through its centre, so that only friction turns it,
 // at an arm whose direction is known: a row is a third of a contact's from a host's list.
 #pragma once
 
@@ -49,14 +50,17 @@ struct DiscContactKind : ConstraintTraits {
         Vec2<Real> normal;
         Real separation, effective_mass;
         Vec2<Real> arm_a;  ///< from the wall's body to the contact point
+        Real most_force;   ///< N, along the normal
     };
     template <class Real>
     struct RoughWall {
         Vec2<Real> normal;
         Real separation, effective_mass;
         Vec2<Real> arm_a;
+        Real most_force;
         Real arm_b;
         Real friction;
+        Real surface_speed;  ///< of the wall's surface along t, m/s
     };
     template <class Real, BodyKind a>
     using Sweep =
@@ -64,12 +68,14 @@ struct DiscContactKind : ConstraintTraits {
                            std::conditional_t<rough, RoughPair<Real>, SmoothPair<Real>>>;
     template <class Real, BodyKind a>
     struct SmoothRow {
-        Sweep<Real, a> in_sweep;
-        Real reach;  ///< r_a + r_b
+        Sweep<Real, a> in_sweep;  ///< its separation is that of now
+        Real start_separation;    ///< C when the step began
+        Real reach;               ///< r_a + r_b
     };
     template <class Real, BodyKind a>
     struct RoughRow {
         Sweep<Real, a> in_sweep;
+        Real start_separation;
         Real radius_a, radius_b;  ///< r_a of a wall: 0
     };
     /// Effective mass, friction and radii are set when the contact is found, the rest when a step begins.
@@ -104,6 +110,14 @@ struct DiscContactKind : ConstraintTraits {
         } else {
             sweep.separation = distance - row.reach;
         }
+        row.start_separation = sweep.separation;
+    }
+
+    /// C from where the bodies are now.
+    template <class Real, class Row, class A, class B>
+    static void measure(Row& row, const A& a, const B& b)
+    {
+        row.in_sweep.separation = row.start_separation + moved<Real>(row.in_sweep, a, b);
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
@@ -127,9 +141,11 @@ struct DiscContactKind : ConstraintTraits {
             impulse.tangent = held;
         }
         const Softness& soft = A::kind == BodyKind::fixed ? step.static_contact : step.contact;
-        const Real wanted = contact_impulse(step, soft, row.separation + moved<Real>(row, a, b),
-                                            dot(row.normal, relative_velocity<Real>(row, a, b)),
-                                            row.effective_mass, impulse.normal);
+        Real wanted =
+            contact_impulse(step, soft, row.separation, dot(row.normal, relative_velocity<Real>(row, a, b)),
+                            row.effective_mass, impulse.normal);
+        if constexpr (A::kind == BodyKind::fixed)
+            wanted = minimum(wanted, Real(step.substep) * row.most_force);
         push_normal<Real>(row, wanted - impulse.normal, a, b);
         impulse.normal = wanted;
     }
@@ -139,7 +155,7 @@ struct DiscContactKind : ConstraintTraits {
     static void project(const StepConstants& step, const Row& whole, A& a, B& b)
     {
         const auto& row = whole.in_sweep;
-        const Real deep = minimum(row.separation + moved<Real>(row, a, b) + Real(step.slop), Real(0));
+        const Real deep = minimum(whole.start_separation + moved<Real>(row, a, b) + Real(step.slop), Real(0));
         const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep overlap must not explode
         const Vec2<Real> push = -(row.effective_mass * Real(step.projection_rate) * error) * row.normal;
         if constexpr (A::kind == BodyKind::planar) a.delta = a.delta - a.inverse_mass * push;
@@ -184,7 +200,7 @@ struct DiscContactKind : ConstraintTraits {
     {
         const Real of_centres = dot(tangent_of(row.normal), relative_velocity<Real>(row, a, b));
         if constexpr (A::kind == BodyKind::fixed) {
-            return of_centres - row.arm_b * b.yaw_rate;
+            return of_centres - row.arm_b * b.yaw_rate - row.surface_speed;
         } else {
             return of_centres - (row.arm_a * a.yaw_rate + row.arm_b * b.yaw_rate);
         }

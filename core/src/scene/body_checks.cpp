@@ -147,9 +147,17 @@ void check_segment(const char* name, const Vec2<double>& from, const Vec2<double
         refuse(name, "at the next point", "neighbours at least 1e-6 m apart");
 }
 
-void check_wall_friction(float friction)
+void check_wall_surface(float friction, float surface_speed)
 {
     check("WallDefinition.friction", friction, 0, 1e9, "0 to 1e9");
+    check("WallDefinition.surface_speed", surface_speed, -1e6, 1e6, "-1e6 to 1e6 (m/s)");
+    if (friction == 0 && surface_speed != 0)
+        refuse("WallDefinition.surface_speed", surface_speed, "0 for a wall without friction");
+}
+
+void check_wall_force(float max_force)
+{
+    if (!(max_force > 0)) refuse("WallDefinition.max_force", max_force, "above 0 (N)");
 }
 
 }  // namespace motley

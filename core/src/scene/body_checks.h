@@ -28,6 +28,7 @@ void check_definition(const BodyDefinition& definition);
 void check_disc(const DiscDefinition& disc);
 /// One piece of a wall, `name` being that of its first point.
 void check_segment(const char* name, const Vec2<double>& from, const Vec2<double>& to);
-void check_wall_friction(float friction);
+void check_wall_surface(float friction, float surface_speed);
+void check_wall_force(float max_force);
 
 }  // namespace motley

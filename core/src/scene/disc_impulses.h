@@ -45,7 +45,7 @@ void SceneCore::for_each_disc_impulse(const Work& work) const
                     impulse.segment =
                         is_wall(c.value) ? blocks.touches[block_lanes * block + lane].segment : UINT32_MAX;
                     impulse.normal = row.in_sweep.normal;
-                    impulse.separation = row.in_sweep.separation;
+                    impulse.separation = row.start_separation;
                     impulse.along = static_cast<double>(sum.normal);
                     if constexpr (is_rough(c.value)) impulse.across = static_cast<double>(sum.tangent);
                     // Bodies and walls may have been removed since.

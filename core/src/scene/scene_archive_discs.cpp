@@ -42,7 +42,9 @@ void check_walls(const SceneCore& scene)
     for (const WallSegment& segment : discs.segments) {
         check_segment("WallSegment.from", segment.from, segment.to);
         check_position("WallSegment.to", {segment.to.x, segment.to.y, 0});
-        check_wall_friction(segment.friction);
+        check_wall_surface(segment.friction, segment.surface_speed);
+        check_wall_force(segment.max_force);
+        demand(segment.is_one_way <= 1, "a wall that is one-way or not");
         demand(segment.wall < discs.walls.size() && discs.walls[segment.wall].live == 1,
                "a wall without a handle");
         demand(scene.bodies.is_alive(segment.body) &&
@@ -145,7 +147,8 @@ void check_blocks(const SceneCore& scene)
                         continue;
                     }
                     const WallTouch& touch = blocks.touches[block_lanes * block + lane];
-                    demand(touch.segment < discs.segments.size() && std::abs(touch.side) == 1,
+                    demand(touch.segment < discs.segments.size() &&
+                               (std::abs(touch.side) == 1 || touch.side == WallTouch::passing),
                            "a touch of no wall");
                 }
             }

@@ -6,6 +6,7 @@
 #include "scene/disc_impulses.h"
 #include "scene/scene_core.h"
 #include "stores/growth.h"
+#include "stores/joint_store.h"
 
 namespace motley {
 namespace {
@@ -72,7 +73,8 @@ bool Scene::has_disc(BodyId body) const
 WallId Scene::add_wall(const WallDefinition& wall)
 {
     check_points(wall);
-    check_wall_friction(wall.friction);
+    check_wall_surface(wall.friction, wall.surface_speed);
+    check_wall_force(wall.max_force);
     const BodyId body = wall.body == BodyId{} ? core_->ground : wall.body;
     core_->require_alive(body, "WallDefinition.body");
     if (core_->bodies.motion(body) == BodyMotion::dynamic_body)
@@ -89,7 +91,8 @@ WallId Scene::add_wall(const WallDefinition& wall)
     discs.walls[slot].live = 1;
     for (std::size_t i = 0; i < count; ++i)
         discs.segments.push_back({wall.points[i], wall.points[(i + 1) % wall.points.size()], body,
-                                  wall.friction, wall.category, wall.mask, slot});
+                                  wall.friction, wall.category, wall.mask, slot, wall.surface_speed,
+                                  wall.max_force, wall.one_way ? 1U : 0U});
     discs.is_stale = true;
     return {slot, discs.walls[slot].generation};
 }
@@ -144,6 +147,34 @@ void SceneCore::renumber_rows()
         if (slots[row] != 0) rows[row] = bodies.row_of(bodies.id_of_slot(slots[row])).row();
     }
     discs.renumber(rows);
+}
+
+void SceneCore::sort_disc_rows()
+{
+    discs.wants_sorting = false;
+    const std::uint32_t rows = bodies.rows(BodyKind::planar).size();
+    discs.sorted_rows.assign(rows, 0);
+    // Bodies that were added since the last search have no disc yet.
+    grow_to(discs.anchors, rows);
+    grow_to(discs.found_at, rows);
+    grow_to(discs.is_in_band, rows);
+    std::uint32_t next = 1;
+    for (BodyRow& body : discs.band_rows) {
+        discs.sorted_rows[body.row()] = next;
+        body = BodyRow(BodyKind::planar, next++);
+    }
+    for (std::uint32_t row = 1; row < rows; ++row) {
+        if (discs.sorted_rows[row] == 0) discs.sorted_rows[row] = next++;
+    }
+    discs.renumber_contacts(discs.sorted_rows);
+    bodies.permute_planar(discs.sorted_rows, [&](std::uint32_t i, std::uint32_t j) {
+        std::swap(discs.is_in_band[i], discs.is_in_band[j]);
+        std::swap(discs.anchors[i], discs.anchors[j]);
+        std::swap(discs.found_at[i], discs.found_at[j]);
+    });
+    joints->for_each([&](const auto& store, int) {
+        if (store.size() > 0) joints->version.reset();  // their blocks refer to rows
+    });
 }
 
 namespace {

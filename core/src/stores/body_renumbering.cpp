@@ -97,11 +97,26 @@ void BodyStore::renumber()
         to.slot = reordered(r.slot, order, 1);
     }
     rows_ = std::move(renumbered);
-    for (int k = 0; k < body_kind_count; ++k) {
-        const BodyRows& r = rows_[static_cast<std::size_t>(k)];
-        for (std::uint32_t row = 1; row < r.size(); ++row)
-            slots_[r.slot[row]].row = BodyRow(static_cast<BodyKind>(k), row);
+    for (int k = 0; k < body_kind_count; ++k) enter_rows(static_cast<BodyKind>(k));
+}
+
+void BodyStore::enter_rows(BodyKind kind)
+{
+    const std::vector<std::uint32_t>& slot = rows(kind).slot;
+    for (std::uint32_t row = 1; row < slot.size(); ++row) {
+        if (slot[row] != 0) slots_[slot[row]].row = BodyRow(kind, row);
     }
+}
+
+void BodyStore::swap_planar(std::uint32_t i, std::uint32_t j)
+{
+    BodyRows& r = rows(BodyKind::planar);
+    for (AlignedVector<float>* quads : {&r.velocity, &r.delta, &r.acceleration, &r.unpushed}) {
+        float* const first = quads->data();
+        std::swap_ranges(first + std::size_t{4} * i, first + std::size_t{4} * i + 4, first + std::size_t{4} * j);
+    }
+    std::swap(r.pose[i], r.pose[j]);
+    std::swap(r.slot[i], r.slot[j]);
 }
 
 }  // namespace motley

@@ -20,6 +20,7 @@
 #include "motley/core/body.h"
 #include "motley/core/ids.h"
 #include "stores/aligned_vector.h"
+#include "stores/permutation.h"
 
 namespace motley {
 
@@ -90,6 +91,18 @@ class BodyStore {
     void set_mass(BodyId body, float mass, const Sym3<float>& inertia);
     /// Gives every body a new row, in the order of a space-filling curve, and closes the gaps of free rows.
     void renumber();
+    /// Moves the planar body in row i to row new_rows[i], and calls swap(i, j) for what else is kept by row whenever two
+    /// rows are swapped. `new_rows` is a permutation that keeps row 0; afterwards it is the identity.
+    template <class Swap>
+    void permute_planar(std::span<std::uint32_t> new_rows, const Swap& swap)
+    {
+        for (std::uint32_t& row : rows(BodyKind::planar).free_rows) row = new_rows[row];
+        permute(new_rows, [&](std::uint32_t i, std::uint32_t j) {
+            swap_planar(i, j);
+            swap(i, j);
+        });
+        enter_rows(BodyKind::planar);
+    }
     [[nodiscard]] bool is_alive(BodyId body) const
     {
         // A removal increments the generation, so a handle that matches is alive; slot 0 is the null handle's.
@@ -150,6 +163,9 @@ class BodyStore {
     std::vector<std::uint32_t> free_slots_;
 
     std::uint32_t take_row(BodyKind kind);
+    void swap_planar(std::uint32_t i, std::uint32_t j);
+    /// Enters the rows of a kind into the table of slots.
+    void enter_rows(BodyKind kind);
 };
 
 }  // namespace motley

@@ -81,6 +81,12 @@ void DiscStore::renumber(std::span<const std::uint32_t> new_rows)
         }
         *places = std::move(moved);
     }
+    renumber_contacts(new_rows);
+    band_rows.clear();
+}
+
+void DiscStore::renumber_contacts(std::span<const std::uint32_t> new_rows)
+{
     for (std::uint64_t& key : late) {
         const auto row_a = static_cast<std::uint32_t>(key >> 32), row_b = static_cast<std::uint32_t>(key);
         key = (key >> 63) != 0 ? key - row_b + new_rows[row_b] : late_key(new_rows[row_a], new_rows[row_b]);

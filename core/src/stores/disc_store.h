@@ -38,14 +38,19 @@ struct WallSegment {
     BodyId body{};
     float friction = 0;
     std::uint32_t category = 1, mask = UINT32_MAX;
-    std::uint32_t wall = 0;  ///< slot
+    std::uint32_t wall = 0;                         ///< slot
+    float surface_speed = 0, max_force = INFINITY;  ///< as in WallDefinition
+    std::uint32_t is_one_way = 0;
+    std::uint32_t unused = 0;  ///< so that files have no undefined bytes
 };
 
 /// A disc near a wall.
 struct WallTouch {
+    static constexpr float passing = 2;
     std::uint32_t segment = 0;
-    float side =
-        1;  ///< 1: the disc is to the left of the segment as it runs from `from` to `to`; -1: to the right
+    /// 1: the disc is to the left of the segment as it runs from `from` to `to`; -1: to the right; `passing`: a one-way
+    /// wall does not hold it.
+    float side = 1;
 };
 
 /// The contacts of one class in one band. The vectors may be longer than `count` blocks.
@@ -107,6 +112,14 @@ struct DiscStore {
     AlignedVector<DiscAnchor> anchors;   ///< by row of planar bodies
     AlignedVector<DiscAnchor> found_at;  ///< the same as of the last search of all discs
     StripFrame frame;                    ///< of that search
+    /// The discs of each band in order, and where those of a band begin; band 0 has none. Empty after a file or a
+    /// renumbering, until the next search.
+    std::vector<BodyRow> band_rows;
+    std::vector<std::uint32_t> first_band_row;  ///< by band, and one past the last
+    std::vector<std::uint8_t> is_in_band;       ///< by row of planar bodies
+    /// Whether bodies that are near each other have come to lie far apart in memory: see sort_disc_rows().
+    bool wants_sorting = false;
+    std::vector<std::uint32_t> sorted_rows;  ///< space for sort_disc_rows()
     /// Who made that search, and its number there; nobody after a file or a renumbering.
     std::shared_ptr<const char> searcher;
     std::uint64_t search = 0;
@@ -121,6 +134,12 @@ struct DiscStore {
     bool is_stale = true;
 
     [[nodiscard]] bool is_in_use() const { return count > 0; }
+    /// The discs of bands `first` to `last` - 1.
+    [[nodiscard]] std::span<const BodyRow> rows_of_bands(std::size_t first, std::size_t last) const
+    {
+        const std::uint32_t from = first_band_row[first];
+        return std::span(band_rows).subspan(from, first_band_row[last] - from);
+    }
     [[nodiscard]] const DiscShape* shape_of(std::uint32_t slot) const
     {
         return slot < shapes.size() && shapes[slot].radius > 0 ? &shapes[slot] : nullptr;
@@ -150,8 +169,10 @@ struct DiscStore {
     void remove_wall(std::uint32_t slot);
     /// When a body was removed or teleported: its impulses must not be used again.
     void forget_row(std::uint32_t row);
-    /// When the rows of planar bodies are renumbered: row i is now new_rows[i].
+    /// When the rows of planar bodies are renumbered: row i is now new_rows[i]. The second one leaves out what is kept by
+    /// row.
     void renumber(std::span<const std::uint32_t> new_rows);
+    void renumber_contacts(std::span<const std::uint32_t> new_rows);
 
   private:
     void count_shape(const DiscShape& shape, std::size_t one);

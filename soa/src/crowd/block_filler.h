@@ -31,6 +31,16 @@ class BlockFiller {
         if (masks_.size() < bodies) masks_.resize(with_room_to_grow(bodies), 0);
         open_ = 0;
     }
+    /// Makes room for so many blocks.
+    static void make_room(DiscBlocks& blocks, int row_floats, int impulse_floats, std::size_t room)
+    {
+        if (blocks.lanes.size() >= room) return;
+        blocks.bodies.resize(room);
+        blocks.rows.resize(room * static_cast<std::size_t>(row_floats) * block_lanes);
+        blocks.impulses.resize(room * static_cast<std::size_t>(impulse_floats) * block_lanes);
+        blocks.sums.resize(room * static_cast<std::size_t>(impulse_floats) * block_lanes);
+        blocks.lanes.resize(room);
+    }
     /// A lane of a block.
     struct Place {
         std::size_t block;
@@ -106,15 +116,10 @@ class BlockFiller {
     {
         const auto block = static_cast<std::size_t>(blocks_->count++);
         const std::size_t rows = row_floats_ * block_lanes, impulses = impulse_floats_ * block_lanes;
-        // Twice the room, because a band that is searched for again has a few blocks more or less than before.
-        if (blocks_->lanes.size() <= block) {
-            const std::size_t room = 2 * (block + 4);
-            blocks_->bodies.resize(room);
-            blocks_->rows.resize(room * rows);
-            blocks_->impulses.resize(room * impulses);
-            blocks_->sums.resize(room * impulses);
-            blocks_->lanes.resize(room);
-        }
+        // More room, because a band that is searched for again has a few blocks more or less than before.
+        if (blocks_->lanes.size() <= block)
+            make_room(*blocks_, static_cast<int>(row_floats_), static_cast<int>(impulse_floats_),
+                      block + block / 2 + 8);
         blocks_->bodies[block] = {};
         blocks_->lanes[block] = 0;
         std::memset(&blocks_->rows[block * rows], 0, rows * sizeof(float));

@@ -59,6 +59,83 @@ void DiscFinder::open(SceneCore& scene, int workers)
     discs.band_count = static_cast<std::size_t>(strips.band_count()) + 1;
     if (discs.bands.size() < discs.band_count) discs.bands.resize(discs.band_count);
     place_segments(discs);
+    open_band_rows(scene);
+}
+
+/// Makes space for the lists of the discs of every band.
+void DiscFinder::open_band_rows(SceneCore& scene) const
+{
+    DiscStore& discs = scene.discs;
+    const std::int32_t bands = strips.band_count();
+    discs.band_rows.resize(strips.discs().size() - strips.wide().size());
+    assign_with_room(discs.first_band_row, static_cast<std::size_t>(bands) + 2, 0);
+    discs.first_band_row.assign(1, 0);
+    for (std::int32_t band = 0; band <= bands; ++band)
+        discs.first_band_row.push_back(strips.first_of(strips.first_strip(band)));
+    const std::size_t rows = scene.bodies.rows(BodyKind::planar).size();
+    assign_with_room(discs.is_in_band, rows, 0);
+    grow_to(discs.sorted_rows, rows);  // so that sort_disc_rows() need not allocate
+}
+
+/// Gives a band near walls room for contacts with them before the first ones are found.
+void DiscFinder::make_room_for_touches(DiscBand& band)
+{
+    constexpr std::size_t blocks = 8;
+    for_each_disc_class([&](auto c) {
+        if constexpr (is_wall(c.value)) {
+            using Fields = DiscFieldsOf<c.value>;
+            DiscBlocks& own = band.blocks[static_cast<std::size_t>(c.value)];
+            BlockFiller::make_room(own, Fields::row_floats, Fields::impulse_floats, blocks);
+            grow_to(own.touches, block_lanes * own.lanes.size());
+        }
+    });
+}
+
+/// Gives every band room for a quarter more pairs than the fullest has, so that it seldom grows in a step to come.
+void DiscFinder::make_room_for_pairs(DiscStore& discs)
+{
+    for_each_disc_class([&](auto c) {
+        if constexpr (!is_wall(c.value)) {
+            using Fields = DiscFieldsOf<c.value>;
+            std::size_t most = 0;
+            for (std::size_t band = 0; band < discs.band_count; ++band)
+                most = std::max(most, static_cast<std::size_t>(
+                                          discs.bands[band].blocks[static_cast<std::size_t>(c.value)].count));
+            if (most == 0) return;
+            for (std::size_t band = 0; band < discs.band_count; ++band)
+                BlockFiller::make_room(discs.bands[band].blocks[static_cast<std::size_t>(c.value)],
+                                       Fields::row_floats, Fields::impulse_floats,
+                                       with_room_to_grow(most + 4));
+        }
+    });
+}
+
+/// Whether neighbours in the bands lie too far apart in memory: whether the rows of 64 discs in line are in more than
+/// twice as many cache lines as they would be in order. A sample of the crowd is looked at.
+bool DiscFinder::are_rows_scattered(const DiscStore& discs)
+{
+    constexpr std::size_t window = 64, most_windows = 256, rows_a_line = 4;
+    const std::size_t windows = discs.band_rows.size() / window;
+    const std::size_t stride = windows / most_windows + 1;
+    std::array<std::uint32_t, window> lines;
+    std::size_t seen = 0, in_order = 0;
+    for (std::size_t w = 0; w < windows; w += stride) {
+        for (std::size_t i = 0; i < window; ++i)
+            lines[i] = discs.band_rows[w * window + i].row() / rows_a_line;
+        std::sort(lines.begin(), lines.end());
+        seen += static_cast<std::size_t>(std::unique(lines.begin(), lines.end()) - lines.begin());
+        in_order += window / rows_a_line;
+    }
+    return seen > 2 * in_order;
+}
+
+void DiscFinder::list_band_rows(DiscStore& discs, std::size_t band) const
+{
+    for (std::uint32_t place = discs.first_band_row[band]; place < discs.first_band_row[band + 1]; ++place) {
+        const std::uint32_t row = strips.disc(place).row;
+        discs.band_rows[place] = BodyRow(BodyKind::planar, row);
+        discs.is_in_band[row] = 1;
+    }
 }
 
 /// Lists for every band the walls near its strips.
@@ -94,10 +171,12 @@ void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
     } else if (strips.wide().empty()) {
         numbers = 0;
     }
+    if (!segments_[band].empty()) make_room_for_touches(found);
     begin_fillers(found, own, numbers, false);
     if (band == 0) {
         find_wide(scene, own);
     } else {
+        list_band_rows(scene.discs, band);
         find_in_strips(scene, band, own);
     }
     for (BlockFiller& filler : own.fillers) filler.finish();
@@ -222,7 +301,12 @@ void DiscFinder::add_touch(SceneCore& scene, DiscBand& band, Worker& worker, con
         const Vec2<double>& to = discs.wall_ends[2 * std::size_t{segment.index} + 1];
         const Vec3<PoseReal>& at = rows.pose[disc.row].position;
         const Vec2<double> world{static_cast<double>(at.x), static_cast<double>(at.y)};
-        impulse.side = cross(to - from, world - from) < 0 ? -1.0F : 1.0F;
+        const double left = cross(to - from, world - from) / std::sqrt(dot(to - from, to - from));
+        if (wall.is_one_way != 0) {
+            impulse.side = left >= static_cast<double>(shape.radius) ? 1.0F : WallTouch::passing;
+        } else {
+            impulse.side = left < 0 ? -1.0F : 1.0F;
+        }
     }
     with_disc_class(friction > 0 ? DiscClass::rough_wall : DiscClass::smooth_wall, [&](auto c) {
         if constexpr (is_wall(c.value)) {
@@ -232,7 +316,7 @@ void DiscFinder::add_touch(SceneCore& scene, DiscBand& band, Worker& worker, con
             const BlockFiller::Place at = worker.fillers[i].take(BlockFiller::no_body, number);
             blocks.bodies[at.block].a[at.lane] = offset_of(scene.bodies.row_of(wall.body));
             blocks.bodies[at.block].b[at.lane] = offset_of(BodyRow(BodyKind::planar, disc.row));
-            grow_to(blocks.touches, block_lanes * (at.block + 1));
+            grow_to(blocks.touches, block_lanes * blocks.lanes.size());
             blocks.touches[block_lanes * at.block + at.lane] = {segment.index, impulse.side};
             typename Fields::Row row{};
             row.in_sweep.effective_mass = 1 / disc.inverse_mass;

@@ -22,6 +22,9 @@ class DiscFinder {
     void open(SceneCore& scene, int workers);
     /// ...and the contacts of every band are found; band 0 has those of discs that reach far.
     void find(SceneCore& scene, std::size_t band, int worker);
+    [[nodiscard]] static bool are_rows_scattered(const DiscStore& discs);
+    static void make_room_for_touches(DiscBand& band);
+    static void make_room_for_pairs(DiscStore& discs);
     /// Between searches of all discs: gives the discs in these rows of planar bodies new anchors and skins, and adds
     /// the contacts that they may have now to band 0. The rows may be in any order; they are sorted.
     void find_late(SceneCore& scene, std::span<std::uint32_t> rows, float dt);
@@ -48,6 +51,8 @@ class DiscFinder {
     std::vector<std::vector<PlacedSegment>> segments_;  ///< by band
 
     void place_segments(const DiscStore& discs);
+    void open_band_rows(SceneCore& scene) const;
+    void list_band_rows(DiscStore& discs, std::size_t band) const;
     void name_search(DiscStore& discs);
     void make_strips_of(SceneCore& scene);
     void begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers, bool goes_on);

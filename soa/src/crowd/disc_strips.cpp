@@ -13,9 +13,17 @@ namespace {
 /// m: a disc at rest may go so far before its neighbours are found again.
 constexpr float skin_at_rest = 0.02F;
 /// Steps for which a search looks ahead, at the speed that a disc has.
-constexpr double steps_ahead = 5;
+constexpr double steps_ahead = 6;
 /// People of a band: few enough for a core's first cache, and enough that blocks are full.
 constexpr std::uint32_t discs_per_band = 512;
+
+/// Resizes a vector, with room for twice as much: the number of strips grows as a crowd slows down.
+template <class Vector>
+void resize_with_room(Vector& values, std::size_t size)
+{
+    if (values.capacity() < size) values.reserve(2 * size);
+    values.resize(size);
+}
 
 }  // namespace
 
@@ -114,12 +122,13 @@ void DiscStrips::make_room()
     strips_ = frame_.strips;
     strips_per_group_ = (strips_ + most_groups - 1) / most_groups;
     groups_ = (strips_ + strips_per_group_ - 1) / strips_per_group_;
-    assign_with_room(places_, static_cast<std::size_t>(chunks_) * static_cast<std::size_t>(groups_ + 1), 0);
-    first_in_group_.resize(static_cast<std::size_t>(groups_) + 2);
-    grow_to(starts_, static_cast<std::size_t>(groups_));
+    resize_with_room(places_, static_cast<std::size_t>(chunks_) * static_cast<std::size_t>(groups_ + 1));
+    std::fill(places_.begin(), places_.end(), 0U);
+    resize_with_room(first_in_group_, static_cast<std::size_t>(groups_) + 2);
+    resize_with_room(starts_, static_cast<std::size_t>(discs_ + strips_ + groups_));
     grow_to(placed_, static_cast<std::size_t>(discs_));
     sorted_.resize(static_cast<std::size_t>(discs_));
-    first_.resize(static_cast<std::size_t>(strips_) + 1);
+    resize_with_room(first_, static_cast<std::size_t>(strips_) + 1);
 }
 
 void DiscStrips::restore(const SceneCore& scene)
@@ -220,8 +229,12 @@ void DiscStrips::sort(const SceneCore& scene, std::int64_t group)
             std::min(static_cast<std::int32_t>((disc.along - low) * per_metre), bins - 1);
         return static_cast<std::size_t>((strip_at(disc.across) - first_strip) * bins + bin);
     };
-    std::vector<std::uint32_t>& starts = starts_[static_cast<std::size_t>(group)];
-    assign_with_room(starts, static_cast<std::size_t>(strips * bins) + 1, 0);
+    // A group has no more bins than discs or strips.
+    const std::span<std::uint32_t> starts =
+        std::span(starts_).subspan(static_cast<std::size_t>(begin) + static_cast<std::size_t>(first_strip) +
+                                       static_cast<std::size_t>(group),
+                                   static_cast<std::size_t>(strips * bins) + 1);
+    std::fill(starts.begin(), starts.end(), 0U);
     for (const PlacedDisc& disc : discs) ++starts[bin_of(disc) + 1];
     starts[0] = begin;
     for (std::size_t b = 1; b < starts.size(); ++b) starts[b] += starts[b - 1];

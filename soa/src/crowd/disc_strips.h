@@ -148,9 +148,9 @@ class DiscStrips {
     std::vector<std::uint32_t>
         places_;  ///< by chunk and group: the number of discs, then the next free place
     std::vector<std::uint32_t> first_in_group_;
-    std::vector<std::vector<std::uint32_t>> starts_;  ///< by group: of the bins of its strips
-    AlignedVector<PlacedDisc> placed_, sorted_;       ///< by group; in order
-    std::vector<std::uint32_t> first_;  ///< by strip, one past the last, and one past the wide ones
+    std::vector<std::uint32_t> starts_;          ///< by group: of the bins of its strips
+    AlignedVector<PlacedDisc> placed_, sorted_;  ///< by group; in order
+    std::vector<std::uint32_t> first_;           ///< by strip, one past the last, and one past the wide ones
     std::vector<std::int32_t> band_strips_;
 
     template <class Work>

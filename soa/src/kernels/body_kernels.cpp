@@ -24,7 +24,9 @@ void enter_body(BodyKernels& kernels)
     if constexpr (kind != BodyKind::fixed) {
         kernels.integrate_velocities = integrate_velocities<kind, false>;
         kernels.begin_velocities = integrate_velocities<kind, true>;
-        kernels.integrate_listed = integrate_listed<kind>;
+        if constexpr (kind == BodyKind::planar)
+            kernels.integrate_listed_velocities = integrate_listed_velocities<kind>;
+        kernels.integrate_listed_positions = integrate_listed_positions<kind>;
         kernels.commit = commit<kind>;
         kernels.bring_back = bring_back<kind>;
     }

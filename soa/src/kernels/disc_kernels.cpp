@@ -21,6 +21,8 @@ void enter(ConstraintKernels& kernels)
 {
     using Own = Kernels<Type, a, BodyKind::planar>;
     Own::enter_swept(kernels);
+    kernels.solve = DiscSweeps<Type, a>::solve;
+    kernels.relax = DiscSweeps<Type, a>::relax;
     kernels.project = Own::project;
 }
 

@@ -1,5 +1,5 @@
-// The start of a step for contacts of discs, in blocks that are kept from step to step. Included inside an anonymous
-// namespace, after kernel_constraints.h.
+// What contacts of discs, in blocks that are kept from step to step, do in their own way: the start of a step, and sweeps.
+// Included inside an anonymous namespace, after kernel_constraints.h.
 
 /// Rows of pairs from the poses of their discs; the impulses to start from; and sums of zero.
 template <class Type>
@@ -32,3 +32,48 @@ void prepare_pairs(const KernelContext& context, const BlockStreams& streams, st
         });
     }
 }
+
+/// Sweeps of a class, with or without measuring separations first.
+template <class Type, BodyKind kind_a>
+struct DiscSweeps {
+    using Own = Kernels<Type, kind_a, BodyKind::planar>;
+    using Row = typename Own::Row;
+
+    static void solve(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
+                      std::int32_t end)
+    {
+        if (context.discs_are_measured) {
+            sweep<false>(context, context.step, streams, begin, end);
+        } else {
+            sweep<true>(context, context.step, streams, begin, end);
+        }
+    }
+    static void relax(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
+                      std::int32_t end)
+    {
+        sweep<true>(context, context.relaxing, streams, begin, end);
+    }
+
+  private:
+    template <bool measures>
+    [[gnu::noinline]] static void sweep(const KernelContext& context, const StepConstants& step,
+                                        const BlockStreams& streams, std::int32_t begin, std::int32_t end)
+    {
+        for (std::int32_t block = begin; block < end; ++block) {
+            Own::for_each_bundle(context, streams, block, [&](const typename Own::Bundle& bundle) {
+                auto a = bundle.load_a();
+                auto b = bundle.load_b();
+                auto impulse = load_row<typename Own::Impulse>(bundle.impulse);
+                auto row = load_row<Row>(bundle.row);
+                if constexpr (measures) {
+                    Type::template measure<Lanes>(row, a, b);
+                    const auto field = &row.in_sweep.separation - reinterpret_cast<const Lanes*>(&row);
+                    store_lanes(row.in_sweep.separation, bundle.row + field * block_lanes);
+                }
+                Type::template solve<Lanes>(step, row.in_sweep, typename Own::Substep{}, impulse, a, b);
+                store_row(impulse, bundle.impulse);
+                bundle.store_velocities(a, b);
+            });
+        }
+    }
+};

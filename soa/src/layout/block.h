@@ -92,6 +92,8 @@ struct KernelContext {
     StepConstants relaxing;  ///< the same for sweeps that relax
     Measure measure = Measure::nothing;
     Replay replay = Replay::nothing;
+    /// Contacts of discs need not be measured by `solve`: `prepare` has measured them, and after it every `relax`.
+    bool discs_are_measured = false;
     bool bodies_are_far = false;  ///< they exceed a core's cache: sweeps prefetch those of the next block
     BodyArrays bodies[body_kind_count];
     /// Set by prepare where a joint pulls harder than a substep can follow: then `stiffen` must be run. See
@@ -141,8 +143,11 @@ struct BodyKernels {
     Move begin_velocities = nullptr;      ///< the same for the first substep: also stores Flight::start_along
     Move integrate_positions = nullptr;
     Move integrate_on = nullptr;  ///< positions, then the velocities of the next substep, in one pass
-    /// Integrates the positions of `count` bodies of this kind, in any rows. Null for fixed bodies.
-    void (*integrate_listed)(const KernelContext&, const BodyRow* rows, std::int32_t count) = nullptr;
+    /// The same for `count` bodies of this kind, in any rows. Null for fixed bodies; velocities also for bodies that
+    /// cannot have discs.
+    using MoveListed = void (*)(const KernelContext&, const BodyRow* rows, std::int32_t count);
+    MoveListed integrate_listed_velocities = nullptr;
+    MoveListed integrate_listed_positions = nullptr;
     /// BodyStore::commit of sixteen rows from `first` on. Returns false and does nothing unless each row is a body
     /// that can move and whose state is finite. Null for fixed bodies.
     bool (*commit)(const KernelContext&, std::int32_t first) = nullptr;

@@ -1,6 +1,7 @@
 // People and walls whose contacts the library finds itself: discs on planar bodies, and walls of straight segments.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -27,7 +28,8 @@ struct WallId {
     friend bool operator==(const WallId&, const WallId&) = default;
 };
 
-/// A wall without thickness along a chain of points. Discs are kept on the side of it on which they are.
+/// A wall without thickness along a chain of points. Discs are kept on the side of it on which they are; they may walk
+/// around its ends.
 struct WallDefinition {
     /// Two points or more, m, each coordinate -1e12 to 1e12, neighbours at least 1e-6 m apart: in the world, or, with
     /// `body`, in the frame of that body, of which only the motion in the plane counts.
@@ -38,6 +40,14 @@ struct WallDefinition {
     float friction = 0;  ///< as DiscDefinition::friction
     std::uint32_t category = 1;
     std::uint32_t mask = UINT32_MAX;
+    /// A turnstile: discs pass from the right of the wall to its left, seen from the first point towards the last, and
+    /// are held there once they are past it.
+    bool one_way = false;
+    /// m/s, -1e6 to 1e6: the surface runs along the wall, from the first point towards the last, as that of a moving belt
+    /// does. It takes discs along by friction, so a wall without friction has none.
+    float surface_speed = 0;
+    /// N, above 0: the most with which the wall pushes a disc along the normal. Who pushes harder passes.
+    float max_force = INFINITY;
 };
 
 /// A contact that the library found and that pushed in the last step.
