@@ -77,10 +77,10 @@ void DiscFinder::open_band_rows(SceneCore& scene) const
     grow_to(discs.sorted_rows, rows);  // so that sort_disc_rows() need not allocate
 }
 
-/// Gives a band near walls room for contacts with them before the first ones are found.
-void DiscFinder::make_room_for_touches(DiscBand& band)
+/// Gives a band near walls room for so many blocks of contacts with them before the first ones are found. Band 0 gets a
+/// new block in each step between searches.
+void DiscFinder::make_room_for_touches(DiscBand& band, std::size_t blocks)
 {
-    constexpr std::size_t blocks = 8;
     for_each_disc_class([&](auto c) {
         if constexpr (is_wall(c.value)) {
             using Fields = DiscFieldsOf<c.value>;
@@ -171,7 +171,7 @@ void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
     } else if (strips.wide().empty()) {
         numbers = 0;
     }
-    if (!segments_[band].empty()) make_room_for_touches(found);
+    if (!segments_[band].empty()) make_room_for_touches(found, band == 0 ? 32 : 8);
     begin_fillers(found, own, numbers, false);
     if (band == 0) {
         find_wide(scene, own);

@@ -22,9 +22,9 @@ class DiscFinder {
     void open(SceneCore& scene, int workers);
     /// ...and the contacts of every band are found; band 0 has those of discs that reach far.
     void find(SceneCore& scene, std::size_t band, int worker);
-    [[nodiscard]] static bool are_rows_scattered(const DiscStore& discs);
-    static void make_room_for_touches(DiscBand& band);
+    /// After that: room for more pairs, so that a step to come seldom allocates, and whether the rows should be sorted.
     static void make_room_for_pairs(DiscStore& discs);
+    [[nodiscard]] static bool are_rows_scattered(const DiscStore& discs);
     /// Between searches of all discs: gives the discs in these rows of planar bodies new anchors and skins, and adds
     /// the contacts that they may have now to band 0. The rows may be in any order; they are sorted.
     void find_late(SceneCore& scene, std::span<std::uint32_t> rows, float dt);
@@ -51,6 +51,7 @@ class DiscFinder {
     std::vector<std::vector<PlacedSegment>> segments_;  ///< by band
 
     void place_segments(const DiscStore& discs);
+    static void make_room_for_touches(DiscBand& band, std::size_t blocks);
     void open_band_rows(SceneCore& scene) const;
     void list_band_rows(DiscStore& discs, std::size_t band) const;
     void name_search(DiscStore& discs);
@@ -74,8 +75,6 @@ class DiscFinder {
     [[nodiscard]] CarriedImpulses::Impulse carried_of(const PlacedDisc& a, const PlacedDisc& b) const;
 };
 
-/// Where the ends of the segments of walls are now, world, two a segment.
-void find_wall_ends(const SceneCore& scene, std::vector<Vec2<double>>& ends);
 /// The fastest end of a wall, m/s.
 double fastest_wall_end(const SceneCore& scene);
 /// When a step begins: the rows of walls.
