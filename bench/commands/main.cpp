@@ -5,8 +5,10 @@
 #include <algorithm>
 
 #include "commands/anchors.h"
+#include "commands/behaviour.h"
 #include "commands/demo.h"
 #include "commands/extremes.h"
+#include "commands/laws.h"
 #include "commands/replay.h"
 #include "commands/run_command.h"
 #include "commands/scale.h"
@@ -225,6 +227,14 @@ int main(int count, char** arguments)
     report_app->add_flag("!--without-peers", report.with_peers, "motley alone");
     CLI::App* extremes_app = app.add_subcommand(
         "extremes", "run scenes at the edge of what numbers can bear under every method: figures and bounds");
+    LawsOptions laws_options;
+    CLI::App* laws_app = app.add_subcommand(
+        "laws", "run every crowd that has an exact law, contacts found and listed: figures and pass marks");
+    laws_app->add_flag("--quick", laws_options.quick, "fewer people, shorter runs");
+    BehaviourOptions behaviour_options;
+    CLI::App* behaviour_app = app.add_subcommand(
+        "behaviour", "what steering decides, beside published curves: flows, speeds, lanes; and their drift");
+    behaviour_app->add_flag("--quick", behaviour_options.quick, "fewer people, shorter runs");
     SoakCommand soak_command;
     CLI::App* soak_app = app.add_subcommand(
         "soak",
@@ -261,6 +271,12 @@ int main(int count, char** arguments)
         if (*demo_app) return run_demo(demo);
         if (*soak_app) return soak_command();
         if (*extremes_app) return print_extremes({}) == 0 ? 0 : 1;
+        if (*laws_app) {
+            const std::vector<LawResult> results = run_laws(laws_options);
+            fmt::print("{}", table_of(results));
+            return failures_in(results, false) == 0 ? 0 : 1;
+        }
+        if (*behaviour_app) print_behaviour(behaviour_options);
         if (*list_app) {
             for (const SceneEntry& entry : scene_list())
                 fmt::print("{:<18}{}\n", entry.name, entry.description);

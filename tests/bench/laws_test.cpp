@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "commands/laws.h"
 #include "measuring/runner.h"
 
 namespace motley::bench {
@@ -99,6 +100,40 @@ TEST(Runs, TellOfAllTheirStepsInNumbers)
     EXPECT_GT(json["bytes_per_constraint"], 30);
     ASSERT_FALSE(json["figures"].empty());
     for (const auto& figure : json["figures"]) EXPECT_TRUE(figure.is_number()) << figure;
+}
+
+TEST(Laws, HoldInTheQuickTableButForItsDebts)
+{
+    const std::vector<LawResult> results = run_laws({.quick = true, .progress = false});
+    EXPECT_EQ(failures_in(results, false), 0) << table_of(results);
+    const std::string table = table_of(results);
+    EXPECT_NE(table.find("PASS"), std::string::npos);
+    EXPECT_NE(table.find("doors close"), std::string::npos);
+}
+
+TEST(Laws, AMissedLawCountsUnlessItIsADebtOfTheDefaults)
+{
+    const std::vector<Mark> missed{{"a law", 2, 1}}, met{{"a law", 1, 1}};
+    LawResult result;
+    result.name = "scene";
+    result.marks[static_cast<int>(LawWay::found)] = missed;
+    result.marks[static_cast<int>(LawWay::found_fine)] = met;
+    result.marks[static_cast<int>(LawWay::listed)] = missed;
+    EXPECT_EQ(failures_in({result}, false), 1) << "what a host lists is printed beside, and does not count";
+    EXPECT_NE(table_of({result}).find("2 FAIL "), std::string::npos) << table_of({result});
+    result.debt = "another law";
+    EXPECT_EQ(failures_in({result}, false), 1) << "a debt names its law";
+    result.debt = "a law";
+    EXPECT_EQ(failures_in({result}, false), 0);
+    EXPECT_EQ(failures_in({result}, true), 1);
+    EXPECT_NE(table_of({result}).find("2 FAIL*"), std::string::npos) << table_of({result});
+    result.marks[static_cast<int>(LawWay::found_fine)] = missed;
+    EXPECT_EQ(failures_in({result}, false), 1) << "a debt is one of the defaults alone";
+    result.marks[static_cast<int>(LawWay::found_fine)] = {{"a law", std::nan(""), 1}};
+    EXPECT_EQ(failures_in({result}, false), 1) << "what is not a number meets no law";
+    LawResult listed_only;
+    listed_only.marks[static_cast<int>(LawWay::listed)] = missed;
+    EXPECT_EQ(failures_in({listed_only}, false), 1) << "the library cannot find these: the list counts";
 }
 
 /// What contacts of discs do not have makes a host's search list them, and a scene without one says so.
