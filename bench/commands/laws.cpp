@@ -44,7 +44,7 @@ constexpr LawScene scenes[] = {
      .quick_agents = 360,
      .seconds = 8,
      .debt = "overlap"},
-    {.name = "silo", .scene = "silo", .agents = 1800, .quick_agents = 600, .seconds = 12, .debt = "overlap"},
+    {.name = "silo", .scene = "silo", .agents = 1800, .quick_agents = 600, .seconds = 18, .debt = "overlap"},
     {.name = "bottleneck", .scene = "bottleneck", .agents = 75, .quick_agents = 75},
     {.name = "evacuation", .scene = "evacuation", .agents = 400, .quick_agents = 200, .seconds = 60},
     {.name = "evacuation, friction 0.2",

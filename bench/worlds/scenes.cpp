@@ -71,7 +71,7 @@ std::vector<SceneEntry> all_scenes()
          {.found = true}},
         {"push", "a packed slab leans on a wall with 50 N each: 4.5 kN/m", 1800, 10, make_push<50>, both},
         {"push-214", "the same with the full drive of a walker, 214 N each", 1800, 10, make_push<214>, both},
-        {"silo", "a packed slab between side walls with friction 0.3: Janssen's profile", 1800, 12,
+        {"silo", "a packed slab between side walls with friction 0.3: Janssen's profile", 1800, 18,
          make<Silo>, both},
         {"lean", "rows of 100 people lean on each other with 50 N each, and the first on a wall", 10000, 6,
          make<Lean<100>>, both},

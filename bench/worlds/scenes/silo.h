@@ -36,13 +36,19 @@ class Silo final : public CrowdScene {
         }
         const double length = pitch * rows_ + 1;
         people.walls = {{{0, -1}, {0, width + 1}}, {{-1, 0}, {length, 0}}, {{-1, width}, {length, width}}};
-        std::vector<Vec3<float>> forces(people.agents.size(), {-static_cast<float>(force), 0, 0});
-        scene.set_forces(people.bodies(), forces);
         share_out_contacts(options);
         axial_.resize(static_cast<std::size_t>(rows_));
     }
 
-    void steer(double, Executor& executor) override { people.observe(scene, executor); }
+    void steer(double time, Executor& executor) override
+    {
+        people.observe(scene, executor);
+        // Slowly: people who are let loose at once gain speed until they are packed, and what stops them is held by
+        // friction from then on, which at the free end would point forward.
+        const double now = force * std::min(1.0, time / loading);
+        const std::vector<Vec3<float>> forces(people.agents.size(), {-static_cast<float>(now), 0, 0});
+        scene.set_forces(people.bodies(), forces);
+    }
 
     void observe(double time, const Solver&) override
     {
@@ -114,7 +120,8 @@ class Silo final : public CrowdScene {
     }
 
   private:
-    static constexpr double settle = 6;  ///< s before sampling
+    static constexpr double loading = 10,
+                            settle = 14;  ///< s: until everybody leans fully, and before sampling
     int rows_ = 0;
     std::vector<double>
         axial_;  ///< N: the force between each row and the one before it, or the front wall; summed
