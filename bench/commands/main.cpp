@@ -3,16 +3,17 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <fstream>
-#include <map>
-#include <stdexcept>
 
 #include "commands/anchors.h"
+#include "commands/behaviour.h"
 #include "commands/demo.h"
 #include "commands/extremes.h"
+#include "commands/laws.h"
 #include "commands/replay.h"
+#include "commands/run_command.h"
 #include "commands/scale.h"
 #include "commands/soak.h"
+#include "commands/solver_command.h"
 #include "commands/sweep.h"
 #include "commands/threads.h"
 #include "measuring/clock.h"
@@ -23,153 +24,6 @@ namespace {
 
 using namespace motley;
 using namespace motley::bench;
-
-void write_text(const std::string& path, const std::string& text)
-{
-    std::ofstream file(path);
-    file << text;
-    file.close();
-    if (!file) throw std::runtime_error(path + ": cannot be written");
-}
-
-/// Names and values of dials, for CLI11.
-const std::map<std::string, Method> method_names{{"soft_step", Method::soft_step},
-                                                 {"sequential_impulse", Method::sequential_impulse},
-                                                 {"direct", Method::direct}};
-const std::map<std::string, DriftCorrection> drift_names{{"by_method", DriftCorrection::by_method},
-                                                         {"none", DriftCorrection::none},
-                                                         {"baumgarte", DriftCorrection::baumgarte},
-                                                         {"projection", DriftCorrection::projection}};
-
-/// The instruction set of that name. Prints an error when there is none.
-std::optional<Isa> isa_called(const std::string& name)
-{
-    const std::optional<Isa> isa = isa_from_name(name);
-    if (!isa) fmt::print(stderr, "motley: --isa is {}; expected scalar, sse2, avx2, avx512 or neon\n", name);
-    return isa;
-}
-
-/// The dials of one solver.
-struct SolverCommand {
-    std::string isa;
-    SolverSettings settings;
-    SolverOptions solver;
-
-    void declare(CLI::App& app)
-    {
-        app.add_option("--method", settings.method, "soft_step, sequential_impulse or direct")
-            ->transform(CLI::CheckedTransformer(method_names));
-        app.add_option("--drift-correction", settings.drift_correction,
-                       "sequential_impulse, direct: none, baumgarte or projection; default: the method's")
-            ->transform(CLI::CheckedTransformer(drift_names));
-        app.add_option("--substeps", settings.substeps, "substeps a step")
-            ->check(CLI::Range(1, 1024))
-            ->capture_default_str();
-        app.add_option("--iterations", settings.iterations, "sweeps a substep; 0: 1, sequential_impulse 8")
-            ->check(CLI::Range(0, 10000))
-            ->capture_default_str();
-        app.add_option("--relaxations", settings.relaxations, "soft_step: sweeps without bias a substep")
-            ->check(CLI::Range(0, 10000))
-            ->capture_default_str();
-        app.add_option("--contact-hertz", settings.contact_hertz,
-                       "soft_step: stiffness of contacts; 0: half of what a substep can follow, 30 at least")
-            ->capture_default_str();
-        app.add_option("--joint-hertz", settings.joint_hertz,
-                       "soft_step: stiffness of joints, as far as a substep can follow")
-            ->capture_default_str();
-        app.add_flag("--exact", settings.exact_joints, "soft_step: joints solved all at once");
-        app.add_option("--isa", isa,
-                       "scalar, sse2, avx2, avx512 or neon; default: MOTLEY_ISA, else the widest here");
-        app.add_option("--threads", solver.threads, "threads, the caller's counted")
-            ->check(CLI::Range(1, 1024))
-            ->capture_default_str();
-        app.add_option("--tolerance", settings.tolerance, "m/s at which an island's sweeps end; 0: never")
-            ->capture_default_str();
-        app.add_option("--budget", settings.budget_ms,
-                       "ms a step may take; substeps or iterations are then the most; 0: no budget")
-            ->capture_default_str();
-    }
-    /// False when there is no such instruction set.
-    bool pick_isa()
-    {
-        if (isa.empty()) return true;
-        solver.isa = isa_called(isa);
-        return solver.isa.has_value();
-    }
-};
-
-struct RunCommand {
-    std::string scene, json;
-    SolverCommand dials;
-    RunOptions options;
-    RunOutputs outputs;
-
-    void declare(CLI::App& app)
-    {
-        dials.declare(app);
-        app.add_option("scene", scene, "one of `motley list`")->required();
-        app.add_option("--agents", options.agents, "people or bodies; default: the scene's")
-            ->check(CLI::PositiveNumber);
-        app.add_option("--seconds", options.seconds, "simulated time; default: the scene's")
-            ->check(CLI::PositiveNumber);
-        app.add_option("--dt", options.dt, "s a step")->check(CLI::Range(1e-6, 1.0))->capture_default_str();
-        app.add_flag("--listed", options.lists_contacts,
-                     "a search of the host lists the contacts of people, where the scene can choose");
-        app.add_option("--friction", options.friction, "between people; default: the scene's")
-            ->check(CLI::Range(0.0, 1e6));
-        app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();
-        app.add_option("--data", options.data, "bottleneck: a trajectory file; default: the experiment's")
-            ->check(CLI::ExistingFile);
-        app.add_flag("--measures", dials.settings.measures, "report what each step left unsolved");
-        app.add_option("--direct-every", options.direct_every,
-                       "compare every so many steps with the simultaneous solution of the same step; slow")
-            ->check(CLI::PositiveNumber);
-        app.add_option("--json", json, "write the figures to this file");
-        app.add_option("--trajectories", outputs.trajectories, "write PedPy text to this file");
-        app.add_option("--frames", outputs.frames, "write pictures to this folder");
-        app.add_option("--frame-every", outputs.frame_every, "steps between pictures")
-            ->check(CLI::PositiveNumber)
-            ->capture_default_str();
-        app.add_option("--hash-every", outputs.hash_every, "print the state hash every so many steps")
-            ->check(CLI::PositiveNumber);
-    }
-
-    int operator()()
-    {
-        const SceneEntry* entry = find_scene(scene);
-        if (entry == nullptr) {
-            fmt::print(stderr, "motley: no scene '{}'; `motley list` names them\n", scene);
-            return 2;
-        }
-        if (!dials.pick_isa()) return 2;
-        options.settings = dials.settings;
-        options.solver = dials.solver;
-        const RunResult result = run_scene(*entry, options, outputs);
-        fmt::print("{}", table_of(result));
-        if (!json.empty()) write_text(json, json_of(result));
-        return 0;
-    }
-};
-
-struct RecordCommand {
-    RunCommand run;
-
-    void declare(CLI::App& app)
-    {
-        run.declare(app);
-        app.add_option("file", run.outputs.problem, "where the step's problem is written to")->required();
-        app.add_option("--step", run.outputs.problem_step, "which step, the first is 0")
-            ->check(CLI::NonNegativeNumber)
-            ->capture_default_str();
-    }
-    int operator()()
-    {
-        run.outputs.hash_every = 1;
-        run.options.seconds =
-            static_cast<double>(run.options.dt) * (static_cast<double>(run.outputs.problem_step) + 0.5);
-        return run();
-    }
-};
 
 struct ReplayCommand {
     std::string file;
@@ -373,6 +227,14 @@ int main(int count, char** arguments)
     report_app->add_flag("!--without-peers", report.with_peers, "motley alone");
     CLI::App* extremes_app = app.add_subcommand(
         "extremes", "run scenes at the edge of what numbers can bear under every method: figures and bounds");
+    LawsOptions laws_options;
+    CLI::App* laws_app = app.add_subcommand(
+        "laws", "run every crowd that has an exact law, contacts found and listed: figures and pass marks");
+    laws_app->add_flag("--quick", laws_options.quick, "fewer people, shorter runs");
+    BehaviourOptions behaviour_options;
+    CLI::App* behaviour_app = app.add_subcommand(
+        "behaviour", "what steering decides, beside published curves: flows, speeds, lanes; and their drift");
+    behaviour_app->add_flag("--quick", behaviour_options.quick, "fewer people, shorter runs");
     SoakCommand soak_command;
     CLI::App* soak_app = app.add_subcommand(
         "soak",
@@ -409,6 +271,12 @@ int main(int count, char** arguments)
         if (*demo_app) return run_demo(demo);
         if (*soak_app) return soak_command();
         if (*extremes_app) return print_extremes({}) == 0 ? 0 : 1;
+        if (*laws_app) {
+            const std::vector<LawResult> results = run_laws(laws_options);
+            fmt::print("{}", table_of(results));
+            return failures_in(results, false) == 0 ? 0 : 1;
+        }
+        if (*behaviour_app) print_behaviour(behaviour_options);
         if (*list_app) {
             for (const SceneEntry& entry : scene_list())
                 fmt::print("{:<18}{}\n", entry.name, entry.description);

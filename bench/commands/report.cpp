@@ -28,6 +28,14 @@ double nanoseconds_per_visit(const RunResult& r)
     return per(sweeps * 1e9, r.times.constraint_sweeps);
 }
 
+/// Who found the contacts of people; nothing where there are none.
+const char* contacts_of(const RunResult& r)
+{
+    const SceneEntry* entry = find_scene(r.scene);
+    const bool has_people = entry != nullptr && (entry->takes.found || entry->takes.listed);
+    return !has_people ? "" : r.lists_contacts ? ", contacts listed" : ", contacts found";
+}
+
 }  // namespace
 
 std::string table_of(const RunResult& r)
@@ -36,8 +44,8 @@ std::string table_of(const RunResult& r)
     const auto line = [&](std::string_view what, const std::string& value) {
         text += fmt::format("  {:<34} {}\n", what, value);
     };
-    text += fmt::format("{}: {}, {}, {} thread{}, {} steps\n", r.scene, r.method, r.isa, r.threads,
-                        r.threads == 1 ? "" : "s", r.steps);
+    text += fmt::format("{}: {}, {}, {} thread{}, {} steps{}\n", r.scene, r.method, r.isa, r.threads,
+                        r.threads == 1 ? "" : "s", r.steps, contacts_of(r));
     line("bodies (mean)", fmt::format("{:.0f}", r.bodies));
     line("agent-steps/s, whole step", fmt::format("{:.3f} M", per(agent_steps(r), r.times.whole()) * 1e-6));
     line("agent-steps/s, solver alone", fmt::format("{:.3f} M", per(agent_steps(r), r.times.solver) * 1e-6));
@@ -73,6 +81,10 @@ std::string table_of(const RunResult& r)
     }
     line("bodies contained", fmt::format("{}", r.contained));
     for (const auto& [name, value] : r.figures) line(name, fmt::format("{:.4g}", value));
+    for (const Mark& mark : r.marks) {
+        text += fmt::format("  {} {}: {:.3g}, at most {:g}\n", mark.passes() ? "PASS" : "FAIL", mark.name,
+                            mark.value, mark.bound);
+    }
     line("state hash", fmt::format("{:016x}", r.state_hash));
     return text;
 }
@@ -107,6 +119,10 @@ std::string json_of(const RunResult& r)
     if (r.direct_rms >= 0) json["off_direct_m_per_s"] = {{"rms", r.direct_rms}, {"max", r.direct_max}};
     json["bodies_contained"] = r.contained;
     for (const auto& [name, value] : r.figures) json["figures"][name] = value;
+    for (const Mark& mark : r.marks)
+        json["marks"][mark.name] = {
+            {"value", mark.value}, {"at_most", mark.bound}, {"passes", mark.passes()}};
+    if (*contacts_of(r) != 0) json["contacts"] = r.lists_contacts ? "listed" : "found";
     json["state_hash"] = fmt::format("{:016x}", r.state_hash);
     json["host_load"] = host_load();
     return json.dump(2) + "\n";

@@ -12,6 +12,7 @@
 #include "measuring/clock.h"
 #include "measuring/host.h"
 #include "measuring/median.h"
+#include "measuring/runner.h"
 #include "motley/core/invalid_input.h"
 #include "worlds/bench_scene.h"
 
@@ -83,6 +84,7 @@ ThreadsResult measure(const SceneEntry& entry, const ThreadsOptions& asked)
     options.agents = asked.agents > 0 ? asked.agents : entry.agents;
     options.settings = asked.settings;
     options.solver = asked.solver;
+    settle_options(entry, options);
     Copy several(entry, options);
     options.solver.threads = 1;
     Copy one(entry, options);

@@ -131,10 +131,35 @@ class DirectComparison {
 
 }  // namespace
 
+void settle_options(const SceneEntry& entry, RunOptions& options)
+{
+    const auto refuse = [&](const char* option, const char* why) {
+        throw InvalidInput(fmt::format("{}: the scene {} {}", option, entry.name, why));
+    };
+    const SceneTakes& takes = entry.takes;
+    if (options.door > 0 && !takes.door) refuse("--door", "has no door whose width can be chosen");
+    if (options.density > 0 && !takes.density) refuse("--density", "has a density of its own");
+    if (options.steering != SteeringModel::plain && !takes.steering)
+        refuse("--steering", "has a steering of its own");
+    if (!takes.listed && !takes.found) return;
+    const SolverSettings& settings = options.settings;
+    const char* needs_list = options.lists_contacts              ? "--listed"
+                             : settings.method == Method::direct ? "--method direct"
+                             : settings.tolerance > 0            ? "--tolerance"
+                             : settings.measures                 ? "--measures"
+                             : options.direct_every > 0          ? "--direct-every"
+                                                                 : nullptr;
+    if (needs_list != nullptr && !takes.listed)
+        refuse(needs_list,
+               "leaves its contacts to the library, which finds contacts but has no such option for them");
+    options.lists_contacts = needs_list != nullptr || !takes.found;
+}
+
 RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutputs& outputs)
 {
     if (options.agents == 0) options.agents = entry.agents;
     if (options.seconds == 0) options.seconds = entry.seconds;
+    settle_options(entry, options);
     const std::unique_ptr<BenchScene> scene = entry.make(options);
     scene->adjust(options.settings);
     DirectComparison direct(options);
@@ -157,6 +182,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
                     : options.settings.method == Method::sequential_impulse ? "sequential_impulse"
                                                                             : "direct";
     result.threads = solver.threads();
+    result.lists_contacts = options.lists_contacts;
     const auto steps =
         static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));
     Progress progress(outputs.progress, entry.name, steps);
@@ -228,6 +254,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     direct.report(result);
     result.error = scene->error();
     result.figures = scene->figures();
+    result.marks = scene->marks();
     if (result.error) result.figures.emplace_back(result.error->name, result.error->value);
     return result;
 }

@@ -45,6 +45,8 @@ struct RunResult {
     double direct_rms = -1, direct_max = -1;  ///< m/s, off the simultaneous solution; negative: not compared
     std::optional<SceneError> error;
     std::vector<Figure> figures;
+    std::vector<Mark> marks;
+    bool lists_contacts = false;  ///< of people; the others are of scenes without people
 };
 
 /// What to write in addition to the table.
@@ -56,6 +58,11 @@ struct RunOutputs {
     std::int64_t problem_step = 0;
     bool progress = true;
 };
+
+/// Decides who finds the contacts of people. The library does unless the scene cannot leave it to the library, the options
+/// ask for a list, or they ask for what contacts of discs do not have: the direct method, a tolerance, measures. Throws
+/// InvalidInput when the scene cannot list them, and for options that the scene does not follow.
+void settle_options(const SceneEntry& entry, RunOptions& options);
 
 /// Runs a scene. Throws InvalidInput for dials out of range and std::runtime_error for files and refused steps.
 RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutputs& outputs);

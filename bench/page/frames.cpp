@@ -65,16 +65,16 @@ class Picture {
             }
         }
     }
-    void line(double x0, double y0, double x1, double y1)
+    /// A line from `from` to `to`, `width` pixels wide.
+    void line(Vec2<double> from, Vec2<double> to, int width, Colour c)
     {
-        const int steps = static_cast<int>(std::max(std::abs(x1 - x0), std::abs(y1 - y0)) * 2) + 1;
+        const int steps =
+            static_cast<int>(std::max(std::abs(to.x - from.x), std::abs(to.y - from.y)) * 2) + 1;
         for (int i = 0; i <= steps; ++i) {
-            const double t = static_cast<double>(i) / steps;
-            for (int w = -1; w <= 0; ++w) {
-                set(static_cast<int>(x0 + t * (x1 - x0)) + w, static_cast<int>(y0 + t * (y1 - y0)),
-                    {50, 50, 55});
-                set(static_cast<int>(x0 + t * (x1 - x0)), static_cast<int>(y0 + t * (y1 - y0)) + w,
-                    {50, 50, 55});
+            const Vec2<double> at = from + static_cast<double>(i) / steps * (to - from);
+            for (int w = -(width / 2); w < width - width / 2; ++w) {
+                set(static_cast<int>(at.x) + w, static_cast<int>(at.y), c);
+                set(static_cast<int>(at.x), static_cast<int>(at.y) + w, c);
             }
         }
     }
@@ -110,20 +110,46 @@ class Picture {
     std::vector<Colour> pixels_;
 };
 
-/// The bar of colours with its numbers, in N per metre of circumference.
-void draw_legend(Picture& picture)
+constexpr Colour wall_colour{50, 50, 55};
+
+/// A bar of colours, its unit above it, and its numbers up to `full`. `place` counts bars from the right edge.
+void draw_bar(Picture& picture, int place, std::string_view unit, double full)
 {
-    const int left = picture.width() - margin / 2 - label_width - bar_width;
+    const int left = picture.width() - margin / 2 - (label_width + bar_width) * (place + 1);
     const int top = margin + 24, height = picture.height() - margin - top;
     for (int row = 0; row < height; ++row) {
         for (int column = 0; column < bar_width; ++column)
             picture.set(left + column, top + row, colour_of(1 - static_cast<double>(row) / height));
     }
-    for (int quarter = 0; quarter <= 4; ++quarter) {
+    for (int quarter = 0; quarter <= 4; ++quarter)
         picture.text(left + bar_width + 4, top + height - height * quarter / 4 - 7,
-                     fmt::format("{:.0f}", FrameWriter::full_pressure * quarter / 4));
+                     fmt::format("{:g}", full * quarter / 4));
+    picture.text(left, margin / 2, unit);
+}
+
+/// The force on each metre of a wall from its first point on, N/m. A person leans on the wall over the width of the
+/// shoulders and not at a point. The last band may be shorter.
+std::vector<double> pressures_on(std::int32_t wall, const Crowd& crowd, std::span<const Touch> touches)
+{
+    const Wall& segment = crowd.walls[static_cast<std::size_t>(wall)];
+    const Vec2<double> along = segment.to - segment.from;
+    const double length = std::max(std::sqrt(dot(along, along)), 1e-9);
+    std::vector<double> bands(static_cast<std::size_t>(std::ceil(length)), 0.0);
+    for (const Touch& touch : touches) {
+        if (touch.wall != wall) continue;
+        const auto person = static_cast<std::size_t>(touch.b);
+        const Vec3<double>& at = crowd.positions[person];
+        const double place = dot(along, Vec2<double>{at.x, at.y} - segment.from) / length;
+        const auto radius = static_cast<double>(crowd.agents[person].radius);
+        for (std::size_t band = 0; band < bands.size(); ++band) {
+            const double from = std::max(place - radius, static_cast<double>(band)),
+                         to = std::min({place + radius, static_cast<double>(band) + 1, length});
+            if (to > from) bands[band] += touch.force * (to - from) / (2 * radius);
+        }
     }
-    picture.text(left, margin / 2, "N/m");
+    const double rest = length - static_cast<double>(bands.size() - 1);
+    bands.back() /= std::max(rest, 0.1);
+    return bands;
 }
 
 }  // namespace
@@ -155,7 +181,7 @@ void FrameWriter::fit(const Crowd& crowd)
     min_y_ -= 0.5;
     const double wide = max_x + 0.5 - min_x_, high = max_y + 0.5 - min_y_;
     scale_ = longest_side / std::max(wide, high);
-    width_ = static_cast<int>(wide * scale_) + 2 * margin + bar_width + label_width;
+    width_ = static_cast<int>(wide * scale_) + 2 * margin + 2 * (bar_width + label_width);
     height_ = static_cast<int>(high * scale_) + 2 * margin;
 }
 
@@ -163,27 +189,38 @@ void FrameWriter::write(const Crowd& crowd, const Scene& scene)
 {
     if (count_ == 0) fit(crowd);
     std::vector<double> load(crowd.agents.size(), 0.0);
-    const auto impulses = scene.contact_impulses();
-    const auto pairs = crowd.pairs();
-    const double per_second = scene.last_step() > 0 ? 1 / static_cast<double>(scene.last_step()) : 0;
-    for (std::size_t i = 0; i < impulses.size() && i < pairs.size(); ++i) {
-        const double force = static_cast<double>(impulses[i].normal) * per_second;
-        load[static_cast<std::size_t>(pairs[i].a)] += force;
-        if (pairs[i].b >= 0) load[static_cast<std::size_t>(pairs[i].b)] += force;
+    const std::vector<Touch> touches = crowd.touches(scene);
+    for (const Touch& touch : touches) {
+        if (touch.a >= 0) load[static_cast<std::size_t>(touch.a)] += touch.force;
+        load[static_cast<std::size_t>(touch.b)] += touch.force;
     }
 
     Picture picture(width_, height_);
     const auto x = [&](double world) { return margin + (world - min_x_) * scale_; };
     const auto y = [&](double world) { return height_ - margin - (world - min_y_) * scale_; };
-    for (const Wall& wall : crowd.walls)
-        picture.line(x(wall.from.x), y(wall.from.y), x(wall.to.x), y(wall.to.y));
+    const auto pixel = [&](Vec2<double> world) { return Vec2<double>{x(world.x), y(world.y)}; };
+    for (std::size_t w = 0; w < crowd.walls.size(); ++w) {
+        const Wall& wall = crowd.walls[w];
+        picture.line(pixel(wall.from), pixel(wall.to), 2, wall_colour);
+        const std::vector<double> bands = pressures_on(static_cast<std::int32_t>(w), crowd, touches);
+        const Vec2<double> along = wall.to - wall.from;
+        const double length = std::max(std::sqrt(dot(along, along)), 1e-9);
+        for (std::size_t band = 0; band < bands.size(); ++band) {
+            if (bands[band] <= 0) continue;
+            const double first = static_cast<double>(band) / length;
+            picture.line(pixel(wall.from + first * along),
+                         pixel(wall.from + std::min(1.0, first + 1 / length) * along), 6,
+                         colour_of(bands[band] / full_wall_pressure));
+        }
+    }
     for (std::size_t i = 0; i < crowd.positions.size() && i < load.size(); ++i) {
         const double radius = static_cast<double>(crowd.agents[i].radius);
         const double pressure = load[i] / (6.283185307179586 * radius);
         picture.disc(x(crowd.positions[i].x), y(crowd.positions[i].y), radius * scale_,
                      colour_of(pressure / full_pressure));
     }
-    draw_legend(picture);
+    draw_bar(picture, 0, "N/m", full_pressure);
+    draw_bar(picture, 1, "kN/m", full_wall_pressure / 1000);
     picture.save(fmt::format("{}/frame-{:05d}.png", folder_, count_++));
 }
 

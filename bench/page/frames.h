@@ -1,4 +1,4 @@
-// Pictures of a crowd, coloured by contact pressure.
+// Pictures of a crowd and its walls, coloured by contact pressure.
 #pragma once
 
 #include <string>
@@ -12,11 +12,13 @@ class FrameWriter {
   public:
     /// Throws std::runtime_error when the folder cannot be made.
     explicit FrameWriter(std::string folder);
-    /// Draws the observed positions and the contact impulses of the last step. Colour runs from blue (free) over
-    /// yellow to red (`full_pressure` N per metre of circumference and more); the bar at the right edge is its scale.
+    /// Draws the observed positions and the contact forces of the last step. Colour runs from blue (free) over yellow to
+    /// red (`full_pressure` N per metre of circumference and more; of walls `full_wall_pressure` N per metre of wall, in
+    /// bands of a metre). The bars at the right edge are the scales: of people, and left of it of walls.
     void write(const Crowd& crowd, const Scene& scene);
 
-    static constexpr double full_pressure = 600;  ///< N/m
+    static constexpr double full_pressure = 600;        ///< N/m
+    static constexpr double full_wall_pressure = 6000;  ///< N/m; barriers are built for 3,000 to 5,000
 
   private:
     std::string folder_;

@@ -19,15 +19,18 @@ struct RunOptions {
     std::int64_t agents = 0;  ///< 0: the scene's default
     double seconds = 0;       ///< 0: the scene's default
     float dt = 1.0F / 60;
-    SolverSettings settings;
-    SolverOptions solver;
+    SolverSettings settings{};
+    SolverOptions solver{};
     bool lists_contacts =
-        false;  ///< people: a host's neighbour search lists the contacts, as far as the scene can choose
+        false;  ///< people: a host's neighbour search lists the contacts; else the library finds them
     float friction = -1;  ///< below 0: the scene's default
+    double door = 0;      ///< m, width of the door, where there is one; 0: the scene's default
+    double density = 0;   ///< people per m2, where the scene can choose; 0: the scene's default
+    SteeringModel steering = SteeringModel::plain;
     std::uint64_t seed = 12345;
     int direct_every =
         0;  ///< steps between two comparisons with the simultaneous solution of the same step; 0: never
-    std::string data;  ///< bottleneck: the trajectory file; empty: the project's copy
+    std::string data{};  ///< bottleneck: the trajectory file; empty: the project's copy
 };
 
 /// The number by which a scene is judged when that is not overlap.
@@ -38,6 +41,13 @@ struct SceneError {
 
 /// A line of the table at the end of a run: a name, with its unit in brackets, and its value.
 using Figure = std::pair<std::string, double>;
+
+/// What must hold in a run, by an exact law: `value` is at most `bound`.
+struct Mark {
+    std::string name;  ///< with its unit
+    double value, bound;
+    [[nodiscard]] bool passes() const { return value <= bound; }
+};
 
 class BenchScene {
   public:
@@ -59,6 +69,8 @@ class BenchScene {
     [[nodiscard]] virtual std::optional<SceneError> error() const { return {}; }
     /// The scene's own figures.
     [[nodiscard]] virtual std::vector<Figure> figures() const { return {}; }
+    /// The laws that the scene must meet, with how well it has met them so far.
+    [[nodiscard]] virtual std::vector<Mark> marks() const { return {}; }
     /// The people, for pictures and trajectories; null where there are none.
     [[nodiscard]] virtual Crowd* crowd() { return nullptr; }
     /// True when there is nothing left to simulate.
@@ -75,13 +87,25 @@ class CrowdScene : public BenchScene {
     }
     std::span<const Contact> find_contacts(Executor& executor) override
     {
-        return people.is_handed_over() ? std::span<const Contact>() : people.find_contacts(scene, executor);
+        return people.is_handed_over() ? people.find_seam_contacts() : people.find_contacts(scene, executor);
     }
     void observe(double, const Solver&) override {}
     [[nodiscard]] Crowd* crowd() override { return &people; }
 
   protected:
     Crowd people;
+    /// Lets the library find the contacts of people and walls, unless the options want them listed.
+    void share_out_contacts(const RunOptions& options)
+    {
+        if (!options.lists_contacts) people.hand_over(scene);
+    }
+};
+
+/// What of RunOptions a scene follows beyond what all do.
+struct SceneTakes {
+    bool door = false, density = false, steering = false;
+    bool listed = false;  ///< contacts can be listed by the host
+    bool found = false;   ///< contacts can be found by the library
 };
 
 /// A scene in the program's list.
@@ -91,6 +115,7 @@ struct SceneEntry {
     std::int64_t agents;  ///< default; bodies where there are no people
     double seconds;       ///< default
     std::function<std::unique_ptr<BenchScene>(const RunOptions& options)> make;
+    SceneTakes takes{};
 };
 
 /// All scenes; the list is in scenes.cpp.

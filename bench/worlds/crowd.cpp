@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "worlds/slot_index.h"
+
 namespace motley::bench {
 namespace {
 
 constexpr std::int64_t agents_per_chunk = 1024;
+/// The part of a wall contact's key that names the wall.
+constexpr std::uint64_t wall_bits = 0xFFFF;
 
 }  // namespace
 
@@ -33,7 +37,7 @@ void Crowd::hand_over(Scene& scene)
     scene.set_discs(bodies_, std::span<const DiscDefinition>(discs));
     for (const Wall& wall : walls) {
         const Vec2<double> ends[] = {wall.from, wall.to};
-        scene.add_wall({.points = ends, .friction = friction});
+        wall_ids_.push_back(scene.add_wall({.points = ends, .friction = friction}));
     }
     is_handed_over_ = true;
 }
@@ -65,9 +69,60 @@ void Crowd::observe(const Scene& scene, Executor& executor)
                  });
 }
 
+std::vector<Touch> Crowd::found_touches(const Scene& scene) const
+{
+    SlotIndex index;
+    index.build(bodies_);
+    std::vector<Touch> all;
+    for (const DiscContact& contact : scene.disc_contacts()) {
+        Touch touch{.b = index.of(contact.b),
+                    .normal = contact.normal,
+                    .separation = static_cast<double>(contact.separation),
+                    .force = static_cast<double>(contact.normal_force),
+                    .friction = static_cast<double>(contact.friction_force)};
+        if (contact.wall == WallId{}) {
+            touch.a = index.of(contact.a);
+        } else {
+            const auto wall = std::find(wall_ids_.begin(), wall_ids_.end(), contact.wall);
+            if (wall != wall_ids_.end()) touch.wall = static_cast<std::int32_t>(wall - wall_ids_.begin());
+        }
+        all.push_back(touch);
+    }
+    return all;
+}
+
+std::vector<Touch> Crowd::touches(const Scene& scene) const
+{
+    std::vector<Touch> all;
+    if (is_handed_over_) all = found_touches(scene);
+    const auto impulses = scene.contact_impulses();
+    const double per_second = scene.last_step() > 0 ? 1 / static_cast<double>(scene.last_step()) : 0;
+    for (std::size_t k = 0; k < impulses.size() && k < contact_count_; ++k) {
+        if (impulses[k].normal <= 0) continue;
+        const Contact& contact = contacts_[k];
+        const bool is_wall = pairs_[k].b < 0;
+        const Vec2<float> normal{contact.normal.x, contact.normal.y};
+        all.push_back({.a = is_wall ? -1 : pairs_[k].a,
+                       .b = is_wall ? pairs_[k].a : pairs_[k].b,
+                       .wall = is_wall ? static_cast<std::int32_t>(contact.key & wall_bits) : -1,
+                       .normal = normal,
+                       .separation = static_cast<double>(contact.separation),
+                       .force = static_cast<double>(impulses[k].normal) * per_second,
+                       .friction = static_cast<double>(normal.x * impulses[k].friction.y -
+                                                       normal.y * impulses[k].friction.x) *
+                                   per_second});
+    }
+    return all;
+}
+
 void Crowd::steer(Scene& scene, Executor& executor)
 {
     forces_.resize(agents.size());
+    if (steering) {
+        steering->find_forces(*this, forces_, executor);
+        scene.set_forces(bodies_, std::span<const Vec3<float>>(forces_));
+        return;
+    }
     parallel_for(
         executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk,
         [&](std::int64_t begin, std::int64_t end) {
@@ -141,23 +196,45 @@ std::span<const Contact> Crowd::find_contacts(const Scene& scene, Executor& exec
     return contacts();
 }
 
+void Crowd::find_pairs_across_the_seam(std::vector<Pair>& pairs) const
+{
+    std::vector<std::int32_t> low, high;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (std::abs(positions[i].y) < 1) low.push_back(static_cast<std::int32_t>(i));
+        if (std::abs(positions[i].y - period_y) < 1) high.push_back(static_cast<std::int32_t>(i));
+    }
+    for (const std::int32_t a : low) {
+        for (const std::int32_t b : high) {
+            const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+            const Vec2<double> d{positions[j].x - positions[i].x, positions[j].y - period_y - positions[i].y};
+            const auto reach = static_cast<double>(radii_[i] + radii_[j] + contact_margin);
+            if (dot(d, d) < reach * reach) pairs.push_back({a, b});
+        }
+    }
+}
+
 void Crowd::add_pairs_across_the_seam()
 {
     Findings& found = findings_.front();
     found.pairs.resize(found.pair_count);
-    const auto near = [&](double y, double edge) { return std::abs(y - edge) < 1; };
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        if (!near(positions[i].y, 0)) continue;
-        for (std::size_t j = 0; j < positions.size(); ++j) {
-            if (!near(positions[j].y, period_y)) continue;
-            const double dx = positions[j].x - positions[i].x,
-                         dy = positions[j].y - period_y - positions[i].y;
-            const auto reach = static_cast<double>(radii_[i] + radii_[j] + contact_margin);
-            if (dx * dx + dy * dy < reach * reach)
-                found.pairs.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)});
-        }
-    }
+    find_pairs_across_the_seam(found.pairs);
     found.pair_count = found.pairs.size();
+}
+
+std::span<const Contact> Crowd::find_seam_contacts()
+{
+    std::vector<Pair> seam;
+    if (period_y > 0) find_pairs_across_the_seam(seam);
+    contact_count_ = seam.size();
+    if (contacts_.size() < contact_count_) {
+        contacts_.resize(contact_count_);
+        pairs_.resize(contact_count_);
+    }
+    for (std::size_t k = 0; k < contact_count_; ++k) {
+        pairs_[k] = seam[k];
+        write_contact(contacts_[k], pairs_[k]);
+    }
+    return contacts();
 }
 
 /// Prefetches what write_contact() reads: people of a pair are near each other in space, but anywhere in memory.
@@ -179,10 +256,9 @@ void Crowd::write_contact(Contact& contact, Pair& pair) const
     if (serial_[static_cast<std::size_t>(pair.a)] > serial_[static_cast<std::size_t>(pair.b)])
         std::swap(pair.a, pair.b);
     const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-    double y = positions[b].y - positions[a].y;
-    if (period_y > 0 && std::abs(y) > period_y / 2) y -= y > 0 ? period_y : -period_y;
     // Subtracted in double: people near each other may be far from the origin.
-    const auto dx = static_cast<float>(positions[b].x - positions[a].x), dy = static_cast<float>(y);
+    const Vec2<double> d = offset(a, b);
+    const auto dx = static_cast<float>(d.x), dy = static_cast<float>(d.y);
     const float distance = std::sqrt(dx * dx + dy * dy);
     // Two people at the same point are pushed apart along x.
     const bool apart = distance > 1e-9F;

@@ -2,12 +2,15 @@
 // a crowd simulation; this is just enough of a host for real scenes.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "motley/motley.h"
 #include "worlds/neighbour_grid.h"
+#include "worlds/steering.h"
 
 namespace motley::bench {
 
@@ -25,6 +28,17 @@ struct Wall {
     Vec2<double> from{}, to{};
 };
 
+/// A contact that pushed in the last step, found or listed.
+struct Touch {
+    std::int32_t a = -1;     ///< index in `agents`; -1: a wall
+    std::int32_t b = -1;     ///< index in `agents`
+    std::int32_t wall = -1;  ///< index in `walls`; -1: two people, or a wall that the scene itself added
+    Vec2<float> normal{};    ///< unit, from a to b
+    double separation = 0;   ///< m, as the step began; negative when overlapping
+    double force = 0;        ///< N, on b along the normal
+    double friction = 0;     ///< N, on b along the normal turned by +90 degrees
+};
+
 class Crowd {
   public:
     float relaxation_time = 0.5F;  ///< s: how fast people take up their desired velocity
@@ -32,7 +46,10 @@ class Crowd {
     float contact_margin =
         0.03F;  ///< m: gaps up to this become contacts, so that nothing is missed within a step
 
-    double period_y = 0;  ///< m: above 0, y has this period: a strip without ends
+    /// m: above 0, y has this period: a strip without ends. The library knows no periods, so the contacts across the
+    /// seam stay listed when all others are found.
+    double period_y = 0;
+    std::unique_ptr<Steering> steering;  ///< null: the plain one of steer()
 
     AlignedVector<Agent> agents;
     std::vector<Wall> walls;
@@ -52,15 +69,33 @@ class Crowd {
 
     /// Reads positions and velocities from the scene.
     void observe(const Scene& scene, Executor& executor);
-    /// Forces that bring everyone to the desired velocity: m (v0 e - v) / tau, e towards the goal.
+    /// The forces of `steering`; without one those that bring everyone to the desired velocity: m (v0 e - v) / tau, e
+    /// towards the goal.
     void steer(Scene& scene, Executor& executor);
     /// The contacts of the observed positions.
     std::span<const Contact> find_contacts(const Scene& scene, Executor& executor);
+    /// Only those across the seam of a period.
+    std::span<const Contact> find_seam_contacts();
+    /// What pushed in the last step. Nobody may have been added or removed since.
+    [[nodiscard]] std::vector<Touch> touches(const Scene& scene) const;
+    /// From the observed position of a to that of b, the shorter way round a period.
+    [[nodiscard]] Vec2<double> offset(std::size_t a, std::size_t b) const
+    {
+        double y = positions[b].y - positions[a].y;
+        if (period_y > 0 && std::abs(y) > period_y / 2) y -= y > 0 ? period_y : -period_y;
+        return {positions[b].x - positions[a].x, y};
+    }
+    /// From the nearest point of a wall to the observed position of a person.
+    [[nodiscard]] Vec2<double> offset_from(const Wall& wall, std::size_t agent) const
+    {
+        return Vec2<double>{positions[agent].x, positions[agent].y} - nearest_point(wall, agent);
+    }
 
     /// The number of an agent in the order of arrival, from 0; never reused.
     [[nodiscard]] std::uint32_t number_of(std::size_t agent) const { return serial_[agent]; }
     /// The bodies in the order of `agents`.
     [[nodiscard]] std::span<const BodyId> bodies() const { return bodies_; }
+    [[nodiscard]] std::span<const float> radii() const { return radii_; }
     /// The last list that find_contacts() made.
     [[nodiscard]] std::span<const Contact> contacts() const { return {contacts_.data(), contact_count_}; }
     /// Index in `agents` of each contact's people; the second is -1 for a wall.
@@ -78,6 +113,7 @@ class Crowd {
     AlignedVector<std::uint32_t> serial_;  ///< each agent's order of arrival; part of contact keys
     std::uint32_t next_serial_ = 0;
     bool is_handed_over_ = false;
+    std::vector<WallId> wall_ids_;  ///< of `walls`, once handed over
 
     /// What a chunk of the grid found: people near each other, and people near walls (b is the wall).
     struct Findings {
@@ -89,7 +125,9 @@ class Crowd {
 
     [[nodiscard]] Vec2<double> nearest_point(const Wall& wall, std::size_t agent) const;
     [[nodiscard]] bool is_near(const Wall& wall, std::size_t agent) const;
+    void find_pairs_across_the_seam(std::vector<Pair>& pairs) const;
     void add_pairs_across_the_seam();
+    [[nodiscard]] std::vector<Touch> found_touches(const Scene& scene) const;
     void prefetch(Pair pair) const;
     void write_contact(Contact& contact, Pair& pair) const;
     void write_wall_contact(Contact& contact, Pair touch, BodyId ground) const;

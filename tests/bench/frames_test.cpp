@@ -88,10 +88,10 @@ struct PressedPeople {
 };
 
 /// The view: half a metre around everything, 900 pixels along x; and around that 20 pixels, with 58 more on the right for
-/// the scale.
+/// each scale.
 struct View {
     static constexpr double pixels_a_metre = 900 / (5 + 2 * 0.5);
-    static constexpr int width = 900 + 2 * 20 + 58, height = 300 + 2 * 20;
+    static constexpr int width = 900 + 2 * 20 + 2 * 58, height = 300 + 2 * 20;
     static int x(double world) { return static_cast<int>(20 + (world + 1.5) * pixels_a_metre); }
     static int y(double world) { return static_cast<int>(height - 20 - (world + 1.5) * pixels_a_metre); }
 };
@@ -123,10 +123,45 @@ TEST(Frames, HaveTheSizePlacesAndColoursOfTheScene)
     expect_near(picture.at(View::x(0), View::y(0) - edge - 2), {250, 250, 248}, 0, "outside");
     expect_near(picture.at(View::x(-0.5), View::y(-1)), {50, 50, 55}, 0, "the wall");
     expect_near(picture.at(2, 2), {250, 250, 248}, 0, "the background");
-    // The scale at the right edge: red at its top, blue at its bottom.
-    const int bar = View::width - 10 - 44 - 7;
-    expect_near(picture.at(bar, 20 + 24 + 1), {205, 40, 45}, 4, "top of the scale");
-    expect_near(picture.at(bar, View::height - 20 - 2), {70, 120, 180}, 4, "bottom of the scale");
+    // The scales at the right edge, of people and left of it of walls: red at the top, blue at the bottom.
+    for (const int bar : {View::width - 10 - 44 - 7, View::width - 10 - 58 - 44 - 7}) {
+        expect_near(picture.at(bar, 20 + 24 + 1), {205, 40, 45}, 4, "top of a scale");
+        expect_near(picture.at(bar, View::height - 20 - 2), {70, 120, 180}, 4, "bottom of a scale");
+    }
+}
+
+/// Two people whom the library's contacts hold against a wall of four metres, one with a third of the pressure at which
+/// the scale of walls ends and one with two thirds. Each metre of the wall has the colour of what is on it.
+TEST(Frames, WallsHaveTheColourOfTheirPressureMetreByMetre)
+{
+    const TemporaryFolder folder;
+    Scene scene;
+    Crowd crowd;
+    crowd.add(scene, {}, {0.5, 0.2});
+    crowd.add(scene, {}, {2.5, 0.2});
+    crowd.walls.push_back({{0, 0}, {4, 0}});
+    crowd.hand_over(scene);
+    SolverSettings settings;
+    settings.contact_hertz = 1e6F;
+    Solver solver(settings);
+    for (int step = 0; step < 60; ++step) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            const auto force = static_cast<float>(FrameWriter::full_wall_pressure / 3 * (i + 1.0));
+            scene.set_force(crowd.agents[i].body, {0, -force, 0}, {});
+        }
+        ASSERT_EQ(solver.step(scene, 1.0F / 60).status, StepStatus::done);
+    }
+    crowd.observe(scene, solver.executor());
+    FrameWriter writer(folder.path.string());
+    writer.write(crowd, scene);
+    const ReadPicture picture((folder.path / "frame-00000.png").string());
+    // 900 pixels for the wall and half a metre on each side of it; the disc lies over the middle of its metre.
+    const auto colour_at = [&](double x) {
+        return picture.at(static_cast<int>(20 + (x + 0.5) * 900 / 5), picture.height - 20 - 900 / 10);
+    };
+    expect_near(colour_at(0.1), {120, 190, 170}, 3, "a third");
+    expect_near(colour_at(1.5), {50, 50, 55}, 0, "nothing");
+    expect_near(colour_at(2.1), {250, 210, 90}, 3, "two thirds");
 }
 
 TEST(Frames, AreNumberedAndKeepTheViewOfTheFirst)

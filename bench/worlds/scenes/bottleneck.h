@@ -10,6 +10,8 @@
 #include <map>
 
 #include "worlds/bench_scene.h"
+#include "worlds/neighbours.h"
+#include "worlds/scenes/door_count.h"
 #include "worlds/trajectories.h"
 
 namespace motley::bench {
@@ -45,6 +47,7 @@ class Bottleneck final : public CrowdScene {
                 people.walls.push_back({{side * from.x, from.y}, {side * to.x, to.y}});
             }
         }
+        share_out_contacts(options);
     }
 
     void steer(double time, Executor& executor) override
@@ -63,12 +66,12 @@ class Bottleneck final : public CrowdScene {
         }
         // People who touch somebody nearer to the door slow down. Otherwise frictionless discs form an arch in the
         // door and stay there.
-        const auto contacts = people.contacts();
-        const auto pairs = people.pairs();
-        for (std::size_t k = 0; k < contacts.size() && !left_; ++k) {
-            if (pairs[k].b < 0) continue;
-            const auto a = static_cast<std::size_t>(pairs[k].a), b = static_cast<std::size_t>(pairs[k].b);
-            people.agents[to_door(a) < to_door(b) ? b : a].desired_speed = yielding_speed;
+        neighbours_.find(people, people.contact_margin, executor);
+        for (std::size_t i = 0; i < people.agents.size(); ++i) {
+            for (const std::int32_t other : neighbours_.of(i)) {
+                if (to_door(static_cast<std::size_t>(other)) < to_door(i))
+                    people.agents[i].desired_speed = yielding_speed;
+            }
         }
         people.steer(scene, executor);
     }
@@ -80,11 +83,21 @@ class Bottleneck final : public CrowdScene {
 
     [[nodiscard]] std::vector<Figure> figures() const override
     {
-        std::vector<Figure> figures{{"people through the door", passed_},
-                                    {"people of the experiment", static_cast<double>(arrivals_.size())}};
-        if (passed_ > 1) figures.emplace_back("flow (persons/s)", (passed_ - 1) / (last_ - first_));
-        figures.emplace_back("flow of the experiment (persons/s)", measured_flow);
-        return figures;
+        return {{"people through the door", static_cast<double>(count_.passed())},
+                {"people of the experiment", static_cast<double>(arrivals_.size())},
+                {"flow (persons/s)", count_.flow()},
+                {"flow of the experiment (persons/s)", measured_flow},
+                {"clogs: nobody for more than 1 s", static_cast<double>(count_.clogs())},
+                {"overlap, deepest of all steps (% of radius)", 100 * deepest_ / 0.18}};
+    }
+    [[nodiscard]] std::vector<Mark> marks() const override
+    {
+        return {{"people who came out of the room elsewhere than by the door", static_cast<double>(breaches_),
+                 0}};
+    }
+    void observe(double, const Solver&) override
+    {
+        for (const Touch& touch : people.touches(scene)) deepest_ = std::max(deepest_, -touch.separation);
     }
 
   private:
@@ -94,11 +107,11 @@ class Bottleneck final : public CrowdScene {
     };
     std::vector<Arrival> arrivals_;
     std::size_t next_ = 0;
-    int passed_ = 0;
-    double first_ = 0, last_ = 0;
+    DoorCount count_;
+    int breaches_ = 0;
+    double deepest_ = 0;                 ///< m
     std::vector<double> height_before_;  ///< the least y of each agent so far
-
-    bool left_ = false;  ///< somebody left since the contacts were found: their indices are stale
+    Neighbours neighbours_;
 
     [[nodiscard]] double to_door(std::size_t i) const
     {
@@ -118,17 +131,15 @@ class Bottleneck final : public CrowdScene {
 
     void leave(double time)
     {
-        left_ = false;
         for (std::size_t i = people.agents.size(); i-- > 0;) {
             const double y = people.positions[i].y;
             if (height_before_[i] > 0 && y <= 0) {
-                if (passed_++ == 0) first_ = time;
-                last_ = time;
+                count_.pass(time);
+                if (std::abs(people.positions[i].x) > 0.4) ++breaches_;
             }
             height_before_[i] = std::min(height_before_[i], y);  // somebody pushed back is not counted twice
             if (y > -2) continue;
             people.remove(scene, i);
-            left_ = true;
             height_before_[i] = height_before_.back();
             height_before_.pop_back();
         }

@@ -1,4 +1,4 @@
-// N people at 5 per m2 in a walled square, each with a goal some metres away, and a new goal when it is reached.
+// N people, 5 per m2 unless the options say otherwise, in a walled square, each with a goal some metres away, and a new goal when it is reached.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,12 @@ namespace motley::bench {
 
 class OpenCrowd final : public CrowdScene {
   public:
-    static constexpr double density = 5;  ///< people per m2
+    static constexpr double default_density = 5;  ///< people per m2
 
     explicit OpenCrowd(const RunOptions& options) : random_(options.seed)
     {
         const auto count = static_cast<std::size_t>(options.agents);
+        const double density = options.density > 0 ? options.density : default_density;
         side_ = std::sqrt(static_cast<double>(count) / density);
         people.friction = options.friction < 0 ? 0.0F : options.friction;
         const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
@@ -34,7 +35,8 @@ class OpenCrowd final : public CrowdScene {
                         {{side_, 0}, {side_, side_}},
                         {{side_, side_}, {0, side_}},
                         {{0, side_}, {0, 0}}};
-        if (!options.lists_contacts) people.hand_over(scene);
+        people.steering = make_steering(options.steering);
+        share_out_contacts(options);
     }
 
     void steer(double time, Executor& executor) override
