@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/wall_ends.h"
+
 namespace motley {
 namespace {
 

@@ -74,8 +74,6 @@ class DiscFinder {
     [[nodiscard]] CarriedImpulses::Impulse carried_of(const PlacedDisc& a, const PlacedDisc& b) const;
 };
 
-/// Where the ends of the segments of walls are now, world, two a segment.
-void find_wall_ends(const SceneCore& scene, std::vector<Vec2<double>>& ends);
 /// The fastest end of a wall, m/s.
 double fastest_wall_end(const SceneCore& scene);
 /// When a step begins: the rows of walls.
