@@ -258,5 +258,31 @@ TEST(DiscContacts, OnlyOfThoseWhoseCategoriesMeet)
     EXPECT_NEAR(scene.state(ghost).position.x, 1.8, 0.01);
 }
 
+/// Evidence: who was there in the last step.
+TEST(DiscContacts, OfARemovedBodyAreNotThoseOfTheNextInItsPlace)
+{
+    Scene scene;
+    std::vector<BodyId> people;
+    for (int i = 0; i < 3; ++i) {
+        people.push_back(scene.add_body(person_at(0.39 * i, 0)));
+        scene.set_disc(people.back(), {.radius = 0.2F});
+    }
+    Solver solver(SolverSettings{});
+    take_steps(solver, scene, 1);
+    ASSERT_EQ(scene.disc_contacts().size(), std::size_t{2});
+    scene.remove_body(people[0]);
+    const BodyId heir = scene.add_body(person_at(0, 5));
+    scene.set_disc(heir, {.radius = 0.2F});
+    scene.set_pose(heir, {0, 6, 0}, {0, 0, 0, 1}, 0);
+    ASSERT_EQ(heir.slot, people[0].slot);
+    ASSERT_EQ(scene.disc_contacts().size(), std::size_t{1});
+    EXPECT_EQ(scene.disc_contacts()[0].a, people[1]);
+    EXPECT_EQ(scene.disc_contacts()[0].b, people[2]);
+    EXPECT_TRUE(scene.disc_contacts_of(heir).empty());
+    BodyLoad load;
+    scene.read_loads({&heir, 1}, {}, StridedSpan<BodyLoad>(&load, 1));
+    EXPECT_EQ(load.normal_force, 0);
+}
+
 }  // namespace
 }  // namespace motley

@@ -48,10 +48,10 @@ void SceneCore::for_each_disc_impulse(const Work& work) const
                     impulse.separation = row.start_separation;
                     impulse.along = static_cast<double>(sum.normal);
                     if constexpr (is_rough(c.value)) impulse.across = static_cast<double>(sum.tangent);
-                    // Bodies and walls may have been removed since.
-                    if (impulse.slot_a != 0 && impulse.slot_b != 0 &&
-                        (!is_wall(c.value) || impulse.segment != UINT32_MAX))
-                        work(impulse);
+                    // Bodies and walls may have been removed since, and others may have taken their rows.
+                    if (impulse.slot_a == 0 || impulse.slot_b == 0 || discs.is_removed_row(b)) continue;
+                    if (is_wall(c.value) ? impulse.segment == UINT32_MAX : discs.is_removed_row(a)) continue;
+                    work(impulse);
                 }
             }
         });

@@ -116,6 +116,8 @@ void SceneCore::remove_discs_of(std::span<const BodyId> removed)
     for (const BodyId body : removed) {
         if (has_disc(body)) discs.set_shape(body.slot, {});
         forget_discs_of(body);
+        const BodyRow where = bodies.row_of(body);
+        if (where.kind() == BodyKind::planar) discs.forget_removed_row(where.row());
         if (bodies.motion(body) == BodyMotion::dynamic_body) continue;
         for (std::size_t i = 0; i < discs.segments.size();) {
             if (discs.segments[i].body == body) {

@@ -67,7 +67,13 @@ void DiscStore::remove_wall(std::uint32_t slot)
 
 void DiscStore::forget_row(std::uint32_t row)
 {
-    if (row < anchors.size()) anchors[row].skin = -1;
+    if (row < anchors.size() && !is_removed_row(row)) anchors[row].skin = forgotten_skin;
+    is_stale = true;
+}
+
+void DiscStore::forget_removed_row(std::uint32_t row)
+{
+    if (row < anchors.size()) anchors[row].skin = removed_skin;
     is_stale = true;
 }
 

@@ -167,6 +167,13 @@ struct DiscStore {
     void derive();
     /// Frees the slot and the segments of a live wall. There is room in free_walls.
     void remove_wall(std::uint32_t slot);
+    /// When a body was removed: its contacts in blocks must not be taken for those of the next body in its row.
+    void forget_removed_row(std::uint32_t row);
+    /// Whether the body has left the row since the last search.
+    [[nodiscard]] bool is_removed_row(std::size_t row) const
+    {
+        return row < anchors.size() && anchors[row].skin == removed_skin;
+    }
     /// When a body was removed or teleported: its impulses must not be used again.
     void forget_row(std::uint32_t row);
     /// When the rows of planar bodies are renumbered: row i is now new_rows[i]. The second one leaves out what is kept by
@@ -175,6 +182,8 @@ struct DiscStore {
     void renumber_contacts(std::span<const std::uint32_t> new_rows);
 
   private:
+    // In place of a skin, until the next search: what has become of a row.
+    static constexpr float forgotten_skin = -1, removed_skin = -2;
     void count_shape(const DiscShape& shape, std::size_t one);
     void remove_segments_of(std::uint32_t wall);
 };
