@@ -31,13 +31,21 @@ void check(const char* field, double value, double low, double high, const char*
     if (!(value >= low && value <= high)) refuse(field, value, expected);  // NaN fails too
 }
 
+bool is_coordinate(double value)
+{
+    return value >= -largest_position && value <= largest_position;
+}
+
 void check_position(const char* who, const Vec3<double>& p)
 {
-    const std::string name(who);
-    const char* expected = "a finite value from -1e12 to 1e12 (m)";
-    check((name + ".x").c_str(), p.x, -largest_position, largest_position, expected);
-    check((name + ".y").c_str(), p.y, -largest_position, largest_position, expected);
-    check((name + ".z").c_str(), p.z, -largest_position, largest_position, expected);
+    // The name is made only for a refusal: queries allocate nothing.
+    const auto check_coordinate = [who](const char* which, double value) {
+        if (!is_coordinate(value))
+            refuse(std::string(who) + which, value, "a finite value from -1e12 to 1e12 (m)");
+    };
+    check_coordinate(".x", p.x);
+    check_coordinate(".y", p.y);
+    check_coordinate(".z", p.z);
 }
 
 void check_vector(const char* who, const Vec3<float>& v, float limit, const char* expected)

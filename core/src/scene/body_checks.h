@@ -13,6 +13,8 @@ inline constexpr float least_moment = 1e-20F, most_moment = 1e20F;
 bool is_finite(const Vec3<float>& v);
 /// Refuses a value outside [low, high] or not finite.
 void check(const char* field, double value, double low, double high, const char* expected);
+/// Whether a coordinate is in the range of positions, -1e12 to 1e12 m.
+bool is_coordinate(double value);
 /// Each component by name: `who`.x, `who`.y, `who`.z.
 void check_position(const char* who, const Vec3<double>& p);
 void check_vector(const char* who, const Vec3<float>& v, float limit, const char* expected);
