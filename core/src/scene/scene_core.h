@@ -71,6 +71,12 @@ struct SceneCore {
     // ---- discs: scene_discs.cpp ----
     void check_has_disc(BodyId body, const char* what) const;
     [[nodiscard]] bool has_disc(BodyId body) const { return discs.shape_of(body.slot) != nullptr; }
+    /// Refuses what Scene::add_wall refuses.
+    void check_wall(const WallDefinition& wall) const;
+    /// Makes room for so many walls of so many segments in all, so that put_wall() cannot fail.
+    void make_room_for_walls(std::size_t walls, std::size_t segments);
+    /// Adds a wall that is checked.
+    WallId put_wall(const WallDefinition& wall);
     /// Calls work(DiscImpulse) for each contact of discs that pushed in the last step.
     template <class Work>
     void for_each_disc_impulse(const Work& work) const;

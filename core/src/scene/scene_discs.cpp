@@ -72,16 +72,31 @@ bool Scene::has_disc(BodyId body) const
 
 WallId Scene::add_wall(const WallDefinition& wall)
 {
+    core_->check_wall(wall);
+    core_->make_room_for_walls(1, wall.points.size());
+    return core_->put_wall(wall);
+}
+
+void SceneCore::check_wall(const WallDefinition& wall) const
+{
     check_points(wall);
     check_wall_surface(wall.friction, wall.surface_speed);
     check_wall_force(wall.max_force);
-    const BodyId body = wall.body == BodyId{} ? core_->ground : wall.body;
-    core_->require_alive(body, "WallDefinition.body");
-    if (core_->bodies.motion(body) == BodyMotion::dynamic_body)
+    const BodyId body = wall.body == BodyId{} ? ground : wall.body;
+    require_alive(body, "WallDefinition.body");
+    if (bodies.motion(body) == BodyMotion::dynamic_body)
         refuse("WallDefinition.body", "a dynamic body", "a static or kinematic body");
-    DiscStore& discs = core_->discs;
-    const std::size_t count = wall.points.size() - (wall.closed ? 0 : 1);
-    make_room_for(discs.segments, count);
+}
+
+void SceneCore::make_room_for_walls(std::size_t walls, std::size_t segments)
+{
+    make_room_for(discs.segments, segments);
+    make_room_for(discs.walls, walls);
+    make_room_for(discs.free_walls, walls);
+}
+
+WallId SceneCore::put_wall(const WallDefinition& wall)
+{
     if (discs.free_walls.empty()) {
         discs.walls.emplace_back();
         discs.free_walls.push_back(static_cast<std::uint32_t>(discs.walls.size() - 1));
@@ -89,6 +104,8 @@ WallId Scene::add_wall(const WallDefinition& wall)
     const std::uint32_t slot = discs.free_walls.back();
     discs.free_walls.pop_back();
     discs.walls[slot].live = 1;
+    const BodyId body = wall.body == BodyId{} ? ground : wall.body;
+    const std::size_t count = wall.points.size() - (wall.closed ? 0 : 1);
     for (std::size_t i = 0; i < count; ++i)
         discs.segments.push_back({wall.points[i], wall.points[(i + 1) % wall.points.size()], body,
                                   wall.friction, wall.category, wall.mask, slot, wall.surface_speed,

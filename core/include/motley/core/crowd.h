@@ -33,7 +33,7 @@ struct WallId {
 struct WallDefinition {
     /// Two points or more, m, each coordinate -1e12 to 1e12, neighbours at least 1e-6 m apart: in the world, or, with
     /// `body`, in the frame of that body, of which only the motion in the plane counts.
-    std::span<const Vec2<double>> points;
+    std::span<const Vec2<double>> points{};
     bool closed =
         false;           ///< whether a segment joins the last point with the first; then three points or more
     BodyId body{};       ///< static or kinematic; the null handle: the ground
