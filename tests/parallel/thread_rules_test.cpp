@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "disc_crowd.h"
 #include "mixed_scene.h"
 
 namespace motley {
@@ -192,6 +193,31 @@ TEST(ThreadRules, ALentThreadFindsItsFloatsAgainAndALateOneLeavesAtOnce)
     EXPECT_EQ(hash_after_steps(&host), expected);
     EXPECT_EQ(host.roundings_kept, steps);
     EXPECT_EQ(host.latecomers, steps);
+}
+
+/// What was built answers for its own moment, and reads nothing of the scene.
+TEST(ThreadRules, IndicesAnswerOnSeveralThreadsWhileTheSceneIsStepped)
+{
+    testing::DiscCrowd crowd({.people = 1000, .speed = 2});
+    CrowdIndex people;
+    WallIndex walls;
+    people.build(crowd.scene);
+    walls.build(crowd.scene);
+    std::vector<BodyId> expected;
+    people.discs_within({5, 5}, 3, expected);
+    Solver solver;
+    at_once(4, [&](int thread) {
+        if (thread == 0) {
+            for (int i = 0; i < 5; ++i) solver.step(crowd.scene, dt);
+            return;
+        }
+        std::vector<BodyId> found;
+        for (int i = 0; i < 50; ++i) {
+            people.discs_within({5, 5}, 3, found);
+            ASSERT_EQ(found, expected);
+            ASSERT_FALSE(walls.is_free({5, 5}, {100, 5}));
+        }
+    });
 }
 
 }  // namespace
