@@ -105,6 +105,41 @@ long allocations_of_discs(int threads)
     return allocations - before;
 }
 
+/// The same for what a host asks after each of such steps: events, indices and their queries.
+long allocations_of_questions()
+{
+    testing::DiscCrowd crowd({.people = 3000, .speed = 1});
+    crowd.pull_together(100);
+    Solver solver;
+    ContactEvents events;
+    CrowdIndex people;
+    WallIndex walls;
+    std::vector<BodyId> found;
+    found.reserve(crowd.people.size());
+    std::vector<NearPerson> near;
+    const Polygon area{{{1, 1}, {20, 2}, {8, 15}}, {{{5, 3}, {6, 3}, {6, 4}}}};
+    const auto ask = [&] {
+        const long before = allocations;
+        events.update(crowd.scene);
+        people.build(crowd.scene);
+        walls.build(crowd.scene);
+        people.inside(area, found);
+        people.centres_within({5, 5}, 3, found);
+        people.discs_within({5, 5}, 3, found);
+        people.nearest({5, 5}, 20, near);
+        (void)walls.first_hit({5, 5}, {100, 5});
+        (void)walls.is_free({5, 5}, {100, 5});
+        return allocations - before;
+    };
+    long warm = 0;
+    for (int step = 0; step < 460; ++step) {
+        solver.step(crowd.scene, 1.0F / 60);
+        const long asked = ask();
+        if (step >= 400) warm += asked;
+    }
+    return warm;
+}
+
 /// The same for steps in which every contact has a new key.
 long allocations_of_new_contacts()
 {
@@ -189,6 +224,11 @@ TEST(Allocation, AWarmStepThatMeasuresAndStopsIslandsAllocatesNothing)
 TEST(Allocation, WarmDiscsAllocateNothing)
 {
     for (const int threads : {1, 2}) EXPECT_EQ(allocations_of_discs(threads), 0) << threads << " threads";
+}
+
+TEST(Allocation, WarmQuestionsOfAHostAllocateNothing)
+{
+    EXPECT_EQ(allocations_of_questions(), 0);
 }
 
 TEST(Allocation, AWarmStepInPatchesAllocatesNothing)

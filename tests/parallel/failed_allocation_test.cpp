@@ -3,11 +3,13 @@
 // allocation fails once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "allocator.h"
+#include "disc_crowd.h"
 #include "lattice_crowd.h"
 #include "mixed_scene.h"
 
@@ -188,6 +190,82 @@ TEST(FailedAllocation, ASceneWithoutMemoryRefusesAndIsAsItWas)
                 << name << ", allocation " << successes;
         }
     }
+}
+
+/// Calls call(allocation) with one allocation more that succeeds each time, until none fails; after each failure
+/// look().
+template <class Call, class Look>
+void fail_each_allocation(const Call& call, const Look& look)
+{
+    long successes = 0;
+    for (bool ran_out = true; ran_out; ++successes) {
+        try {
+            const FailingAllocator failing(successes, false);
+            call();
+            ran_out = FailingAllocator::has_failed();
+        } catch (const std::bad_alloc&) {
+            look();
+        }
+    }
+    EXPECT_GT(successes, 3);
+}
+
+TEST(FailedAllocation, APolygonWithoutMemoryAddsNoWall)
+{
+    const Polygon room{{{0, 0}, {9, 0}, {9, 9}, {0, 9}},
+                       {{{1, 1}, {2, 1}, {2, 2}}, {{5, 5}, {6, 5}, {6, 6}}}};
+    Scene scene;
+    WallIndex index;
+    std::vector<WallId> walls;
+    fail_each_allocation([&] { walls = add_polygon(scene, room); },
+                         [&] {
+                             index.build(scene);
+                             ASSERT_EQ(index.size(), std::size_t{0});
+                         });
+    EXPECT_EQ(walls.size(), std::size_t{3});
+    EXPECT_EQ(walls[0].slot, 1U) << "no slot was lost on the way";
+}
+
+TEST(FailedAllocation, IndicesWithoutMemoryAreEmptyAndTheNextOnesRight)
+{
+    const testing::DiscCrowd crowd({.people = 100});
+    std::vector<BodyId> found;
+    CrowdIndex people;
+    WallIndex walls;
+    fail_each_allocation([&] { people.build(crowd.scene); },
+                         [&] {
+                             EXPECT_EQ(people.size(), std::size_t{0});
+                             people.centres_within({5, 5}, 1e3, found);
+                             EXPECT_TRUE(found.empty());
+                         });
+    people.centres_within({5, 5}, 1e3, found);
+    EXPECT_EQ(found.size(), crowd.people.size());
+    fail_each_allocation([&] { walls.build(crowd.scene); },
+                         [&] {
+                             EXPECT_TRUE(walls.is_free({-1e3, 1}, {1e3, 1}));
+                         });
+    EXPECT_FALSE(walls.is_free({-1e3, 1}, {1e3, 1}));
+}
+
+TEST(FailedAllocation, EventsWithoutMemoryAreThoseOfTheUpdateBefore)
+{
+    testing::DiscCrowd crowd({.people = 400, .speed = 3, .spacing = 0.42});
+    Solver solver(SolverSettings{});
+    ContactEvents events;
+    for (int step = 0; step < 5; ++step) solver.step(crowd.scene, dt);
+    events.update(crowd.scene);
+    const std::size_t began = events.began().size(), pushing = events.pushing();
+    for (int step = 0; step < 5; ++step) solver.step(crowd.scene, dt);
+    ContactEvents expected = events;
+    expected.update(crowd.scene);
+    fail_each_allocation([&] { events.update(crowd.scene); },
+                         [&] {
+                             EXPECT_EQ(events.began().size(), began);
+                             EXPECT_EQ(events.pushing(), pushing);
+                         });
+    EXPECT_TRUE(std::ranges::equal(events.began(), expected.began()));
+    EXPECT_TRUE(std::ranges::equal(events.ended(), expected.ended()));
+    EXPECT_GT(events.ended().size(), std::size_t{10});
 }
 
 }  // namespace

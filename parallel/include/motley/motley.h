@@ -2,6 +2,7 @@
 #pragma once
 
 #include "motley/core/assembly.h"
+#include "motley/core/contact_events.h"
 #include "motley/core/crowd_index.h"
 #include "motley/core/polygon.h"
 #include "motley/core/scene.h"

@@ -1,0 +1,119 @@
+// See contact_events.h.
+#include "motley/core/contact_events.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "queries/radix_sort.h"
+#include "scene/disc_impulses.h"
+#include "stores/growth.h"
+
+namespace motley {
+namespace {
+
+/// A pair in sixteen bytes. The key has the slots in the order of the lists; among the living they say it all.
+struct Pair {
+    std::uint64_t key;                         ///< of a or the wall above that of b; the highest bit: a wall
+    std::uint32_t generation_a, generation_b;  ///< of the same
+};
+constexpr std::uint64_t wall_bit = std::uint64_t{1} << 63;  // slots have less than 31 bits, as rows do
+
+constexpr std::uint64_t key_of(std::uint32_t first, std::uint32_t b)
+{
+    return std::uint64_t{first} << 32 | b;
+}
+
+bool is_before(const Pair& one, const Pair& other)
+{
+    if (one.key != other.key) return one.key < other.key;
+    if (one.generation_a != other.generation_a) return one.generation_a < other.generation_a;
+    return one.generation_b < other.generation_b;
+}
+
+DiscPair pair_of(const Pair& pair)
+{
+    const auto first = static_cast<std::uint32_t>((pair.key & ~wall_bit) >> 32);
+    const BodyId b{static_cast<std::uint32_t>(pair.key), pair.generation_b};
+    if ((pair.key & wall_bit) != 0) return {{}, b, {first, pair.generation_a}};
+    return {{first, pair.generation_a}, b, {}};
+}
+
+Pair pair_of(const SceneCore& scene, const DiscImpulse& impulse)
+{
+    const BodyId a = scene.bodies.id_of_slot(impulse.slot_a), b = scene.bodies.id_of_slot(impulse.slot_b);
+    if (impulse.segment != UINT32_MAX) {
+        const std::uint32_t wall = scene.discs.segments[impulse.segment].wall;
+        return {wall_bit | key_of(wall, b.slot), scene.discs.walls[wall].generation, b.generation};
+    }
+    if (a.slot < b.slot) return {key_of(a.slot, b.slot), a.generation, b.generation};
+    return {key_of(b.slot, a.slot), b.generation, a.generation};
+}
+
+/// Appends what is in `these` and not in `those`; both are sorted.
+void list_missing(const std::vector<Pair>& these, const std::vector<Pair>& those,
+                  std::vector<DiscPair>& missing)
+{
+    auto other = those.begin();
+    for (const Pair& pair : these) {
+        while (other != those.end() && is_before(*other, pair)) ++other;
+        if (other == those.end() || is_before(pair, *other)) missing.push_back(pair_of(pair));
+    }
+}
+
+/// What an update finds.
+struct Found {
+    std::vector<Pair> pairs;  ///< sorted
+    std::vector<DiscPair> began, ended;
+};
+
+}  // namespace
+
+struct ContactEventsCore {
+    Found last, next;
+    std::vector<Pair> spare;  ///< room to sort
+};
+template class Boxed<ContactEventsCore>;
+
+ContactEvents::ContactEvents() = default;
+
+void ContactEvents::update(const Scene& scene)
+{
+    const SceneCore& core = core_of(scene);
+    const Found& last = core_->last;
+    Found& next = core_->next;
+    next.pairs.clear();
+    next.began.clear();
+    next.ended.clear();
+    core.for_each_disc_impulse(
+        [&](const DiscImpulse& impulse) { next.pairs.push_back(pair_of(core, impulse)); });
+    grow_to(core_->spare, next.pairs.size());
+    radix_sort(std::span(next.pairs), std::span(core_->spare), [](const Pair& pair) { return pair.key; });
+    const auto same = [](const Pair& one, const Pair& other) { return one.key == other.key; };
+    next.pairs.erase(std::unique(next.pairs.begin(), next.pairs.end(), same), next.pairs.end());
+    list_missing(next.pairs, last.pairs, next.began);
+    list_missing(last.pairs, next.pairs, next.ended);
+    std::swap(core_->last, core_->next);
+}
+
+std::span<const DiscPair> ContactEvents::began() const
+{
+    return core_->last.began;
+}
+
+std::span<const DiscPair> ContactEvents::ended() const
+{
+    return core_->last.ended;
+}
+
+std::size_t ContactEvents::pushing() const
+{
+    return core_->last.pairs.size();
+}
+
+void ContactEvents::clear()
+{
+    core_->last = {};
+}
+
+}  // namespace motley
