@@ -251,7 +251,7 @@ TEST(Wkt, OfARoomWithAPillarKeepsPeopleInIt)
     testing::Random random(8);
     std::vector<BodyId> people;
     constexpr double radius = 0.15, spacing = 0.45;
-    constexpr float speed = 1;  // m/s
+    constexpr float speed = 5;  // m/s
     for (int i = 0; people.size() < 200; ++i) {
         const double x = spacing * (i % 26 + 0.6), y = spacing * (i / 26 + 0.6);
         ASSERT_LT(y, 12) << "no room";
