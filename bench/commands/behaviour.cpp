@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "measuring/host.h"
 #include "measuring/runner.h"
 
 namespace motley::bench {
@@ -150,9 +151,9 @@ void print_speeds(double seconds)
 void print_sparse(std::int64_t people, double seconds)
 {
     fmt::print(
-        "\na crowd that thins out: the cost follows people and contacts, not the "
+        "\na crowd that thins out, host load {:.1f}: the cost follows people and contacts, not the "
         "area\n{:>12}{:>12}{:>12}{:>22}\n",
-        "people / m2", "area, m2", "contacts", "M agent-steps/s");
+        host_load(), "people / m2", "area, m2", "contacts", "M agent-steps/s");
     for (const double density : {5.0, 2.0, 0.5, 0.01}) {
         RunOptions options;
         options.agents = people;
