@@ -105,12 +105,15 @@ class DoorCloses final : public CrowdScene {
         for (std::size_t k = 0; k + 1 < speeds.size(); ++k) {
             figures.emplace_back(fmt::format("peak force of the door at {:g} m/s (N)", speeds[k]),
                                  rooms_[k].peak);
-            figures.emplace_back(fmt::format("  of all from rest to {:g} m/s in a step (N)", speeds[k]),
-                                 bound(k));
-            figures.emplace_back("  once it has stopped (N)", rooms_[k].last);
+            figures.emplace_back(
+                fmt::format("force that brings all from rest to {:g} m/s in a step (N)", speeds[k]),
+                bound(k));
+            figures.emplace_back(
+                fmt::format("force of the door at {:g} m/s once it has stopped (N)", speeds[k]),
+                rooms_[k].last);
         }
         figures.emplace_back("force on one who is squeezed from 0.4 to 0.3 m, peak (N)", rooms_.back().peak);
-        figures.emplace_back("  held there (N)", rooms_.back().last);
+        figures.emplace_back("force on one who is held squeezed (N)", rooms_.back().last);
         return figures;
     }
     [[nodiscard]] std::vector<Mark> marks() const override

@@ -54,8 +54,8 @@ class Silo final : public CrowdScene {
     {
         if (time < settle) return;
         double front = 0, along = 0;  // N
-        double pressing = 0,
-               excess = 0;  // N: sum of the normal forces, and most that friction has beyond its cone
+        double pressing = 0;          // N: the normal forces
+        double excess = 0;            // N: the most that friction has beyond its cone
         const std::vector<Touch> touches = people.touches(scene);
         for (const Touch& touch : touches) {
             deepest_ = std::max(deepest_, -touch.separation);
@@ -90,23 +90,26 @@ class Silo final : public CrowdScene {
         double axial = 0;  // N m, the force summed over the length
         for (const double a : axial_) axial += a * pitch;
         const double ratio = side_ / 2 * width / axial;  // of side to axial stress, K
+        std::vector<Figure> figures{
+            {"side stress over axial stress", ratio},
+            {"share of the load that the side walls take (%)",
+             100 * rubbing_ / samples_ / (force * static_cast<double>(people.agents.size()))}};
+        if (people.friction <= 0) return figures;  // a slab: nothing to compare
         const double mu = rubbing_ / side_;
         const double density = people_a_row / (width * pitch);
         const double depth = width / (2 * mu * ratio);
-        std::vector<Figure> figures{
-            {"side stress over axial stress", ratio},
-            {"friction mobilised at the side walls (share of mu)", mu / static_cast<double>(people.friction)},
-            {"share of the load that the side walls take (%)",
-             100 * rubbing_ / samples_ / (force * static_cast<double>(people.agents.size()))}};
+        figures.emplace_back("friction mobilised at the side walls (share of mu)",
+                             mu / static_cast<double>(people.friction));
         for (int part = 0; part < 5; ++part) {
             const auto row = static_cast<std::size_t>(rows_ * part / 5);
+            const std::string where =
+                fmt::format("{:.1f} m from the front", pitch * static_cast<double>(row));
             const double behind = pitch * (rows_ - static_cast<double>(row));
             const double janssen = density * force * depth * (1 - std::exp(-behind / depth));
-            figures.emplace_back(
-                fmt::format("stress {:.1f} m from the front (N/m)", pitch * static_cast<double>(row)),
-                axial_[row] / samples_ / width);
-            figures.emplace_back("  Janssen's there (N/m)", janssen);
-            figures.emplace_back("  without side walls (N/m)", density * force * behind);
+            figures.emplace_back(fmt::format("stress {} (N/m)", where), axial_[row] / samples_ / width);
+            figures.emplace_back(fmt::format("Janssen's stress {} (N/m)", where), janssen);
+            figures.emplace_back(fmt::format("stress without side walls {} (N/m)", where),
+                                 density * force * behind);
         }
         return figures;
     }

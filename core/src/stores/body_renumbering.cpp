@@ -113,7 +113,8 @@ void BodyStore::swap_planar(std::uint32_t i, std::uint32_t j)
     BodyRows& r = rows(BodyKind::planar);
     for (AlignedVector<float>* quads : {&r.velocity, &r.delta, &r.acceleration, &r.unpushed}) {
         float* const first = quads->data();
-        std::swap_ranges(first + std::size_t{4} * i, first + std::size_t{4} * i + 4, first + std::size_t{4} * j);
+        std::swap_ranges(first + std::size_t{4} * i, first + std::size_t{4} * i + 4,
+                         first + std::size_t{4} * j);
     }
     std::swap(r.pose[i], r.pose[j]);
     std::swap(r.slot[i], r.slot[j]);
