@@ -22,7 +22,7 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     DiscStore& discs = scene.discs;
     if (!discs.is_in_use()) {
         discs.band_count = 0;
-        discs.band_rows.clear();
+        discs.wants_sorting = false;
         return;
     }
     find_wall_ends(scene, wall_ends_);

@@ -45,8 +45,8 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
         case Operation::stiffen:
             if (layout_.is_overloaded()) sweeper_.sweep(&ConstraintKernels::stiffen);
             break;
-        case Operation::list_bodies_beside:
-            sweeper_.list_beside();
+        case Operation::list_bodies_beside_patches:
+            sweeper_.list_beside_patches();
             break;
         case Operation::step_figures:
             sweeper_.step_lone_figures(figure_plan);
@@ -59,16 +59,11 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
             break;
         }
         case Operation::add_up_impulses:
-            stage.where == Where::beside_bands ? sweeper_.add_up_beside_bands() : sweeper_.add_up();
+            sweeper_.add_up();
             break;
         case Operation::integrate_velocities:
-            if (stage.where == Where::beside_bands) {
-                sweeper_.integrate_beside(&BodyKernels::integrate_listed_velocities,
-                                          &BodyKernels::integrate_velocities);
-            } else {
-                sweeper_.integrate(substep == 0 ? &BodyKernels::begin_velocities
-                                                : &BodyKernels::integrate_velocities);
-            }
+            sweeper_.integrate(substep == 0 ? &BodyKernels::begin_velocities
+                                            : &BodyKernels::integrate_velocities);
             break;
         case Operation::factor_trees:
             sweeper_.prepare_touched_trees();
@@ -92,18 +87,11 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
         case Operation::visit_patches:
             sweeper_.visit_patches(plan.visit);
             break;
-        case Operation::visit_odd_bands:
-            sweeper_.visit_odd_bands(plan.odd_visit, substep, plan.substeps);
-            break;
-        case Operation::visit_even_bands:
-            sweeper_.visit_even_bands(plan.visit, substep, plan.substeps);
-            break;
         case Operation::integrate_positions:
-            if (stage.where == Where::everywhere) {
-                sweeper_.integrate(&BodyKernels::integrate_positions);
+            if (stage.where == Where::beside_patches) {
+                sweeper_.move_beside_patches();
             } else {
-                sweeper_.integrate_beside(&BodyKernels::integrate_listed_positions,
-                                          &BodyKernels::integrate_positions);
+                sweeper_.integrate(&BodyKernels::integrate_positions);
             }
             break;
         case Operation::integrate_on:
@@ -136,14 +124,8 @@ void PlanRunner::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, cons
                        const Step& step)
 {
     int sweeps = stage.times;
-    // Visits of patches and bands are the rest of the same sweep.
     if (stage.where == Where::beside_patches) {
-        sweeper_.sweep_beside_patches(kernel);
-    } else if (stage.where == Where::beside_bands) {
-        sweeper_.sweep_beside_bands(kernel);
-    } else if (stage.where == Where::odd_bands) {
-        sweeper_.sweep_odd_bands(kernel);
-        return;
+        sweeper_.sweep_beside_patches(kernel);  // the visit of the patches is the rest of the same sweep
     } else {
         sweeps = step.picks_islands ? iterate_by_island(kernel, stage.times, step)
                                     : iterate(kernel, stage.times, step);

@@ -146,7 +146,6 @@ struct Solver::Impl {
     [[nodiscard]] bool tells_blocks_apart(const SceneCore& scene) const;
     [[nodiscard]] FigureUse use_of_figures(const SceneCore& scene) const;
     [[nodiscard]] bool can_visit_patches_once(const SceneCore& scene) const;
-    [[nodiscard]] bool can_visit_bands_once(const SceneCore& scene) const;
     [[nodiscard]] bool anything_bounces(const SceneCore& scene) const;
 };
 
@@ -307,7 +306,6 @@ void Solver::Impl::plan_step(const SceneCore& scene)
     fuse_integrations(plan);
     if (layout.has_constant_responses()) replay_warm_starts(plan);
     if (can_visit_patches_once(scene)) visit_patches_once(plan);
-    if (can_visit_bands_once(scene)) visit_bands_once(plan);
 }
 
 /// After the bodies have moved: updates the scene and fills in the report.
@@ -362,16 +360,6 @@ bool Solver::Impl::can_visit_patches_once(const SceneCore& scene) const
     return layout.intake.patches.are_wanted() && settings.method == Method::soft_step &&
            settings.relaxations > 0 && !PlanRunner::sweeps_long(settings) && !tells_blocks_apart(scene) &&
            layout.figures.touched_trees().empty() && layout.disc_bands() == 0;
-}
-
-/// Whether visit_bands_once() may rewrite the plan. Not where a wall moves: a visit both solves and relaxes, and between
-/// the two all walls would have to move.
-bool Solver::Impl::can_visit_bands_once(const SceneCore& scene) const
-{
-    return layout.has_disc_rows() && plan.replays_warm_starts && settings.method == Method::soft_step &&
-           settings.iterations == 1 && settings.relaxations == 1 && !tells_blocks_apart(scene) &&
-           layout.figures.touched_trees().empty() && !layout.intake.patches.are_wanted() &&
-           fastest_wall_end(scene) == 0;
 }
 
 }  // namespace motley

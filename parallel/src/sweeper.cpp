@@ -105,123 +105,37 @@ void Sweeper::sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel,
     });
 }
 
-/// Every block but those of discs. Relaxation runs in the opposite order, so that a patch, solved last, can be moved and
-/// relaxed while it is in cache.
-void Sweeper::sweep_listed(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
+    // Relaxation runs in the opposite order, so that a patch, solved last, can be moved and relaxed while it is in
+    // cache.
     const bool patches_first = kernel == &ConstraintKernels::relax;
+    // Islands that want more sweeps than others are of listed contacts and joints.
+    const bool with_discs = at_least <= 0 && layout_.context.measure == Measure::nothing;
     if (patches_first) sweep_patches(kernel, at_least);
     sweep_beside_patches(kernel, at_least);
     if (!patches_first) sweep_patches(kernel, at_least);
+    if (with_discs) sweep_discs(kernel);
 }
 
-/// Bands of odd number, then what is in no band, then bands of even number; to relax, in the opposite order. So a band
-/// can be relaxed and begin its next substep, or be solved, moved and relaxed, while it is in cache.
-void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+/// Band 0, then bands of odd number, then of even number. The order is that of solving also to relax: in the opposite
+/// order a blow would be handed on from person to person less exactly, and p99 of overlaps would be a sixth larger.
+void Sweeper::sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel)
 {
-    // Islands that want more sweeps than others are of listed contacts and joints.
-    const bool with_discs =
-        at_least <= 0 && layout_.context.measure == Measure::nothing && layout_.disc_bands() > 0;
-    if (!with_discs) {
-        sweep_listed(kernel, at_least);
-        return;
-    }
-    const bool even_first = kernel == &ConstraintKernels::relax;
-    even_first ? sweep_even_bands(kernel) : sweep_odd_bands(kernel);
-    if (even_first) sweep_listed(kernel, at_least);
-    sweep_band(0, kernel);
-    if (!even_first) sweep_listed(kernel, at_least);
-    even_first ? sweep_odd_bands(kernel) : sweep_even_bands(kernel);
-}
-
-void Sweeper::sweep_beside_bands(ConstraintKernels::Sweep ConstraintKernels::*kernel)
-{
-    const bool listed_first = kernel == &ConstraintKernels::relax;
-    if (listed_first) sweep_listed(kernel, every_block);
-    sweep_band(0, kernel);
-    if (!listed_first) sweep_listed(kernel, every_block);
-}
-
-void Sweeper::sweep_odd_bands(ConstraintKernels::Sweep ConstraintKernels::*kernel)
-{
-    runner_.run(layout_.disc_bands() / 2, [&](std::int64_t i) { sweep_band(2 * i + 1, kernel); });
-}
-
-void Sweeper::sweep_even_bands(ConstraintKernels::Sweep ConstraintKernels::*kernel)
-{
-    runner_.run((layout_.disc_bands() - 1) / 2, [&](std::int64_t i) { sweep_band(2 * i + 2, kernel); });
-}
-
-void Sweeper::sweep_band(std::int64_t band, ConstraintKernels::Sweep ConstraintKernels::*kernel)
-{
+    const std::int64_t bands = layout_.disc_bands();
+    if (bands == 0) return;
     // The bodies of a band fit a core's first cache, and neighbours lie together.
     KernelContext at_hand = layout_.context;
     at_hand.bodies_are_far = false;
-    run_chunks(at_hand, layout_.kernels(), layout_.discs_of_band(band), kernel, every_block);
-}
-
-/// Runs stages over a band: constraints are those of the band, bodies those that they touch.
-void Sweeper::visit_band(std::int64_t band, std::span<const PlanStage> stages, int substep, int substep_count)
-{
-    const BodyKernels& bodies = layout_.kernels().bodies[static_cast<int>(BodyKind::planar)];
-    const auto integrate = [&](BodyKernels::MoveListed move) {
-        const std::span<const BodyRow> touched = layout_.discs_touched_by(band);
-        move(layout_.context, touched.data(), static_cast<std::int32_t>(touched.size()));
+    const auto run = [&](std::int64_t band) {
+        run_chunks(at_hand, layout_.kernels(), layout_.discs_of_band(band), kernel, every_block);
     };
-    for (const PlanStage& stage : stages) {
-        if (!stage.runs_in(substep, substep_count)) continue;
-        switch (stage.operation) {
-            case Operation::add_up_impulses:
-                add_up_band(band);
-                break;
-            case Operation::integrate_velocities:
-                integrate(bodies.integrate_listed_velocities);
-                break;
-            case Operation::integrate_positions:
-                integrate(bodies.integrate_listed_positions);
-                break;
-            case Operation::solve:
-                sweep_band(band, &ConstraintKernels::solve);
-                break;
-            case Operation::relax:
-                sweep_band(band, &ConstraintKernels::relax);
-                break;
-            default:
-                break;
-        }
-    }
-}
-
-void Sweeper::visit_odd_bands(std::span<const PlanStage> stages, int substep, int substep_count)
-{
-    runner_.run(layout_.disc_bands() / 2,
-                [&](std::int64_t i) { visit_band(2 * i + 1, stages, substep, substep_count); });
-}
-
-void Sweeper::visit_even_bands(std::span<const PlanStage> stages, int substep, int substep_count)
-{
-    // Bodies of band 1 are touched by no band of even number before it. Band 0, whose constraints are solved elsewhere,
-    // stands for that band.
-    const BodyKernels& bodies = layout_.kernels().bodies[static_cast<int>(BodyKind::planar)];
-    runner_.run((layout_.disc_bands() + 1) / 2, [&](std::int64_t i) {
-        if (i > 0) {
-            visit_band(2 * i, stages, substep, substep_count);
-            return;
-        }
-        const std::span<const BodyRow> first = layout_.discs_touched_by(0);
-        bodies.integrate_listed_positions(layout_.context, first.data(),
-                                          static_cast<std::int32_t>(first.size()));
-    });
+    run(0);
+    runner_.run(bands / 2, [&](std::int64_t i) { run(2 * i + 1); });
+    runner_.run((bands - 1) / 2, [&](std::int64_t i) { run(2 * i + 2); });
 }
 
 void Sweeper::add_up()
-{
-    add_up_beside_bands();
-    const std::int64_t bands = layout_.disc_bands();
-    runner_.run(std::max<std::int64_t>(bands - 1, 0), [&](std::int64_t i) { add_up_band(i + 1); });
-}
-
-void Sweeper::add_up_beside_bands()
 {
     const SweepLists& sweeps = layout_.sweeps();
     runner_.run(sweeps.chunk_count(), [&](std::int64_t i) {
@@ -229,13 +143,10 @@ void Sweeper::add_up_beside_bands()
         if (chunk.streams.sums != nullptr)
             chunk.kernels->add_up(layout_.context, chunk.streams, chunk.begin, chunk.end);
     });
-    if (layout_.disc_bands() > 0) add_up_band(0);
-}
-
-void Sweeper::add_up_band(std::int64_t band)
-{
-    for (const SweepChunk& chunk : layout_.discs_of_band(band))
-        chunk.kernels->add_up(layout_.context, chunk.streams, chunk.begin, chunk.end);
+    runner_.run(layout_.disc_bands(), [&](std::int64_t band) {
+        for (const SweepChunk& chunk : layout_.discs_of_band(band))
+            chunk.kernels->add_up(layout_.context, chunk.streams, chunk.begin, chunk.end);
+    });
 }
 
 namespace {
@@ -280,7 +191,7 @@ class StreamsAhead {
 void Sweeper::move_patch(const KernelContext& context, std::int64_t patch)
 {
     for (int kind = 0; kind < body_kind_count; ++kind) {
-        const auto move = layout_.kernels().bodies[kind].integrate_listed_positions;
+        const auto move = layout_.kernels().bodies[kind].integrate_listed;
         if (move == nullptr) continue;
         const std::span<const BodyRow> bodies =
             layout_.intake.patches.bodies_of(static_cast<std::size_t>(patch), static_cast<BodyKind>(kind));
@@ -329,39 +240,29 @@ void Sweeper::visit_patches(std::span<const PlanStage> stages)
     });
 }
 
-void Sweeper::list_beside()
+void Sweeper::list_beside_patches()
 {
     for (int kind = 0; kind < body_kind_count; ++kind) {
-        if (!lists_beside(kind)) continue;
+        if (layout_.kernels().bodies[kind].integrate_listed == nullptr) continue;
         runner_.run(static_cast<std::int64_t>(layout_.rows(kind).size()),
-                    [&](std::int64_t i) { layout_.list_beside(static_cast<BodyKind>(kind), i); });
+                    [&](std::int64_t i) { layout_.list_beside_patches(static_cast<BodyKind>(kind), i); });
     }
 }
 
-/// Whether bodies of a kind may be in a patch or a band.
-bool Sweeper::lists_beside(int kind) const
-{
-    if (layout_.intake.patches.are_wanted())
-        return layout_.kernels().bodies[kind].integrate_listed_positions != nullptr;
-    return static_cast<BodyKind>(kind) == BodyKind::planar;
-}
-
-void Sweeper::integrate_beside(BodyKernels::MoveListed BodyKernels::*listed,
-                               BodyKernels::Move BodyKernels::*kernel)
+void Sweeper::move_beside_patches()
 {
     for (int kind = 0; kind < body_kind_count; ++kind) {
         const BodyKernels& kernels = layout_.kernels().bodies[kind];
         const auto& ranges = layout_.rows(kind);
-        if (!lists_beside(kind) && kernels.*kernel == nullptr) continue;
         runner_.run(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
-            if (!lists_beside(kind)) {
-                const RowRange& range = ranges[static_cast<std::size_t>(i)];
-                (kernels.*kernel)(layout_.context, range.begin, range.end);
+            const RowRange& range = ranges[static_cast<std::size_t>(i)];
+            if (kernels.integrate_listed == nullptr) {
+                kernels.integrate_positions(layout_.context, range.begin, range.end);
                 return;
             }
-            const std::span<const BodyRow> beside = layout_.beside(static_cast<BodyKind>(kind), i);
-            if (!beside.empty())
-                (kernels.*listed)(layout_.context, beside.data(), static_cast<std::int32_t>(beside.size()));
+            const std::span<const BodyRow> beside = layout_.beside_patches(static_cast<BodyKind>(kind), i);
+            kernels.integrate_listed(layout_.context, beside.data(),
+                                     static_cast<std::int32_t>(beside.size()));
         });
     }
 }

@@ -30,23 +30,14 @@ class Sweeper {
     /// Runs a kernel over every block that is in no patch.
     void sweep_beside_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel,
                               int at_least = every_block);
-    /// Runs a kernel over every block of listed contacts and joints, and of band 0 of discs.
-    void sweep_beside_bands(ConstraintKernels::Sweep ConstraintKernels::*kernel);
-    void sweep_odd_bands(ConstraintKernels::Sweep ConstraintKernels::*kernel);
     /// Adds the impulses of a substep to the sums over those before it.
     void add_up();
-    void add_up_beside_bands();
     /// Runs these stages over one patch after another: `solve`, `integrate_positions` and `relax`. See
     /// visit_patches_once().
     void visit_patches(std::span<const PlanStage> stages);
-    /// Runs those of these stages that belong to the substep over one band of discs after another: see
-    /// visit_bands_once().
-    void visit_odd_bands(std::span<const PlanStage> stages, int substep, int substep_count);
-    void visit_even_bands(std::span<const PlanStage> stages, int substep, int substep_count);
-    /// Lists all bodies that are in no patch and no band, once a step. integrate_beside() is then for them.
-    void list_beside();
-    void integrate_beside(BodyKernels::MoveListed BodyKernels::*listed,
-                          BodyKernels::Move BodyKernels::*kernel);
+    /// Lists all bodies that are in no patch, once a step. move_beside_patches() then does x += h v for them.
+    void list_beside_patches();
+    void move_beside_patches();
     /// Runs the whole plan over the figures that nothing else touches.
     void step_lone_figures(const Plan& plan);
     /// For the trees of figures that something else touches: prepare_tree(), begin_tree() and solve_tree() of each.
@@ -65,12 +56,7 @@ class Sweeper {
     Layout& layout_;
     std::vector<FigureWorkspace> workspaces_;  ///< one per worker
 
-    void sweep_even_bands(ConstraintKernels::Sweep ConstraintKernels::*kernel);
-    void sweep_band(std::int64_t band, ConstraintKernels::Sweep ConstraintKernels::*kernel);
-    void sweep_listed(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
-    void add_up_band(std::int64_t band);
-    [[nodiscard]] bool lists_beside(int kind) const;
-    void visit_band(std::int64_t band, std::span<const PlanStage> stages, int substep, int substep_count);
+    void sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel);
     void sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
     void move_patch(const KernelContext& context, std::int64_t patch);
     void relax_patch(const KernelContext& context, std::int64_t patch);

@@ -135,7 +135,7 @@ TEST(Plan, OfALargeCrowdVisitsEachPatchOnceAndReplaysItsWarmStarts)
               "prepare\n"
               "stiffen what bears heavy loads\n"
               "step figures in lockstep\n"
-              "list bodies beside patches and bands\n"
+              "list bodies beside patches\n"
               "4 substeps of\n"
               "    add up impulses (all but the first substep)\n"
               "    integrate velocities\n"
@@ -148,42 +148,6 @@ TEST(Plan, OfALargeCrowdVisitsEachPatchOnceAndReplaysItsWarmStarts)
               "        relax\n"
               "    integrate positions, beside patches\n"
               "    relax, beside patches\n"
-              "add up impulses\n"
-              "store impulses\n"
-              "land free groups\n"
-              "move bodies\n");
-}
-
-TEST(Plan, OfACrowdOfDiscsVisitsEachBandOnceAndReplaysItsWarmStarts)
-{
-    Plan plan = plan_of({});
-    replay_warm_starts(plan);
-    visit_bands_once(plan);
-    EXPECT_EQ(text_of(plan),
-              "note momenta of free groups\n"
-              "prepare\n"
-              "stiffen what bears heavy loads\n"
-              "step figures in lockstep\n"
-              "list bodies beside patches and bands\n"
-              "4 substeps of\n"
-              "    add up impulses, beside bands (all but the first substep)\n"
-              "    integrate velocities (first substep)\n"
-              "    integrate velocities, beside bands (all but the first substep)\n"
-              "    warm start (first substep)\n"
-              "    visit odd bands of discs\n"
-              "        relax (all but the first substep)\n"
-              "        add up impulses (all but the first substep)\n"
-              "        integrate velocities (all but the first substep)\n"
-              "        solve\n"
-              "    solve, beside bands\n"
-              "    visit even bands of discs\n"
-              "        add up impulses (all but the first substep)\n"
-              "        solve\n"
-              "        integrate positions\n"
-              "        relax\n"
-              "    integrate positions, beside bands\n"
-              "    relax, beside bands\n"
-              "    relax, odd bands (last substep)\n"
               "add up impulses\n"
               "store impulses\n"
               "land free groups\n"

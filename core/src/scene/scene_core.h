@@ -90,8 +90,8 @@ struct SceneCore {
     void forget_discs_of(BodyId moved);
     /// BodyStore::renumber, and what is kept by row follows.
     void renumber_rows();
-    /// Moves planar bodies with discs to where their neighbours are in memory: into the order of the bands, and those in
-    /// no band behind them. Results keep every bit.
+    /// Moves planar bodies with discs to where their neighbours are in memory: into the order of the strips, and all others
+    /// behind them. Results keep every bit.
     void sort_disc_rows();
     void write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular);
     /// The mean force or torque over the last step of an impulse of that step.

@@ -176,18 +176,16 @@ void SceneCore::sort_disc_rows()
     // Bodies that were added since the last search have no disc yet.
     grow_to(discs.anchors, rows);
     grow_to(discs.found_at, rows);
-    grow_to(discs.is_in_band, rows);
     std::uint32_t next = 1;
-    for (BodyRow& body : discs.band_rows) {
-        discs.sorted_rows[body.row()] = next;
-        body = BodyRow(BodyKind::planar, next++);
+    for (std::uint32_t& row : discs.rows_by_place) {
+        discs.sorted_rows[row] = next;
+        row = next++;
     }
     for (std::uint32_t row = 1; row < rows; ++row) {
         if (discs.sorted_rows[row] == 0) discs.sorted_rows[row] = next++;
     }
     discs.renumber_contacts(discs.sorted_rows);
     bodies.permute_planar(discs.sorted_rows, [&](std::uint32_t i, std::uint32_t j) {
-        std::swap(discs.is_in_band[i], discs.is_in_band[j]);
         std::swap(discs.anchors[i], discs.anchors[j]);
         std::swap(discs.found_at[i], discs.found_at[j]);
     });

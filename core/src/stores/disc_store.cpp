@@ -88,7 +88,8 @@ void DiscStore::renumber(std::span<const std::uint32_t> new_rows)
         *places = std::move(moved);
     }
     renumber_contacts(new_rows);
-    band_rows.clear();
+    rows_by_place.clear();
+    wants_sorting = false;
 }
 
 void DiscStore::renumber_contacts(std::span<const std::uint32_t> new_rows)

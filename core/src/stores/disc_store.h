@@ -112,11 +112,8 @@ struct DiscStore {
     AlignedVector<DiscAnchor> anchors;   ///< by row of planar bodies
     AlignedVector<DiscAnchor> found_at;  ///< the same as of the last search of all discs
     StripFrame frame;                    ///< of that search
-    /// The discs of each band in order, and where those of a band begin; band 0 has none. Empty after a file or a
-    /// renumbering, until the next search.
-    std::vector<BodyRow> band_rows;
-    std::vector<std::uint32_t> first_band_row;  ///< by band, and one past the last
-    std::vector<std::uint8_t> is_in_band;       ///< by row of planar bodies
+    /// The rows of the discs in the order of the strips. Empty after a file or a renumbering, until the next search.
+    std::vector<std::uint32_t> rows_by_place;
     /// Whether bodies that are near each other have come to lie far apart in memory: see sort_disc_rows().
     bool wants_sorting = false;
     std::vector<std::uint32_t> sorted_rows;  ///< space for sort_disc_rows()
@@ -134,12 +131,6 @@ struct DiscStore {
     bool is_stale = true;
 
     [[nodiscard]] bool is_in_use() const { return count > 0; }
-    /// The discs of bands `first` to `last` - 1.
-    [[nodiscard]] std::span<const BodyRow> rows_of_bands(std::size_t first, std::size_t last) const
-    {
-        const std::uint32_t from = first_band_row[first];
-        return std::span(band_rows).subspan(from, first_band_row[last] - from);
-    }
     [[nodiscard]] const DiscShape* shape_of(std::uint32_t slot) const
     {
         return slot < shapes.size() && shapes[slot].radius > 0 ? &shapes[slot] : nullptr;

@@ -59,22 +59,19 @@ void DiscFinder::open(SceneCore& scene, int workers)
     discs.band_count = static_cast<std::size_t>(strips.band_count()) + 1;
     if (discs.bands.size() < discs.band_count) discs.bands.resize(discs.band_count);
     place_segments(discs);
-    open_band_rows(scene);
+    list_rows(scene);
 }
 
-/// Makes space for the lists of the discs of every band.
-void DiscFinder::open_band_rows(SceneCore& scene) const
+/// Lists the rows in the order of the strips.
+void DiscFinder::list_rows(SceneCore& scene) const
 {
     DiscStore& discs = scene.discs;
-    const std::int32_t bands = strips.band_count();
-    discs.band_rows.resize(strips.discs().size() - strips.wide().size());
-    assign_with_room(discs.first_band_row, static_cast<std::size_t>(bands) + 2, 0);
-    discs.first_band_row.assign(1, 0);
-    for (std::int32_t band = 0; band <= bands; ++band)
-        discs.first_band_row.push_back(strips.first_of(strips.first_strip(band)));
-    const std::size_t rows = scene.bodies.rows(BodyKind::planar).size();
-    assign_with_room(discs.is_in_band, rows, 0);
-    grow_to(discs.sorted_rows, rows);  // so that sort_disc_rows() need not allocate
+    const std::span<const PlacedDisc> placed = strips.discs();
+    discs.rows_by_place.resize(placed.size());
+    for (std::size_t place = 0; place < placed.size(); ++place)
+        discs.rows_by_place[place] = placed[place].row;
+    // So that sort_disc_rows() need not allocate.
+    grow_to(discs.sorted_rows, scene.bodies.rows(BodyKind::planar).size());
 }
 
 /// Gives a band near walls room for so many blocks of contacts with them before the first ones are found. Band 0 gets a
@@ -110,32 +107,22 @@ void DiscFinder::make_room_for_pairs(DiscStore& discs)
     });
 }
 
-/// Whether neighbours in the bands lie too far apart in memory: whether the rows of 64 discs in line are in more than
+/// Whether neighbours in the strips lie too far apart in memory: whether the rows of 64 discs in line are in more than
 /// twice as many cache lines as they would be in order. A sample of the crowd is looked at.
 bool DiscFinder::are_rows_scattered(const DiscStore& discs)
 {
     constexpr std::size_t window = 64, most_windows = 256, rows_a_line = 4;
-    const std::size_t windows = discs.band_rows.size() / window;
+    const std::size_t windows = discs.rows_by_place.size() / window;
     const std::size_t stride = windows / most_windows + 1;
     std::array<std::uint32_t, window> lines;
     std::size_t seen = 0, in_order = 0;
     for (std::size_t w = 0; w < windows; w += stride) {
-        for (std::size_t i = 0; i < window; ++i)
-            lines[i] = discs.band_rows[w * window + i].row() / rows_a_line;
+        for (std::size_t i = 0; i < window; ++i) lines[i] = discs.rows_by_place[w * window + i] / rows_a_line;
         std::sort(lines.begin(), lines.end());
         seen += static_cast<std::size_t>(std::unique(lines.begin(), lines.end()) - lines.begin());
         in_order += window / rows_a_line;
     }
     return seen > 2 * in_order;
-}
-
-void DiscFinder::list_band_rows(DiscStore& discs, std::size_t band) const
-{
-    for (std::uint32_t place = discs.first_band_row[band]; place < discs.first_band_row[band + 1]; ++place) {
-        const std::uint32_t row = strips.disc(place).row;
-        discs.band_rows[place] = BodyRow(BodyKind::planar, row);
-        discs.is_in_band[row] = 1;
-    }
 }
 
 /// Lists for every band the walls near its strips.
@@ -176,7 +163,6 @@ void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
     if (band == 0) {
         find_wide(scene, own);
     } else {
-        list_band_rows(scene.discs, band);
         find_in_strips(scene, band, own);
     }
     for (BlockFiller& filler : own.fillers) filler.finish();

@@ -24,9 +24,7 @@ void enter_body(BodyKernels& kernels)
     if constexpr (kind != BodyKind::fixed) {
         kernels.integrate_velocities = integrate_velocities<kind, false>;
         kernels.begin_velocities = integrate_velocities<kind, true>;
-        if constexpr (kind == BodyKind::planar)
-            kernels.integrate_listed_velocities = integrate_listed_velocities<kind>;
-        kernels.integrate_listed_positions = integrate_listed_positions<kind>;
+        kernels.integrate_listed = integrate_listed<kind>;
         kernels.commit = commit<kind>;
         kernels.bring_back = bring_back<kind>;
     }

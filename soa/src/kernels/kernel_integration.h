@@ -159,17 +159,6 @@ void integrate_velocities(const KernelContext& context, std::int32_t begin, std:
     });
 }
 
-template <BodyKind kind>
-void integrate_listed_velocities(const KernelContext& context, const BodyRow* rows, std::int32_t count)
-{
-    const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
-    for_each_rows<kind>(rows, count, [&](const RowIndex<kind>& index) {
-        Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
-        change_velocity(context, arrays, index, body);
-        store_velocity(arrays, index.offsets, body, index.count);
-    });
-}
-
 // ---- x += h v ----------------------------------------------------------------------------------------
 
 /// Rotates a body by its angular velocity at the middle of the substep, and carries its angular momentum L = I w
@@ -234,7 +223,7 @@ void integrate_positions(const KernelContext& context, std::int32_t begin, std::
 }
 
 template <BodyKind kind>
-void integrate_listed_positions(const KernelContext& context, const BodyRow* rows, std::int32_t count)
+void integrate_listed(const KernelContext& context, const BodyRow* rows, std::int32_t count)
 {
     for_each_rows<kind>(rows, count,
                         [&](const RowIndex<kind>& index) { move_on<kind, false>(context, index); });

@@ -143,11 +143,8 @@ struct BodyKernels {
     Move begin_velocities = nullptr;      ///< the same for the first substep: also stores Flight::start_along
     Move integrate_positions = nullptr;
     Move integrate_on = nullptr;  ///< positions, then the velocities of the next substep, in one pass
-    /// The same for `count` bodies of this kind, in any rows. Null for fixed bodies; velocities also for bodies that
-    /// cannot have discs.
-    using MoveListed = void (*)(const KernelContext&, const BodyRow* rows, std::int32_t count);
-    MoveListed integrate_listed_velocities = nullptr;
-    MoveListed integrate_listed_positions = nullptr;
+    /// Integrates the positions of `count` bodies of this kind, in any rows. Null for fixed bodies.
+    void (*integrate_listed)(const KernelContext&, const BodyRow* rows, std::int32_t count) = nullptr;
     /// BodyStore::commit of sixteen rows from `first` on. Returns false and does nothing unless each row is a body
     /// that can move and whose state is finite. Null for fixed bodies.
     bool (*commit)(const KernelContext&, std::int32_t first) = nullptr;

@@ -197,10 +197,6 @@ void Layout::list_discs(SceneCore& scene)
 {
     disc_chunks_.clear();
     disc_bands_.clear();
-    discs_ = &scene.discs;
-    if (has_disc_rows())
-        grow_to(beside_[static_cast<std::size_t>(BodyKind::planar)],
-                scene.bodies.rows(BodyKind::planar).size());
     for (std::size_t band = 0; band < scene.discs.band_count; ++band) {
         const auto first = static_cast<std::int32_t>(disc_chunks_.size());
         for (std::size_t c = 0; c < disc_class_count; ++c) {
@@ -223,26 +219,19 @@ void Layout::list_discs(SceneCore& scene)
     }
 }
 
-void Layout::list_beside(BodyKind kind, std::int64_t i)
+void Layout::list_beside_patches(BodyKind kind, std::int64_t i)
 {
     RowRange& range = rows_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
     BodyRow* const first = beside_[static_cast<std::size_t>(kind)].data() + range.begin;
     BodyRow* last = first;
     for (std::int32_t row = range.begin; row < range.end; ++row) {
         *last = BodyRow(kind, static_cast<std::uint32_t>(row));
-        const bool is_inside = intake.patches.are_wanted() ? intake.patches.lists(*last) : is_in_band(*last);
-        last += is_inside ? 0 : 1;
+        last += intake.patches.lists(*last) ? 0 : 1;
     }
     range.beside = static_cast<std::int32_t>(last - first);
 }
 
-bool Layout::is_in_band(BodyRow body) const
-{
-    return body.kind() == BodyKind::planar && body.row() < discs_->is_in_band.size() &&
-           discs_->is_in_band[body.row()] != 0;
-}
-
-std::span<const BodyRow> Layout::beside(BodyKind kind, std::int64_t i) const
+std::span<const BodyRow> Layout::beside_patches(BodyKind kind, std::int64_t i) const
 {
     const RowRange& range = rows(static_cast<int>(kind))[static_cast<std::size_t>(i)];
     return {beside_[static_cast<std::size_t>(kind)].data() + range.begin,

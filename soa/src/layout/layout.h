@@ -66,10 +66,10 @@ class Layout {
     {
         return rows_[static_cast<std::size_t>(kind)];
     }
-    /// Lists the bodies of range `i` of a kind that are in no patch and no band...
-    void list_beside(BodyKind kind, std::int64_t i);
+    /// Lists the bodies of range `i` of a kind that are in no patch...
+    void list_beside_patches(BodyKind kind, std::int64_t i);
     /// ...and returns them.
-    [[nodiscard]] std::span<const BodyRow> beside(BodyKind kind, std::int64_t i) const;
+    [[nodiscard]] std::span<const BodyRow> beside_patches(BodyKind kind, std::int64_t i) const;
     /// The contacts of discs in bands; bands of even number are independent of each other, and those of odd number:
     /// see DiscStore.
     void list_discs(SceneCore& scene);
@@ -80,14 +80,6 @@ class Layout {
         return {disc_chunks_.data() + range.first, disc_chunks_.data() + range.last};
     }
     [[nodiscard]] std::span<const SweepChunk> discs() const { return disc_chunks_; }
-    /// Whether the discs of each band are listed. Not in the first steps of a file or a renumbered scene.
-    [[nodiscard]] bool has_disc_rows() const { return discs_ != nullptr && !discs_->band_rows.empty(); }
-    /// The discs of a band and of the one after it, which its contacts touch. Band 0 has none.
-    [[nodiscard]] std::span<const BodyRow> discs_touched_by(std::int64_t band) const
-    {
-        const auto first = static_cast<std::size_t>(band);
-        return discs_->rows_of_bands(first, std::min(first + 2, discs_->band_count));
-    }
     [[nodiscard]] const TransferList& transfers() const { return transfers_; }
     [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
     [[nodiscard]] std::span<const ConstraintData> data() const { return data_; }
@@ -122,20 +114,17 @@ class Layout {
     std::array<AlignedVector<float>, body_kind_count> start_along_;      ///< see Flight
     std::atomic<bool> overloaded_ = false;
     std::array<std::vector<RowRange>, body_kind_count> rows_;
-    /// In no patch and no band; at the range's first row.
-    std::array<AlignedVector<BodyRow>, body_kind_count> beside_;
+    std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< in no patch; at the range's first row
     ColourMasks joint_masks_, masks_;
     SweepLists sweeps_;
     TransferList transfers_;
     std::vector<SweepChunk> disc_chunks_;  ///< of each band and class
     std::vector<PatchChunks> disc_bands_;
-    const DiscStore* discs_ = nullptr;  ///< of the scene of this step
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(SceneCore& scene);
     void find_groups(const BodyStore& bodies);
     void list_rows(const SceneCore& scene);
-    [[nodiscard]] bool is_in_band(BodyRow body) const;
     void point_at_data(SceneCore& scene, std::span<const Contact> contacts);
 };
 

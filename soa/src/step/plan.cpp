@@ -17,7 +17,7 @@ constexpr OperationFacts facts[] = {
     {"note momenta of free groups", Stage::prepare},
     {"prepare", Stage::prepare},
     {"stiffen what bears heavy loads", Stage::prepare},
-    {"list bodies beside patches and bands", Stage::prepare},
+    {"list bodies beside patches", Stage::prepare},
     {"step figures in lockstep", Stage::figures},
     {"solve directly", Stage::solve},
     {"add up impulses", Stage::integrate_velocities},
@@ -29,8 +29,6 @@ constexpr OperationFacts facts[] = {
     {"solve", Stage::solve},
     {"measure residuals", Stage::solve},
     {"visit each patch", Stage::solve},
-    {"visit odd bands of discs", Stage::solve},
-    {"visit even bands of discs", Stage::relax},
     {"integrate positions", Stage::integrate_positions},
     {"integrate positions, then the next velocities", Stage::integrate_positions},
     {"project", Stage::integrate_positions},
@@ -45,21 +43,6 @@ static_assert(std::size(facts) == static_cast<std::size_t>(Operation::move_bodie
 const OperationFacts& facts_of(Operation operation)
 {
     return facts[static_cast<std::size_t>(operation)];
-}
-
-const char* name_of(Where where)
-{
-    switch (where) {
-        case Where::everywhere:
-            return "";
-        case Where::beside_patches:
-            return ", beside patches";
-        case Where::beside_bands:
-            return ", beside bands";
-        case Where::odd_bands:
-            return ", odd bands";
-    }
-    return "";
 }
 
 const char* name_of(Substeps substeps)
@@ -84,7 +67,7 @@ void append(std::string& text, const std::vector<PlanStage>& stages, const char*
     for (const PlanStage& stage : stages) {
         text += indent;
         text += name_of(stage.operation);
-        text += name_of(stage.where);
+        if (stage.where == Where::beside_patches) text += ", beside patches";
         if (stage.times > 1) text += " x " + std::to_string(stage.times);
         text += name_of(stage.substeps);
         text += '\n';
@@ -111,8 +94,7 @@ Stage stage_of(Operation operation)
 
 void make_plan(const SolverSettings& settings, const StepNeeds& needs, Plan& plan)
 {
-    for (std::vector<PlanStage>* stages :
-         {&plan.before, &plan.substep, &plan.after, &plan.visit, &plan.odd_visit})
+    for (std::vector<PlanStage>* stages : {&plan.before, &plan.substep, &plan.after, &plan.visit})
         stages->clear();
     plan.replays_warm_starts = false;
     if (settings.method == Method::direct) {
@@ -191,31 +173,7 @@ void visit_patches_once(Plan& plan)
     in_substep({.operation = Operation::integrate_positions, .where = Where::beside_patches});
     in_substep({.operation = Operation::relax, .where = Where::beside_patches});
     in_substep({.operation = Operation::relax, .times = relaxations - 1});
-    plan.before.push_back({Operation::list_bodies_beside});
-}
-
-void visit_bands_once(Plan& plan)
-{
-    constexpr Substeps later = Substeps::all_but_first;
-    plan.odd_visit = {{Operation::relax, later},
-                      {Operation::add_up_impulses, later},
-                      {Operation::integrate_velocities, later},
-                      {Operation::solve}};
-    plan.visit = {{Operation::add_up_impulses, later},
-                  {Operation::solve},
-                  {Operation::integrate_positions},
-                  {Operation::relax}};
-    plan.substep = {{Operation::add_up_impulses, later, Where::beside_bands},
-                    {Operation::integrate_velocities, Substeps::first},
-                    {Operation::integrate_velocities, later, Where::beside_bands},
-                    {Operation::warm_start, Substeps::first},
-                    {Operation::visit_odd_bands},
-                    {Operation::solve, Substeps::every, Where::beside_bands},
-                    {Operation::visit_even_bands},
-                    {Operation::integrate_positions, Substeps::every, Where::beside_bands},
-                    {Operation::relax, Substeps::every, Where::beside_bands},
-                    {Operation::relax, Substeps::last, Where::odd_bands}};
-    plan.before.push_back({Operation::list_bodies_beside});
+    plan.before.push_back({Operation::list_bodies_beside_patches});
 }
 
 std::string text_of(const Plan& plan)
@@ -225,9 +183,7 @@ std::string text_of(const Plan& plan)
     if (!plan.substep.empty()) text += std::to_string(plan.substeps) + " substeps of\n";
     for (const PlanStage& stage : plan.substep) {
         append(text, {stage}, "    ");
-        if (stage.operation == Operation::visit_patches || stage.operation == Operation::visit_even_bands)
-            append(text, plan.visit, "        ");
-        if (stage.operation == Operation::visit_odd_bands) append(text, plan.odd_visit, "        ");
+        if (stage.operation == Operation::visit_patches) append(text, plan.visit, "        ");
     }
     append(text, plan.after, "");
     return text;

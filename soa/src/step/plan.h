@@ -21,28 +21,26 @@ enum class Operation : std::uint8_t {
     note_momenta,  ///< of groups of bodies that joints connect: see FreeGroups
     prepare,       ///< definitions and last impulses -> rows and impulses
     stiffen,       ///< increases inertias of bodies under more load than a substep can follow: see tension.h
-    list_bodies_beside,    ///< bodies in no patch and no band, for stages beside these
-    step_figures,          ///< runs this plan over the copies of figures that nothing else touches
-    solve_directly,        ///< Method::direct: the whole step by core/reference
-    add_up_impulses,       ///< adds the impulses of the last substep to the sums
-    integrate_velocities,  ///< v += h a
-    factor_trees,          ///< of exact joints, at the present poses
-    begin_trees,           ///< impulses of exact joints start from zero
-    warm_start,            ///< applies the impulses of the last substep
-    solve_trees,           ///< exact joints, once
-    solve,                 ///< one sweep over all constraints, and the exact joints after it
-    measure,               ///< residuals, with nothing changed
-    visit_patches,         ///< the stages of Plan::visit over one patch after another
-    visit_odd_bands,       ///< those of Plan::odd_visit over one band of discs after another (disc_store.h)
-    visit_even_bands,      ///< those of Plan::visit likewise
-    integrate_positions,   ///< x += h v
-    integrate_on,          ///< positions, and the velocities of the next substep in the same pass
-    project,               ///< moves bodies along J^T until no position error is left
-    relax,                 ///< a sweep without bias: takes away the speed that correcting positions needed
-    restitute,             ///< gives back the speed that restitution asks for
-    store,                 ///< impulses -> joints and contacts
-    land,                  ///< moves what flew freely onto its parabola: see FreeGroups
-    move_bodies,           ///< displacements -> positions; contains bodies whose state is not finite
+    list_bodies_beside_patches,  ///< bodies in no patch, for `integrate_positions`
+    step_figures,                ///< runs this plan over the copies of figures that nothing else touches
+    solve_directly,              ///< Method::direct: the whole step by core/reference
+    add_up_impulses,             ///< adds the impulses of the last substep to the sums
+    integrate_velocities,        ///< v += h a
+    factor_trees,                ///< of exact joints, at the present poses
+    begin_trees,                 ///< impulses of exact joints start from zero
+    warm_start,                  ///< applies the impulses of the last substep
+    solve_trees,                 ///< exact joints, once
+    solve,                       ///< one sweep over all constraints, and the exact joints after it
+    measure,                     ///< residuals, with nothing changed
+    visit_patches,               ///< the stages of Plan::visit over one patch after another
+    integrate_positions,         ///< x += h v
+    integrate_on,                ///< positions, and the velocities of the next substep in the same pass
+    project,                     ///< moves bodies along J^T until no position error is left
+    relax,        ///< a sweep without bias: takes away the speed that correcting positions needed
+    restitute,    ///< gives back the speed that restitution asks for
+    store,        ///< impulses -> joints and contacts
+    land,         ///< moves what flew freely onto its parabola: see FreeGroups
+    move_bodies,  ///< displacements -> positions; contains bodies whose state is not finite
 };
 /// "find islands", "note momenta", ...
 const char* name_of(Operation operation);
@@ -51,8 +49,8 @@ Stage stage_of(Operation operation);
 
 /// In which substeps a stage runs.
 enum class Substeps : std::uint8_t { every, first, all_but_first, last, all_but_last };
-/// Over which constraints or bodies: all of them, those in no patch or no band, or those of bands of odd number.
-enum class Where : std::uint8_t { everywhere, beside_patches, beside_bands, odd_bands };
+/// Over which constraints or bodies: all of them, or those in no patch.
+enum class Where : std::uint8_t { everywhere, beside_patches };
 
 struct PlanStage {
     Operation operation;
@@ -91,8 +89,7 @@ struct Plan {
     int substeps = 1;
     std::vector<PlanStage> before, substep,
         after;                         ///< what is done before, in each of, and after the substeps
-    std::vector<PlanStage> visit;      ///< what is done at one visit of a patch, or of a band of even number
-    std::vector<PlanStage> odd_visit;  ///< what is done at one visit of a band of odd number
+    std::vector<PlanStage> visit;      ///< what Operation::visit_patches does at one visit of a patch
     bool replays_warm_starts = false;  ///< see replay_warm_starts()
 };
 
@@ -109,12 +106,6 @@ void replay_warm_starts(Plan& plan);
 /// Does the last sweep of `solve`, the integration of positions and the first sweep of `relax` of a patch in one
 /// visit, while it is in a core's cache. For plans with `relax`, and without trees, measures and tolerance.
 void visit_patches_once(Plan& plan);
-
-/// Likewise for bands of discs: relaxes a band of odd number and begins its next substep in one visit, and solves,
-/// moves and relaxes a band of even number in another. A body's constraints outside the bands are solved between both.
-/// For plans that replay warm starts, with one sweep and one relaxation a substep, and without trees, measures and
-/// tolerance.
-void visit_bands_once(Plan& plan);
 
 /// Calls run(stage, substep) for each stage in turn; substep is 0 for the stages before, and the last for those after.
 template <class Run>
