@@ -26,6 +26,7 @@ void DiscPipeline::find(SceneCore& scene, float dt)
         return;
     }
     find_wall_ends(scene, wall_ends_);
+    if (discs.steps_since_sorting < DiscStore::least_steps_between_sortings) ++discs.steps_since_sorting;
     if (!discs.is_stale && ++discs.age < longest_age && !have_walls_left(scene, dt)) {
         list_leaving(scene, dt);
         // A few are searched for one by one; of many, all.
@@ -46,7 +47,8 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     sort_into_strips(scene, dt);
     find_contacts(scene);
     DiscFinder::make_room_for_pairs(discs);
-    discs.wants_sorting = DiscFinder::are_rows_scattered(discs);
+    discs.wants_sorting = discs.steps_since_sorting == DiscStore::least_steps_between_sortings &&
+                          DiscFinder::are_rows_scattered(discs);
     discs.age = 0;
     discs.is_stale = false;
 }

@@ -171,6 +171,7 @@ void SceneCore::renumber_rows()
 void SceneCore::sort_disc_rows()
 {
     discs.wants_sorting = false;
+    discs.steps_since_sorting = 0;
     const std::uint32_t rows = bodies.rows(BodyKind::planar).size();
     discs.sorted_rows.assign(rows, 0);
     // Bodies that were added since the last search have no disc yet.

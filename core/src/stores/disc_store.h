@@ -116,6 +116,9 @@ struct DiscStore {
     std::vector<std::uint32_t> rows_by_place;
     /// Whether bodies that are near each other have come to lie far apart in memory: see sort_disc_rows().
     bool wants_sorting = false;
+    int steps_since_sorting = least_steps_between_sortings;
+    /// Sorting costs as much as some steps, and people who run about at random are soon out of order again.
+    static constexpr int least_steps_between_sortings = 60;
     std::vector<std::uint32_t> sorted_rows;  ///< space for sort_disc_rows()
     /// Who made that search, and its number there; nobody after a file or a renumbering.
     std::shared_ptr<const char> searcher;

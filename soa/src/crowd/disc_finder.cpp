@@ -59,19 +59,16 @@ void DiscFinder::open(SceneCore& scene, int workers)
     discs.band_count = static_cast<std::size_t>(strips.band_count()) + 1;
     if (discs.bands.size() < discs.band_count) discs.bands.resize(discs.band_count);
     place_segments(discs);
-    list_rows(scene);
-}
-
-/// Lists the rows in the order of the strips.
-void DiscFinder::list_rows(SceneCore& scene) const
-{
-    DiscStore& discs = scene.discs;
-    const std::span<const PlacedDisc> placed = strips.discs();
-    discs.rows_by_place.resize(placed.size());
-    for (std::size_t place = 0; place < placed.size(); ++place)
-        discs.rows_by_place[place] = placed[place].row;
+    discs.rows_by_place.resize(strips.discs().size());
     // So that sort_disc_rows() need not allocate.
     grow_to(discs.sorted_rows, scene.bodies.rows(BodyKind::planar).size());
+}
+
+/// Lists rows in the order of the strips, for places `first` to `last` - 1.
+void DiscFinder::list_rows(DiscStore& discs, std::uint32_t first, std::uint32_t last) const
+{
+    for (std::uint32_t place = first; place < last; ++place)
+        discs.rows_by_place[place] = strips.disc(place).row;
 }
 
 /// Gives a band near walls room for so many blocks of contacts with them before the first ones are found. Band 0 gets a
@@ -151,12 +148,15 @@ void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
     Worker& own = workers_[static_cast<std::size_t>(worker)];
     DiscBand& found = scene.discs.bands[band];
     std::size_t numbers = scene.bodies.rows(BodyKind::planar).size();
-    if (band > 0) {
+    if (band == 0) {
+        const auto all = static_cast<std::uint32_t>(strips.discs().size());
+        list_rows(scene.discs, all - static_cast<std::uint32_t>(strips.wide().size()), all);
+        if (strips.wide().empty()) numbers = 0;
+    } else {
         const std::int32_t first = strips.first_strip(static_cast<std::int32_t>(band) - 1);
         const std::int32_t last = strips.first_strip(static_cast<std::int32_t>(band));
+        list_rows(scene.discs, strips.first_of(first), strips.first_of(last));
         numbers = strips.first_of(std::min(last + 1, strips.strip_count())) - strips.first_of(first);
-    } else if (strips.wide().empty()) {
-        numbers = 0;
     }
     if (!segments_[band].empty()) make_room_for_touches(found, band == 0 ? 32 : 8);
     begin_fillers(found, own, numbers, false);

@@ -52,7 +52,7 @@ class DiscFinder {
 
     void place_segments(const DiscStore& discs);
     static void make_room_for_touches(DiscBand& band, std::size_t blocks);
-    void list_rows(SceneCore& scene) const;
+    void list_rows(DiscStore& discs, std::uint32_t first, std::uint32_t last) const;
     void name_search(DiscStore& discs);
     void make_strips_of(SceneCore& scene);
     void begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers, bool goes_on);

@@ -106,8 +106,11 @@ void DiscStrips::choose(DiscStore& discs)
         above += all.reaches[static_cast<std::size_t>(bucket)];
         if (above * one_in > discs_) break;
     }
-    const bool is_turned = all.high.x - all.low.x > all.high.y - all.low.y;
-    const double extent = is_turned ? all.high.x - all.low.x : all.high.y - all.low.y;
+    // Strips are stacked along the longer side. In a crowd that is about square they stay as they were, or the rows of
+    // its people would have to be sorted again and again.
+    const double x = all.high.x - all.low.x, y = all.high.y - all.low.y, clearly = 1.25;
+    const bool is_turned = discs.frame.is_turned != 0 ? y <= clearly * x : x > clearly * y;
+    const double extent = is_turned ? x : y;
     const double most_strips = std::min(4.0 * static_cast<double>(discs_) + 64, 1e7);
     const float most_reach = upper_end_of(bucket);
     const double per_metre = 1 / std::max(2.0001 * static_cast<double>(most_reach), extent / most_strips);
