@@ -199,6 +199,24 @@ TEST(DiscContacts, ConserveMomentumAndAngularMomentum)
     EXPECT_LT(fine, coarse / 2);
 }
 
+/// A crowd of whom the last one was contained has a search without discs before it, and lives on when it is revived.
+TEST(DiscContacts, OfACrowdThatIsContainedAreNone)
+{
+    DiscCrowd crowd({.people = 1});
+    const std::uint32_t row = core_of(crowd.scene).bodies.row_of(crowd.people[0]).row();
+    core_of(crowd.scene).bodies.rows(BodyKind::planar).velocity[std::size_t{4} * row] = NAN;
+    Solver solver(SolverSettings{});
+    EXPECT_EQ(solver.step(crowd.scene, dt).bodies_contained, 1);
+    for (int step = 0; step < 3; ++step) {
+        const StepReport report = solver.step(crowd.scene, dt);
+        EXPECT_EQ(report.status, StepStatus::done) << report.error;
+        EXPECT_EQ(report.disc_contacts, 0);
+    }
+    crowd.scene.set_velocity(crowd.people[0], {}, {});
+    crowd.scene.set_pose(crowd.people[0], {0.1, 0.2, 0}, {0, 0, 0, 1}, 0);
+    EXPECT_EQ(solver.step(crowd.scene, dt).status, StepStatus::done);
+}
+
 TEST(DiscContacts, MissNoOverlapWhateverTheSpeedAndSize)
 {
     for (const float speed : {0.0F, 2.0F, 20.0F}) {

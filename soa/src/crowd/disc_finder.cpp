@@ -327,7 +327,7 @@ void DiscFinder::find_in_strips(SceneCore& scene, std::size_t band, Worker& work
     const std::int32_t first = strips.first_strip(static_cast<std::int32_t>(band) - 1);
     const std::int32_t last = strips.first_strip(static_cast<std::int32_t>(band));
     const std::uint32_t base = strips.first_of(first);
-    const PlacedDisc* const zero = &strips.disc(base);
+    const PlacedDisc* const zero = strips.discs().data() + base;  // there may be none
     for (std::int32_t strip = first; strip < last; ++strip) {
         list_pairs(strip, worker.pairs);
         for (const Pair& pair : worker.pairs)
