@@ -8,6 +8,17 @@
 
 namespace motley::testing {
 
+/// A planar person as a solid disc, kg and m.
+inline BodyDefinition person_at(double x, double y, float mass = 80, float radius = 0.2F)
+{
+    BodyDefinition body;
+    body.model = BodyModel::planar;
+    body.position = {x, y, 0};
+    body.mass = mass;
+    body.inertia.zz = 0.5F * mass * radius * radius;
+    return body;
+}
+
 struct DiscCrowdOptions {
     int people = 1500;
     float friction = 0;     ///< of every third person

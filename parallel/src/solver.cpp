@@ -17,7 +17,6 @@
 #include "own_executor.h"
 #include "plan_runner.h"
 #include "scene/scene_core.h"
-#include "scene/wall_ends.h"
 #include "stage_runner.h"
 #include "step/plan.h"
 #include "step_clock.h"

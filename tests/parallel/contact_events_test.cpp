@@ -14,19 +14,10 @@ namespace motley {
 namespace {
 
 using testing::DiscCrowd;
+using testing::person_at;
 using testing::Random;
 
 constexpr float dt = 1.0F / 60;
-
-BodyDefinition person_at(double x, double y)
-{
-    BodyDefinition body;
-    body.model = BodyModel::planar;
-    body.position = {x, y, 0};
-    body.mass = 80;
-    body.inertia.zz = 1.6F;
-    return body;
-}
 
 std::vector<DiscPair> list_of(std::span<const DiscPair> pairs)
 {

@@ -14,18 +14,9 @@ namespace motley {
 namespace {
 
 using testing::DiscCrowd;
+using testing::person_at;
 
 constexpr float dt = 1.0F / 60;
-
-BodyDefinition person_at(double x, double y, float mass = 80, float radius = 0.2F)
-{
-    BodyDefinition body;
-    body.model = BodyModel::planar;
-    body.position = {x, y, 0};
-    body.mass = mass;
-    body.inertia.zz = 0.5F * mass * radius * radius;
-    return body;
-}
 
 void take_steps(Solver& solver, Scene& scene, int steps)
 {

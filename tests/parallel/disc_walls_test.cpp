@@ -11,19 +11,10 @@ namespace motley {
 namespace {
 
 using testing::DiscCrowd;
+using testing::person_at;
 using testing::Random;
 
 constexpr float dt = 1.0F / 60;
-
-BodyDefinition person_at(double x, double y)
-{
-    BodyDefinition body;
-    body.model = BodyModel::planar;
-    body.position = {x, y, 0};
-    body.mass = 80;
-    body.inertia.zz = 1.6F;
-    return body;
-}
 
 /// People thrown about in a box with a wall across its middle, at up to 20 m/s.
 TEST(DiscWalls, NobodyChangesSides)

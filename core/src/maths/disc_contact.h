@@ -2,12 +2,14 @@
 // constraints/contact.h:
 //
 //   C   = |x_b - x_a| - r_a - r_b >= 0 of two discs,  n . (x_b - q) - r_b >= 0 of a disc and the point q of a wall
-//   J   = [-n, 0, n, 0], 0 <= lambda <= h f_max (h: substep; f_max: of a wall);   friction along t = n turned by +90 degrees: |lambda_t| <= mu lambda
+//   J   = [-n, 0, n, 0], 0 <= lambda <= h f_max
+//   friction along t = n turned by +90 degrees: |lambda_t| <= mu lambda
 //
-// x: centres; r: radii; n: normal; mu: friction coefficient. The normal stays as it was when the step began, and C
-// follows from the displacement since then. It is measured once a substep, by relax, which runs where bodies have just
-// moved: `solve` then reads no displacements, and with them half as much of each body. A disc's normal passes through its centre, so that only friction turns it,
-// at an arm whose direction is known: a row is a third of a contact's from a host's list.
+// x: centres; r: radii; n: normal; mu: friction coefficient; h: substep; f_max: of a wall, else infinite. The normal
+// stays as it was when the step began, and C follows from the displacement since then. C is measured once a substep, by
+// `relax`, because bodies have just moved there; `solve` then reads no displacements, which is half of what it would read
+// of each body. A disc's normal passes through its centre, so that only friction turns it, at an arm whose direction is
+// known: a row is a third of a contact's from a host's list.
 #pragma once
 
 #include <type_traits>

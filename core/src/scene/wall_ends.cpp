@@ -1,15 +1,11 @@
 // See wall_ends.h.
 #include "scene/wall_ends.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace motley {
 namespace {
-
-Vec2<double> in_plane(const Vec3<PoseReal>& v)
-{
-    return {static_cast<double>(v.x), static_cast<double>(v.y)};
-}
 
 /// The rotation of a body about z.
 Vec2<double> heading_of(const Quat<PoseReal>& q)
@@ -40,6 +36,21 @@ void find_wall_ends(const SceneCore& scene, std::vector<Vec2<double>>& ends)
         ends[2 * i] = to_world(segment.from);
         ends[2 * i + 1] = to_world(segment.to);
     }
+}
+
+double fastest_wall_end(const SceneCore& scene)
+{
+    double fastest = 0;
+    const BodyRows& fixed = scene.bodies.rows(BodyKind::fixed);
+    for (const WallSegment& segment : scene.discs.segments) {
+        const float* v = &fixed.velocity[std::size_t{8} * scene.bodies.row_of(segment.body).row()];
+        const auto x = static_cast<double>(v[0]), y = static_cast<double>(v[1]),
+                   w = static_cast<double>(v[6]);
+        const double arm2 = std::max(dot(segment.from, segment.from), dot(segment.to, segment.to));
+        if (x != 0 || y != 0 || w != 0)
+            fastest = std::max(fastest, std::sqrt(x * x + y * y) + std::abs(w) * std::sqrt(arm2));
+    }
+    return fastest;
 }
 
 }  // namespace motley

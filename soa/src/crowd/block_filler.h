@@ -32,13 +32,14 @@ class BlockFiller {
         open_ = 0;
     }
     /// Makes room for so many blocks.
-    static void make_room(DiscBlocks& blocks, int row_floats, int impulse_floats, std::size_t room)
+    static void make_room(DiscBlocks& blocks, std::size_t row_floats, std::size_t impulse_floats,
+                          std::size_t room)
     {
         if (blocks.lanes.size() >= room) return;
         blocks.bodies.resize(room);
-        blocks.rows.resize(room * static_cast<std::size_t>(row_floats) * block_lanes);
-        blocks.impulses.resize(room * static_cast<std::size_t>(impulse_floats) * block_lanes);
-        blocks.sums.resize(room * static_cast<std::size_t>(impulse_floats) * block_lanes);
+        blocks.rows.resize(room * row_floats * block_lanes);
+        blocks.impulses.resize(room * impulse_floats * block_lanes);
+        blocks.sums.resize(room * impulse_floats * block_lanes);
         blocks.lanes.resize(room);
     }
     /// A lane of a block.
@@ -118,8 +119,7 @@ class BlockFiller {
         const std::size_t rows = row_floats_ * block_lanes, impulses = impulse_floats_ * block_lanes;
         // More room, because a band that is searched for again has a few blocks more or less than before.
         if (blocks_->lanes.size() <= block)
-            make_room(*blocks_, static_cast<int>(row_floats_), static_cast<int>(impulse_floats_),
-                      block + block / 2 + 8);
+            make_room(*blocks_, row_floats_, impulse_floats_, block + block / 2 + 8);
         blocks_->bodies[block] = {};
         blocks_->lanes[block] = 0;
         std::memset(&blocks_->rows[block * rows], 0, rows * sizeof(float));

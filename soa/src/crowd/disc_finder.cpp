@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/wall_ends.h"
 #include "stores/disc_fields.h"
 
 namespace motley {
@@ -285,14 +286,9 @@ void DiscFinder::add_touch(SceneCore& scene, DiscBand& band, Worker& worker, con
     if (impulse.side == 0) {
         const Vec2<double>& from = discs.wall_ends[2 * std::size_t{segment.index}];
         const Vec2<double>& to = discs.wall_ends[2 * std::size_t{segment.index} + 1];
-        const Vec3<PoseReal>& at = rows.pose[disc.row].position;
-        const Vec2<double> world{static_cast<double>(at.x), static_cast<double>(at.y)};
-        const double left = cross(to - from, world - from) / std::sqrt(dot(to - from, to - from));
-        if (wall.is_one_way != 0) {
-            impulse.side = left >= static_cast<double>(shape.radius) ? 1.0F : WallTouch::passing;
-        } else {
-            impulse.side = left < 0 ? -1.0F : 1.0F;
-        }
+        const bool is_right = cross(to - from, in_plane(rows.pose[disc.row].position) - from) < 0;
+        // place_walls() finds out whether the disc has passed a one-way wall already.
+        impulse.side = wall.is_one_way != 0 ? WallTouch::passing : is_right ? -1.0F : 1.0F;
     }
     with_disc_class(friction > 0 ? DiscClass::rough_wall : DiscClass::smooth_wall, [&](auto c) {
         if constexpr (is_wall(c.value)) {

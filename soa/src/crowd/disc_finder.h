@@ -74,8 +74,6 @@ class DiscFinder {
     [[nodiscard]] CarriedImpulses::Impulse carried_of(const PlacedDisc& a, const PlacedDisc& b) const;
 };
 
-/// The fastest end of a wall, m/s.
-double fastest_wall_end(const SceneCore& scene);
 /// When a step begins: the rows of walls.
 void place_walls(const SceneCore& scene, std::span<const Vec2<double>> ends, float warm_start_scale,
                  DiscBand& band);

@@ -1,8 +1,8 @@
 // The rows of contacts with walls, one at a time: they are few beside those of people.
-#include <algorithm>
 #include <cmath>
 
 #include "crowd/disc_finder.h"
+#include "scene/wall_ends.h"
 #include "stores/disc_fields.h"
 
 namespace motley {
@@ -57,11 +57,6 @@ Placed place(const Meeting& meeting, float side)
     if (meeting.is_beside()) return {across, meeting.from + meeting.t * meeting.along};
     const double distance = std::sqrt(dot(meeting.away, meeting.away));
     return {distance > 1e-9 ? (1 / distance) * meeting.away : across, meeting.end()};
-}
-
-Vec2<double> in_plane(const Vec3<PoseReal>& v)
-{
-    return {static_cast<double>(v.x), static_cast<double>(v.y)};
 }
 
 template <DiscClass c>
@@ -126,21 +121,6 @@ void place_walls(const SceneCore& scene, std::span<const Vec2<double>> ends, flo
             place_class<c.value>(scene, ends, warm_start_scale,
                                  band.blocks[static_cast<std::size_t>(c.value)]);
     });
-}
-
-double fastest_wall_end(const SceneCore& scene)
-{
-    double fastest = 0;
-    const BodyRows& fixed = scene.bodies.rows(BodyKind::fixed);
-    for (const WallSegment& segment : scene.discs.segments) {
-        const float* v = &fixed.velocity[std::size_t{8} * scene.bodies.row_of(segment.body).row()];
-        const auto x = static_cast<double>(v[0]), y = static_cast<double>(v[1]),
-                   w = static_cast<double>(v[6]);
-        const double arm2 = std::max(dot(segment.from, segment.from), dot(segment.to, segment.to));
-        if (x != 0 || y != 0 || w != 0)
-            fastest = std::max(fastest, std::sqrt(x * x + y * y) + std::abs(w) * std::sqrt(arm2));
-    }
-    return fastest;
 }
 
 }  // namespace motley
