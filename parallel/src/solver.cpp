@@ -17,6 +17,7 @@
 #include "own_executor.h"
 #include "plan_runner.h"
 #include "scene/scene_core.h"
+#include "shape_pipeline.h"
 #include "stage_runner.h"
 #include "step/plan.h"
 #include "step_clock.h"
@@ -30,7 +31,7 @@ namespace {
 std::size_t size_of(const Scene& scene, std::span<const Contact> contacts)
 {
     return contacts.size() + 4 * scene.joint_count() + scene.body_count() / 2 +
-           2 * core_of(scene).discs.count;
+           2 * core_of(scene).discs.count + 2 * core_of(scene).shapes.capsules.size();
 }
 
 Isa checked_isa(const std::optional<Isa>& wanted)
@@ -109,6 +110,7 @@ struct Solver::Impl {
     std::unique_ptr<Executor> own_executor;
     StageRunner runner;
     Layout layout;
+    ShapePipeline shapes;
     ContactPipeline pipeline;
     DiscPipeline discs;
     Sweeper sweeper;
@@ -125,6 +127,7 @@ struct Solver::Impl {
           own_executor(options.executor ? nullptr : make_executor(options.threads)),
           runner(options.executor ? options.executor : own_executor.get()),
           layout(kernel_table(i)),
+          shapes(runner),
           pipeline(runner, layout),
           discs(runner, layout),
           sweeper(runner, layout),
@@ -132,7 +135,7 @@ struct Solver::Impl {
     {
     }
 
-    void step(Scene& host_scene, float dt, std::span<const Contact> contacts, StepReport& report);
+    void step(Scene& host_scene, float dt, std::span<const Contact> hosts, StepReport& report);
     [[nodiscard]] bool runs_alone(const Scene& scene, std::span<const Contact> contacts) const;
     void pick_settings();
     void take_in(SceneCore& scene, std::span<const Contact> contacts, StepReport& report);
@@ -199,23 +202,25 @@ StepReport Solver::step(Scene& scene, float dt, std::span<const Contact> contact
     return report;
 }
 
-void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> contacts, StepReport& report)
+void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> hosts, StepReport& report)
 {
     SceneCore& scene = core_of(host_scene);
     const BusyFlag::Hold own(busy), scenes(scene.busy);
     if (!own.holds()) refuse("step", "called while the solver is in a step", "one step at a time");
     if (!scenes.holds()) refuse("step.scene", "in another step", "one step at a time");
     if (!(dt >= 0 && dt <= 1)) refuse("step.dt", dt, "0 to 1 (s)");
-    if (contacts.size() > INT32_MAX)
-        refuse("step.contacts.size()", static_cast<double>(contacts.size()), "at most 2^31 - 1");
+    if (hosts.size() > INT32_MAX)
+        refuse("step.contacts.size()", static_cast<double>(hosts.size()), "at most 2^31 - 1");
     refuse_what_discs_cannot(scene, asked);
     const auto began = std::chrono::steady_clock::now();
     pick_settings();
-    const std::exception_ptr late = runner.with_workers(runs_alone(host_scene, contacts), [&] {
+    const std::exception_ptr late = runner.with_workers(runs_alone(host_scene, hosts), [&] {
         StepClock clock(report);
         clock.enter(Stage::intake);
         if (scene.discs.wants_sorting) scene.sort_disc_rows();
+        const std::span<const Contact> contacts = shapes.join(scene, hosts, dt);
         take_in(scene, contacts, report);
+        if (report.error.empty()) report.error = ShapePipeline::wrong_key(scene, hosts);
         if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);
         if (dt == 0 || !report.error.empty()) return clock.leave();
         clock.enter(Stage::colour);
@@ -311,10 +316,12 @@ void Solver::Impl::plan_step(const SceneCore& scene)
 void Solver::Impl::finish(SceneCore& scene, float dt, StepReport& report)
 {
     scene.contacts.accept_staged();
+    shapes.remember(scene);
     scene.last_substep = layout.context.step.substep;
     scene.last_step = dt;
     scene.find_break_events();
     layout.report(report);
+    report.shape_contacts = static_cast<std::int64_t>(shapes.found());
     report.substeps = settings.substeps;
 }
 

@@ -1,6 +1,7 @@
 // Copies of a figure.
 #include "motley/core/assembly.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "motley/core/invalid_input.h"
@@ -41,6 +42,23 @@ BodyDefinition placed(BodyDefinition body, const Placing& placing, const Quat<do
     return body;
 }
 
+/// Adds the capsules of a copy. What was a group of the figure becomes one of this copy alone.
+void put_in_own_groups(SceneCore& scene, std::span<Capsule> capsules)
+{
+    std::vector<std::uint32_t> groups;
+    scene.make_room_for_shapes(capsules.size(), 0);
+    for (Capsule& capsule : capsules) {
+        if (capsule.group != 0) {
+            const auto known = std::find(groups.begin(), groups.end(), capsule.group);
+            const auto which = static_cast<std::uint32_t>(known - groups.begin());
+            if (known == groups.end()) groups.push_back(capsule.group);
+            capsule.group = scene.shapes.next_group + which;
+        }
+        scene.shapes.put(capsule);
+    }
+    scene.shapes.next_group += static_cast<std::uint32_t>(groups.size());
+}
+
 }  // namespace
 
 BodyId Figure::add_body(const BodyDefinition& definition)
@@ -49,6 +67,13 @@ BodyId Figure::add_body(const BodyDefinition& definition)
     const BodyId id = sketch_.add_body(definition);
     bodies_.push_back(definition);
     return id;
+}
+
+void Figure::add_capsule(const CapsuleDefinition& capsule)
+{
+    if (capsule.body == BodyId{} || capsule.body == sketch_.ground())
+        refuse("CapsuleDefinition.body", "the ground", "a body of the figure; a static one for the world");
+    sketch_.add_capsule(capsule);
 }
 
 void Figure::refuse_ground(BodyId body) const
@@ -73,6 +98,9 @@ void Figure::join(Scene& scene, std::span<const BodyId> bodies) const
             scene.add_joint(definition);
         });
     }
+    std::vector<Capsule> capsules = core_of(sketch_).shapes.capsules;
+    for (Capsule& capsule : capsules) capsule.body = of_scene(capsule.body);
+    put_in_own_groups(core_of(scene), capsules);
 }
 
 std::vector<BodyId> add_assembly(Scene& scene, const Figure& figure, std::span<const Placing> copies)

@@ -58,12 +58,14 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
 
     core_->bodies.make_room_to_remove(bodies);
     make_room_for(core_->discs.free_walls, core_->discs.walls.size());
+    make_room_for(core_->shapes.free_slots, core_->shapes.slots.size());
     core_->remove_joints_of(bodies);
     core_->remove_discs_of(bodies);
     for (const BodyId body : bodies) {
         core_->bodies.remove(body);
         if (body.slot < core_->user_data.size()) core_->user_data[body.slot] = 0;
     }
+    core_->shapes.remove_if([&](BodyId body) { return !is_alive(body); });
     std::erase_if(core_->island_iterations,
                   [&](const IslandIterations& asked) { return !is_alive(asked.body); });
     core_->body_count -= bodies.size();
@@ -131,11 +133,11 @@ std::span<const BreakEvent> Scene::break_events() const
 }
 std::span<const ContactImpulse> Scene::contact_impulses() const
 {
-    return core_->contacts.step_impulses();
+    return core_->contacts.step_impulses().first(core_->listed_contacts());
 }
 std::span<const ContactImpulse> Scene::last_substep_impulses() const
 {
-    return core_->contacts.impulses();
+    return core_->contacts.impulses().first(core_->listed_contacts());
 }
 float Scene::last_step() const
 {

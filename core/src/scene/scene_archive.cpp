@@ -171,6 +171,7 @@ void SceneArchive::check(const SceneCore& scene)
     check_bodies(scene);
     check_joints(scene);
     check_discs(scene);
+    check_capsules(scene);
     for (const IslandIterations& asked : scene.island_iterations) scene.check_island_wish(asked);
     const ContactList& list = scene.contacts.current();
     for (std::size_t i = 0; i < list.count; ++i)

@@ -87,6 +87,7 @@ struct SceneArchive {
         visit_joints(archive, *scene.joints);
         visit_contacts(archive, scene.contacts);
         visit_discs(archive, scene.discs);
+        visit_shapes(archive, scene.shapes);
         archive(scene.user_data);
         archive(scene.island_iterations);
         archive(scene.ground);
@@ -106,6 +107,7 @@ struct SceneArchive {
     static void check_bodies(const SceneCore& scene);
     static void check_joints(const SceneCore& scene);
     static void check_discs(const SceneCore& scene);
+    static void check_capsules(const SceneCore& scene);
     /// Computes what is not stored in files.
     static void derive(SceneCore& scene);
 
@@ -186,6 +188,16 @@ struct SceneArchive {
                 if constexpr (is_wall(c.value)) visit_first(archive, blocks.touches, count * block_lanes);
             });
         }
+    }
+    template <class Archive, class Store>
+    static void visit_shapes(Archive& archive, Store& shapes)
+    {
+        archive(shapes.slots);
+        archive(shapes.free_slots);
+        archive(shapes.capsules);
+        archive(shapes.half_spaces);
+        archive(shapes.next_group);
+        archive(shapes.contacts);
     }
     /// The first `count` elements of a vector that may have more; read back, it has no more.
     template <class Archive, class Vector>

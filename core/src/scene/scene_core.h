@@ -11,6 +11,7 @@
 #include "stores/busy_flag.h"
 #include "stores/contact_cache.h"
 #include "stores/disc_store.h"
+#include "stores/shape_store.h"
 
 namespace motley {
 
@@ -30,6 +31,7 @@ struct SceneCore {
     Boxed<JointStores> joints;
     ContactCache contacts;
     DiscStore discs;
+    ShapeStore shapes;
     std::vector<BreakEvent> break_events;             ///< with room for every watched joint
     std::vector<IslandIterations> island_iterations;  ///< of bodies alive
     std::vector<std::uint64_t> user_data;             ///< by body slot, of the host; 0 beyond its end
@@ -80,6 +82,22 @@ struct SceneCore {
     /// Calls work(DiscImpulse) for each contact of discs that pushed in the last step.
     template <class Work>
     void for_each_disc_impulse(const Work& work) const;
+
+    // ---- capsules and half-spaces: scene_shapes.cpp ----
+    /// Refuses what Scene::add_capsule and Scene::add_half_space refuse.
+    void check_capsule(const CapsuleDefinition& capsule) const;
+    void check_half_space(const HalfSpaceDefinition& half_space) const;
+    /// Makes room, so that putting so many shapes cannot fail. Refuses more than keys of contacts can name.
+    void make_room_for_shapes(std::size_t capsules, std::size_t half_spaces);
+    /// Adds a capsule that is checked, and for which there is room.
+    ShapeId put_capsule(const CapsuleDefinition& capsule);
+    /// The impulses of the contacts that were found in the last step; they are of shapes.contacts.
+    [[nodiscard]] std::span<const ContactImpulse> shape_impulses() const;
+    /// How many of the contacts of the last step were of the host's list.
+    [[nodiscard]] std::size_t listed_contacts() const
+    {
+        return contacts.current().count - shapes.contacts.size();
+    }
 
     ConstraintId take_joint_slot(int type, std::size_t index);
     void remove_joints_of(std::span<const BodyId> removed);

@@ -55,6 +55,7 @@ void Scene::set_discs(std::span<const BodyId> bodies, StridedSpan<const DiscDefi
     for (std::size_t i = 0; i < bodies.size(); ++i)
         core_->discs.set_shape(bodies[i].slot,
                                {discs[i].radius, discs[i].friction, discs[i].category, discs[i].mask});
+    core_->shapes.version.reset();  // capsules may meet them
 }
 
 void Scene::clear_disc(BodyId body)
@@ -62,6 +63,7 @@ void Scene::clear_disc(BodyId body)
     core_->check_has_disc(body, "clear_disc.body");
     core_->discs.set_shape(body.slot, {});
     core_->forget_discs_of(body);
+    core_->shapes.version.reset();
 }
 
 bool Scene::has_disc(BodyId body) const
@@ -111,6 +113,7 @@ WallId SceneCore::put_wall(const WallDefinition& wall)
                                   wall.friction, wall.category, wall.mask, slot, wall.surface_speed,
                                   wall.max_force, wall.one_way ? 1U : 0U});
     discs.is_stale = true;
+    shapes.version.reset();
     return {slot, discs.walls[slot].generation};
 }
 
@@ -121,6 +124,7 @@ void Scene::remove_wall(WallId wall)
                "a wall of this scene");
     make_room_for(core_->discs.free_walls, 1);
     core_->discs.remove_wall(wall.slot);
+    core_->shapes.version.reset();
 }
 
 bool Scene::is_alive(WallId wall) const
@@ -130,6 +134,7 @@ bool Scene::is_alive(WallId wall) const
 
 void SceneCore::remove_discs_of(std::span<const BodyId> removed)
 {
+    shapes.version.reset();
     for (const BodyId body : removed) {
         if (has_disc(body)) discs.set_shape(body.slot, {});
         forget_discs_of(body);

@@ -229,7 +229,7 @@ void Scene::read_joint_reports(std::span<const ConstraintId> joints, StridedSpan
 JointReport Scene::contact_report(std::span<const Contact> contacts, std::size_t index) const
 {
     const ContactList& list = core_->contacts.current();
-    if (index >= list.count || index >= contacts.size()) {
+    if (index >= core_->listed_contacts() || index >= contacts.size()) {
         refuse("contact_report.index", static_cast<double>(index),
                "below the length of the last step's list and of `contacts`");
     }

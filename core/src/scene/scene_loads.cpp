@@ -20,8 +20,8 @@ struct Borne {
 void SceneCore::require_list_of_last_step(std::span<const Contact> list, const char* what) const
 {
     const ContactList& last = contacts.current();
-    bool same = list.size() == last.count;
-    for (std::size_t i = 0; same && i < last.count; ++i) same = last.entries[i].key == list[i].key;
+    bool same = list.size() == listed_contacts();
+    for (std::size_t i = 0; same && i < list.size(); ++i) same = last.entries[i].key == list[i].key;
     if (!same) refuse(what, "another list", "the list of the last step");
 }
 
@@ -43,21 +43,24 @@ void Scene::read_loads(std::span<const BodyId> bodies, std::span<const Contact> 
     core_->require_alive(bodies, "read_loads.bodies");
     core_->require_list_of_last_step(contacts, "read_loads.contacts");
     std::vector<Borne> borne(core_->bodies.slot_count());
-    const std::span<const ContactImpulse> impulses = contact_impulses();
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const auto normal = static_cast<double>(impulses[i].normal);
-        const Vec3<double> on_b =
-            normal * convert<double>(contacts[i].normal) + convert<double>(impulses[i].friction);
-        const auto bear = [&](BodyId body, const Vec3<double>& push) {
-            if (!core_->bodies.is_alive(body)) return;  // removed since
-            Borne& all = borne[body.slot];
-            all.normal += normal;
-            all.largest = std::max(all.largest, normal);
-            all.net = all.net + push;
-        };
-        bear(contacts[i].body_a, -on_b);
-        bear(contacts[i].body_b, on_b);
-    }
+    const auto bear_all = [&](std::span<const Contact> list, std::span<const ContactImpulse> impulses) {
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const auto normal = static_cast<double>(impulses[i].normal);
+            const Vec3<double> on_b =
+                normal * convert<double>(list[i].normal) + convert<double>(impulses[i].friction);
+            const auto bear = [&](BodyId body, const Vec3<double>& push) {
+                if (!core_->bodies.is_alive(body)) return;  // removed since
+                Borne& all = borne[body.slot];
+                all.normal += normal;
+                all.largest = std::max(all.largest, normal);
+                all.net = all.net + push;
+            };
+            bear(list[i].body_a, -on_b);
+            bear(list[i].body_b, on_b);
+        }
+    };
+    bear_all(contacts, contact_impulses());
+    bear_all(core_->shapes.contacts, core_->shape_impulses());
     core_->for_each_disc_impulse([&](const DiscImpulse& contact) {
         const Vec3<double> on_b{contact.on_b().x, contact.on_b().y, 0};
         const auto bear = [&](std::uint32_t slot, const Vec3<double>& push) {

@@ -1,4 +1,4 @@
-// An assembly: many copies of one articulated figure. The copies are ordinary bodies and joints, which the host may
+// An assembly: many copies of one articulated figure. The copies are ordinary bodies, joints and capsules, which the host may
 // join, push, break and remove like any others. The solver itself finds out that they are alike, and solves sixteen of
 // them together, one copy in each lane, as long as nothing else touches them.
 #pragma once
@@ -11,7 +11,7 @@
 #pragma GCC visibility push(default)
 namespace motley {
 
-/// Bodies and joints to be copied, in the frame of the figure.
+/// Bodies, joints and capsules to be copied, in the frame of the figure.
 class Figure {
   public:
     /// Adds a body. Its handle is valid only in joints of this figure. Refuses what Scene::add_body refuses.
@@ -27,10 +27,13 @@ class Figure {
         refuse_ground(definition.body_b);
         sketch_.add_joint(definition);
     }
+    /// Gives a body of this figure a capsule. Refuses what Scene::add_capsule refuses. The groups of each copy are its own:
+    /// capsules of one group do not touch in one copy, but do in two.
+    void add_capsule(const CapsuleDefinition& capsule);
     [[nodiscard]] std::span<const BodyDefinition> bodies() const { return bodies_; }
     [[nodiscard]] std::size_t joint_count() const { return sketch_.joint_count(); }
-    /// Adds this figure's joints to a scene, between `bodies`, which take the place of the figure's own in the same
-    /// order.
+    /// Adds this figure's joints and capsules to a scene, between and on `bodies`, which take the place of the figure's
+    /// own in the same order.
     void join(Scene& scene, std::span<const BodyId> bodies) const;
 
   private:

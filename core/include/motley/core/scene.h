@@ -15,6 +15,7 @@
 #include "motley/core/invalid_input.h"
 #include "motley/core/joint_definitions.h"
 #include "motley/core/joint_report.h"
+#include "motley/core/shapes.h"
 #include "motley/core/step_report.h"
 #include "motley/core/strided_span.h"
 
@@ -162,6 +163,22 @@ class Scene {
     /// Those of one body with a disc.
     [[nodiscard]] std::vector<DiscContact> disc_contacts_of(BodyId body) const;
 
+    // ---- capsules and half-spaces, likewise ---------------------------------------------------------------
+    /// Gives a body a capsule, or a sphere, beside those that it has. From then on steps find its contacts. It is removed
+    /// with its body. In a scene with capsules, keys of the host's contacts are below 2^63.
+    ShapeId add_capsule(const CapsuleDefinition& capsule);
+    /// Adds many and writes their handles to `ids`, which must be as long as `capsules`: all or none.
+    void add_capsules(std::span<const CapsuleDefinition> capsules, std::span<ShapeId> ids);
+    /// Adds a half-space. It is removed with its body.
+    ShapeId add_half_space(const HalfSpaceDefinition& half_space);
+    void remove_shape(ShapeId shape);
+    [[nodiscard]] bool is_alive(ShapeId shape) const;
+    /// The contacts of capsules that were found in the last step, in the order in which they were listed for it: with
+    /// half-spaces, with each other, with walls and with discs.
+    [[nodiscard]] std::vector<ShapeContact> shape_contacts() const;
+    /// Those on one body, which may be of any kind.
+    [[nodiscard]] std::vector<ShapeContact> shape_contacts_of(BodyId body) const;
+
     // ---- memory -------------------------------------------------------------------------------------------
     /// Reorders the bodies so that neighbours in space are neighbours in memory. Handles stay valid and results keep
     /// every bit. Makes the steps of a large crowd faster after its people have mixed. Costs about as much as a step:
@@ -193,8 +210,7 @@ class Scene {
 
     /// The loads that the contacts of the last step put on bodies: loads[i] is of bodies[i], which may be dynamic,
     /// kinematic, static or contained. `contacts` is the list of that step; another list is refused. Contacts of discs
-    /// count as well. `circumferences`
-    /// (m, above 0, to 1e9), if given, turn forces into pressures. Allocates one sum for each body of the scene.
+    /// and of capsules count as well. `circumferences` (m, above 0, to 1e9), if given, turn forces into pressures. Allocates one sum for each body of the scene.
     void read_loads(std::span<const BodyId> bodies, std::span<const Contact> contacts,
                     StridedSpan<BodyLoad> loads, StridedSpan<const float> circumferences = {}) const;
 

@@ -67,6 +67,7 @@ struct StepReport {
     std::int64_t contacts = 0;
     std::int64_t disc_contacts =
         0;  ///< of these, those of discs near each other or near walls that the library found
+    std::int64_t shape_contacts = 0;    ///< of these, those of capsules that the library found
     std::int64_t contacts_skipped = 0;  ///< invalid contacts that BadContacts::skip left out
     std::string skipped_error;          ///< of the first of them: field, value and valid range
     std::int64_t joints = 0;

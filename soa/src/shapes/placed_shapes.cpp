@@ -1,0 +1,90 @@
+// See placed_shapes.h.
+#include "shapes/placed_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "maths/scalar.h"
+
+namespace motley {
+namespace {
+
+double length_of(const Vec3<double>& v)
+{
+    return std::sqrt(dot(v, v));
+}
+
+/// The orientation of a body from body to world. That of a planar one has the same bits on every system.
+Quat<double> orientation_of(const BodyRows& rows, BodyRow where)
+{
+    if (quads_of(where.kind()) == 2) return convert<double>(rows.orientation[where.row()]);
+    if (where.kind() == BodyKind::particle) return {0, 0, 0, 1};
+    constexpr double turn = 6.283185307179586;
+    const double yaw = std::remainder(static_cast<double>(rows.pose[where.row()].yaw), turn);
+    const SineCosine<double> half = sine_cosine(yaw / 2);
+    return {0, 0, half.sine, half.cosine};
+}
+
+struct Speeds {
+    double linear = 0, angular = 0;  ///< m/s, rad/s
+};
+Speeds speeds_of(const BodyRows& rows, BodyRow where)
+{
+    const float* v =
+        &rows.velocity[std::size_t{4} * static_cast<std::size_t>(quads_of(where.kind())) * where.row()];
+    const auto at = [v](int i) { return static_cast<double>(v[i]); };
+    switch (where.kind()) {
+        case BodyKind::particle:
+            return {length_of({at(0), at(1), at(2)}), 0};
+        case BodyKind::planar:
+            return {length_of({at(0), at(1), 0}), std::abs(at(2))};
+        default:
+            return {length_of({at(0), at(1), at(2)}), length_of({at(4), at(5), at(6)})};
+    }
+}
+
+}  // namespace
+
+PlacedCapsule placed(const SceneCore& scene, const Capsule& capsule, double dt)
+{
+    const BodyRow where = scene.bodies.row_of(capsule.body);
+    const BodyRows& rows = scene.bodies.rows(where.kind());
+    const Quat<double> orientation = orientation_of(rows, where);
+    const Vec3<double> from = convert<double>(capsule.from), to = convert<double>(capsule.to);
+    const double arm = std::sqrt(std::max(dot(from, from), dot(to, to)));
+    const Speeds speeds = speeds_of(rows, where);
+    PlacedCapsule placed;
+    placed.axis = {convert<double>(rows.pose[where.row()].position) + rotate(orientation, from),
+                   rotate(orientation, to - from)};
+    placed.radius = static_cast<double>(capsule.radius);
+    placed.goes = dt * (speeds.linear + speeds.angular * (arm + placed.radius));
+    placed.is_flat = where.kind() == BodyKind::planar;
+    placed.can_move = where.kind() != BodyKind::fixed;
+    return placed;
+}
+
+PlacedHalfSpace placed(const SceneCore& scene, const HalfSpace& half_space, double dt)
+{
+    const BodyRow where = scene.bodies.row_of(half_space.body);
+    const BodyRows& rows = scene.bodies.rows(where.kind());
+    const Quat<double> orientation = orientation_of(rows, where);
+    const Speeds speeds = speeds_of(rows, where);
+    const Vec3<double> centre = convert<double>(rows.pose[where.row()].position);
+    return {centre + rotate(orientation, half_space.point),
+            rotate(orientation, convert<double>(half_space.normal)), centre, dt * speeds.linear,
+            dt * speeds.angular};
+}
+
+PlacedCapsule placed_disc(const SceneCore& scene, std::uint32_t planar_row, const DiscShape& disc, double dt)
+{
+    const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
+    PlacedCapsule placed;
+    placed.axis.from = convert<double>(rows.pose[planar_row].position);
+    placed.radius = static_cast<double>(disc.radius);
+    placed.goes = dt * speeds_of(rows, {BodyKind::planar, planar_row}).linear;
+    placed.is_flat = true;
+    placed.can_move = true;
+    return placed;
+}
+
+}  // namespace motley

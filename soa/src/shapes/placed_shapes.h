@@ -1,0 +1,39 @@
+// Where capsules and half-spaces are in the world, and how far they may go within a step.
+#pragma once
+
+#include <cstdint>
+
+#include "scene/scene_core.h"
+#include "shapes/closest_places.h"
+
+namespace motley {
+
+/// m: the speed that a body gains within a step may take it so much further than the speed at which it began.
+inline constexpr double step_slack = 0.01;
+
+struct PlacedCapsule {
+    Axis axis;
+    double radius = 0;
+    double goes = 0;       ///< m: the furthest that a point of it goes within the step at its present speed
+    bool is_flat = false;  ///< of a planar body, which is met as seen from above
+    bool can_move = false;
+};
+struct PlacedHalfSpace {
+    Vec3<double> point{}, normal{};
+    Vec3<double> centre{};  ///< of its body
+    double slides = 0;      ///< m: how far its body goes within the step
+    double turns = 0;       ///< rad: how far it turns
+};
+
+PlacedCapsule placed(const SceneCore& scene, const Capsule& capsule, double dt);
+PlacedHalfSpace placed(const SceneCore& scene, const HalfSpace& half_space, double dt);
+/// A disc as a capsule without length.
+PlacedCapsule placed_disc(const SceneCore& scene, std::uint32_t planar_row, const DiscShape& disc, double dt);
+
+/// An axis as seen from above.
+inline Axis flattened(const Axis& axis)
+{
+    return {{axis.from.x, axis.from.y, 0}, {axis.along.x, axis.along.y, 0}};
+}
+
+}  // namespace motley

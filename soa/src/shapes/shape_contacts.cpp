@@ -1,0 +1,241 @@
+// See shape_contacts.h.
+#include "shapes/shape_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stores/growth.h"
+
+namespace motley {
+namespace {
+
+enum class Partner : std::uint64_t { capsule, half_space, wall, disc };
+
+constexpr std::uint64_t key_of(Partner partner, std::uint32_t capsule, std::uint32_t other, int point)
+{
+    static_assert(ShapeStore::most_slots <= std::uint32_t{1} << 28);
+    return found_key | static_cast<std::uint64_t>(partner) << 61 | std::uint64_t{capsule} << 33 |
+           std::uint64_t{other} << 4 | static_cast<std::uint64_t>(point);
+}
+
+/// What touches: a body, where its centre of mass is, its surface and the axis at whose distance that surface is.
+struct Side {
+    BodyId body;
+    Vec3<double> centre;
+    const PlacedCapsule* shape;
+    ShapeSurface surface;
+    bool is_static = false;  ///< then its arm does not matter, and may be out of the range of arms
+};
+
+bool is_static(const SceneCore& scene, BodyId body)
+{
+    return scene.bodies.motion(body) == BodyMotion::static_body;
+}
+
+Vec3<double> centre_of(const SceneCore& scene, BodyId body)
+{
+    const BodyRow where = scene.bodies.row_of(body);
+    return convert<double>(scene.bodies.rows(where.kind()).pose[where.row()].position);
+}
+
+Side side_of(const SceneCore& scene, const ShapePairs& pairs, std::uint32_t index)
+{
+    const Capsule& capsule = scene.shapes.capsules[index];
+    return {capsule.body, centre_of(scene, capsule.body), &pairs.capsule(index), capsule.surface,
+            is_static(scene, capsule.body)};
+}
+
+std::uint32_t slot_of(const SceneCore& scene, std::uint32_t capsule)
+{
+    return scene.shapes.capsules[capsule].slot;
+}
+
+/// A unit vector across both axes, or across one of them, from a to b as far as that can be told: for axes that meet.
+Vec3<double> direction_across(const Axis& a, const Axis& b, const Vec3<double>& a_to_b, bool is_flat)
+{
+    const double aa = dot(a.along, a.along), bb = dot(b.along, b.along);
+    const Vec3<double>& longer = aa >= bb ? a.along : b.along;
+    Vec3<double> across = is_flat ? Vec3<double>{-longer.y, longer.x, 0} : cross(a.along, b.along);
+    if (!(dot(across, across) > 1e-12 * aa * bb) && !is_flat) {
+        // Any direction across the longer axis: that of the coordinate along which it extends least.
+        const Vec3<double> size{std::abs(longer.x), std::abs(longer.y), std::abs(longer.z)};
+        const Vec3<double> least = size.x <= size.y && size.x <= size.z ? Vec3<double>{1, 0, 0}
+                                   : size.y <= size.z                   ? Vec3<double>{0, 1, 0}
+                                                                        : Vec3<double>{0, 0, 1};
+        across = cross(longer, least);
+    }
+    double length = std::sqrt(dot(across, across));
+    if (!(length > 0)) {  // two points in one place
+        across = is_flat ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 0, 1};
+        length = 1;
+    }
+    return (dot(across, a_to_b) < 0 ? -1 / length : 1 / length) * across;
+}
+
+Contact contact_at(const Side& a, const Side& b, const Vec3<double>& point, const Vec3<double>& normal,
+                   double separation)
+{
+    Contact contact;
+    contact.body_a = a.body;
+    contact.body_b = b.body;
+    contact.normal = convert<float>(normal);
+    contact.separation = static_cast<float>(separation);
+    contact.arm_a = convert<float>(a.is_static ? Vec3<double>{} : point - a.centre);
+    contact.arm_b = convert<float>(b.is_static ? Vec3<double>{} : point - b.centre);
+    contact.friction = std::sqrt(a.surface.friction * b.surface.friction);
+    contact.restitution = std::max(a.surface.restitution, b.surface.restitution);
+    return contact;
+}
+
+/// Lists the contacts of two capsules that may touch within the step. `key` is that of the first one.
+void list_capsules(const Side& a, const Side& b, std::uint64_t key, std::vector<Contact>& contacts)
+{
+    const PlacedCapsule &of_a = *a.shape, &of_b = *b.shape;
+    const bool is_flat = of_a.is_flat || of_b.is_flat;
+    const Axis axis_a = is_flat ? flattened(of_a.axis) : of_a.axis;
+    const Axis axis_b = is_flat ? flattened(of_b.axis) : of_b.axis;
+    const double margin = step_slack + of_a.goes + of_b.goes;
+    const TouchingPlaces touching = touching_places(axis_a, axis_b);
+    for (int i = 0; i < touching.count; ++i) {
+        const AxisPlaces& places = touching.places[static_cast<std::size_t>(i)];
+        const Vec3<double> apart = axis_b.at(places.on_b) - axis_a.at(places.on_a);
+        const double distance = std::sqrt(dot(apart, apart));
+        const double separation = distance - of_a.radius - of_b.radius;
+        if (!(separation <= margin)) continue;
+        const Vec3<double> normal = distance > 1e-9
+                                        ? (1 / distance) * apart
+                                        : direction_across(axis_a, axis_b, b.centre - a.centre, is_flat);
+        // Seen from above, a contact is as high as what can be pushed at any height: the body that is not planar.
+        const PlacedCapsule& high = of_a.is_flat ? of_b : of_a;
+        Vec3<double> point = axis_a.at(places.on_a) + (of_a.radius + separation / 2) * normal;
+        if (is_flat) point.z = high.axis.at(of_a.is_flat ? places.on_b : places.on_a).z;
+        contacts.push_back(contact_at(a, b, point, normal, separation));
+        contacts.back().key = key | static_cast<std::uint64_t>(i);
+    }
+}
+
+/// Lists the contacts of a capsule with a half-space: one at each end of its axis.
+void list_half_space(const Side& a, const PlacedHalfSpace& half_space, const Side& b, std::uint64_t key,
+                     std::vector<Contact>& contacts)
+{
+    const PlacedCapsule& capsule = *b.shape;
+    const int ends = dot(capsule.axis.along, capsule.axis.along) > 0 ? 2 : 1;
+    for (int i = 0; i < ends; ++i) {
+        const Vec3<double> end = capsule.axis.at(i);
+        const double separation = dot(half_space.normal, end - half_space.point) - capsule.radius;
+        const Vec3<double> arm = end - half_space.centre;
+        const double plane_goes = half_space.slides + half_space.turns * std::sqrt(dot(arm, arm));
+        if (!(separation <= step_slack + capsule.goes + plane_goes)) continue;
+        const Vec3<double> point = end - (capsule.radius + separation / 2) * half_space.normal;
+        contacts.push_back(contact_at(a, b, point, half_space.normal, separation));
+        contacts.back().key = key | static_cast<std::uint64_t>(i);
+    }
+}
+
+}  // namespace
+
+void ShapeContacts::open(const SceneCore& scene, const ShapePairs& pairs, double dt)
+{
+    dt_ = dt;
+    half_spaces_.clear();
+    for (const HalfSpace& half_space : scene.shapes.half_spaces)
+        half_spaces_.push_back(placed(scene, half_space, dt));
+    const std::size_t counts[] = {half_spaces_.empty() ? 0 : scene.shapes.capsules.size(),
+                                  pairs.capsules().size(), pairs.walls().size(), pairs.discs().size()};
+    for (std::size_t part = 0; part < 4; ++part)
+        first_chunk_[part + 1] =
+            first_chunk_[part] + (static_cast<std::int64_t>(counts[part]) + a_chunk - 1) / a_chunk;
+    grow_to(listed_, static_cast<std::size_t>(chunk_count()));
+}
+
+void ShapeContacts::list(const SceneCore& scene, const ShapePairs& pairs, std::int64_t chunk)
+{
+    std::vector<Contact>& contacts = listed_[static_cast<std::size_t>(chunk)];
+    contacts.clear();
+    std::size_t part = 0;
+    while (chunk >= first_chunk_[part + 1]) ++part;
+    const auto first = static_cast<std::size_t>((chunk - first_chunk_[part]) * a_chunk);
+    const auto share_of = [&](std::span<const ShapePair> all) {
+        return all.subspan(first, std::min(static_cast<std::size_t>(a_chunk), all.size() - first));
+    };
+    switch (part) {
+        case 0: {
+            const std::size_t last =
+                std::min(scene.shapes.capsules.size(), first + static_cast<std::size_t>(a_chunk));
+            for (std::size_t i = first; i < last; ++i)
+                list_half_spaces(scene, pairs, static_cast<std::uint32_t>(i), contacts);
+            break;
+        }
+        case 1:
+            for (const ShapePair& pair : share_of(pairs.capsules())) list_pair(scene, pairs, pair, contacts);
+            break;
+        case 2:
+            for (const ShapePair& pair : share_of(pairs.walls())) list_wall(scene, pairs, pair, contacts);
+            break;
+        default:
+            for (const ShapePair& pair : share_of(pairs.discs())) list_disc(scene, pairs, pair, contacts);
+    }
+}
+
+void ShapeContacts::list_half_spaces(const SceneCore& scene, const ShapePairs& pairs, std::uint32_t capsule,
+                                     std::vector<Contact>& contacts) const
+{
+    const Side b = side_of(scene, pairs, capsule);
+    if (!b.shape->can_move || b.shape->is_flat) return;
+    for (std::size_t i = 0; i < half_spaces_.size(); ++i) {
+        const HalfSpace& half_space = scene.shapes.half_spaces[i];
+        if (!half_space.surface.meets(b.surface.category, b.surface.mask)) continue;
+        const Side a{half_space.body, half_spaces_[i].centre, nullptr, half_space.surface,
+                     is_static(scene, half_space.body)};
+        list_half_space(a, half_spaces_[i], b,
+                        key_of(Partner::half_space, slot_of(scene, capsule), half_space.slot, 0), contacts);
+    }
+}
+
+void ShapeContacts::list_pair(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
+                              std::vector<Contact>& contacts)
+{
+    list_capsules(side_of(scene, pairs, pair.capsule), side_of(scene, pairs, pair.partner),
+                  key_of(Partner::capsule, slot_of(scene, pair.capsule), slot_of(scene, pair.partner), 0),
+                  contacts);
+}
+
+void ShapeContacts::list_wall(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
+                              std::vector<Contact>& contacts)
+{
+    const WallSegment& segment = scene.discs.segments[pair.partner];
+    const Vec2<double> from = pairs.wall_ends()[2 * pair.partner],
+                       to = pairs.wall_ends()[2 * pair.partner + 1];
+    PlacedCapsule wall;
+    wall.axis = {{from.x, from.y, 0}, {to.x - from.x, to.y - from.y, 0}};
+    wall.goes = pairs.walls_go();
+    wall.is_flat = true;
+    const Side a{segment.body,
+                 centre_of(scene, segment.body),
+                 &wall,
+                 {segment.friction, 0, segment.category, segment.mask},
+                 is_static(scene, segment.body)};
+    list_capsules(a, side_of(scene, pairs, pair.capsule),
+                  key_of(Partner::wall, slot_of(scene, pair.capsule), pair.partner, 0), contacts);
+}
+
+void ShapeContacts::list_disc(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
+                              std::vector<Contact>& contacts) const
+{
+    const BodyId body = scene.bodies.id_of_slot(pair.partner);
+    const DiscShape& shape = *scene.discs.shape_of(pair.partner);
+    const PlacedCapsule disc = placed_disc(scene, scene.bodies.row_of(body).row(), shape, dt_);
+    const Side a{body, disc.axis.from, &disc, {shape.friction, 0, shape.category, shape.mask}};
+    list_capsules(a, side_of(scene, pairs, pair.capsule),
+                  key_of(Partner::disc, slot_of(scene, pair.capsule), pair.partner, 0), contacts);
+}
+
+void ShapeContacts::append_to(std::vector<Contact>& contacts) const
+{
+    for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
+        const std::vector<Contact>& part = listed_[static_cast<std::size_t>(chunk)];
+        contacts.insert(contacts.end(), part.begin(), part.end());
+    }
+}
+
+}  // namespace motley
