@@ -41,7 +41,9 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     }
     // Should memory run out on the way, the next step searches again.
     discs.is_stale = true;
-    carry_impulses(scene);
+    if (!finder_.has_impulses_of(discs)) carry_impulses(scene);
+    finder_.name_search(discs);
+    discs.is_torn = true;
     discs.wall_skin = DiscStrips::skin_at(fastest_wall_end(scene), dt);
     discs.wall_ends = wall_ends_;
     sort_into_strips(scene, dt);
@@ -50,7 +52,7 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     discs.wants_sorting = discs.steps_since_sorting == DiscStore::least_steps_between_sortings &&
                           DiscFinder::are_rows_scattered(discs);
     discs.age = 0;
-    discs.is_stale = false;
+    discs.is_stale = discs.is_torn = false;
 }
 
 /// Whether a wall may go further in this step than the last search allowed for.

@@ -18,6 +18,7 @@ std::span<const Contact> ShapePipeline::join(SceneCore& scene, std::span<const C
     all_.assign(hosts.begin(), hosts.end());
     hosts_ = hosts.size();
     contacts_.append_to(all_);
+    keep_room(all_);
     if (scene.shapes.contacts.capacity() < found()) scene.shapes.contacts.reserve(with_room_to_grow(found()));
     return all_;
 }

@@ -61,8 +61,8 @@ void add_one_of_each(Scene& scene, BodyId a, BodyId b, TypeList<Types...>)
 }
 
 /// A scene some steps old that has something of everything that a file holds: each body model and type of joint,
-/// discs and walls, figures in lockstep, requested iterations, break limits, contacts, and slots that removed bodies and joints have
-/// left free.
+/// discs and walls, capsules and half-spaces, figures in lockstep, requested iterations, break limits, contacts, and slots
+/// that removed bodies, joints and shapes have left free.
 inline StepProblem seed_problem()
 {
     StepProblem problem;
@@ -93,6 +93,10 @@ inline StepProblem seed_problem()
     scene.remove_wall(scene.add_wall({.points = ends}));
     scene.add_wall({.points = ends, .friction = 0.3F});
     scene.add_wall({.points = ends, .body = bodies[4]});
+    scene.add_half_space({.point = {0, -3, 0}, .normal = {0, 1, 0}, .friction = 0.5F});
+    scene.add_capsule({.body = bodies[2], .from = {-0.5F, 0, 0}, .to = {0.5F, 0, 0}, .radius = 0.3F});
+    scene.remove_shape(scene.add_capsule({.body = other}));
+    scene.add_capsule({.body = bodies[0], .radius = 0.2F, .friction = 0.5F, .group = 3});
     scene.remove_joint(gone);
     scene.remove_body(bodies[3]);
     Figure figure;

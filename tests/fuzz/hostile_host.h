@@ -43,6 +43,7 @@ class HostileHost {
     Solver solver_{SolverSettings{}};
     std::vector<BodyId> bodies_{scene_.ground(), BodyId{}};  ///< also removed ones
     std::vector<ConstraintId> joints_{ConstraintId{}};
+    std::vector<ShapeId> shapes_{ShapeId{}};
 
     static void demand(bool holds, const char* what)
     {
@@ -88,7 +89,7 @@ class HostileHost {
 
     void call_something()
     {
-        switch (byte() % 17) {
+        switch (byte() % 20) {
             case 0:
             case 1:
                 return add_body();
@@ -135,9 +136,43 @@ class HostileHost {
                 scene_.set_user_data(changed, 7);
                 return demand(scene_.user_data(changed) == 7, "user data is lost");
             }
+            case 15:
+                return add_shape();
+            case 16: {
+                const ShapeId gone = shapes_[byte() % shapes_.size()];
+                scene_.remove_shape(gone);
+                return demand(!scene_.is_alive(gone), "a removed shape is alive");
+            }
+            case 17:
+                return scene_.set_disc(body(), {number(), number(), byte(), byte()});
             default:
                 return step();
         }
+    }
+
+    void add_shape()
+    {
+        const std::uint8_t kind = byte();
+        if (kind % 8 == 0) {
+            keep(scene_.add_half_space({body(), point(), vector(), number(), number()}));
+        } else if (kind % 8 == 1) {
+            const Vec3<double> from = point(), to = point();
+            const Vec2<double> ends[] = {{from.x, from.y}, {to.x, to.y}};
+            scene_.add_wall({.points = ends, .body = body(), .friction = number(), .one_way = kind > 0x80});
+        } else {
+            CapsuleDefinition capsule{.body = body(), .radius = number()};
+            if (kind % 8 < 5) capsule.from = vector();
+            if (kind % 8 == 2) capsule.to = vector();
+            if (kind > 0x80) capsule.friction = number();
+            if (kind % 3 == 0) capsule.restitution = number();
+            if (kind % 5 == 0) capsule.group = byte();
+            keep(scene_.add_capsule(capsule));
+        }
+    }
+    void keep(ShapeId shape)
+    {
+        shapes_.push_back(shape);
+        demand(scene_.is_alive(shape), "an added shape is not alive");
     }
 
     void add_body()

@@ -9,6 +9,7 @@
 #include "disc_crowd.h"
 #include "lattice_crowd.h"
 #include "mixed_scene.h"
+#include "shape_crowd.h"
 
 namespace motley::testing {
 
@@ -102,6 +103,22 @@ long allocations_of_discs(int threads)
     for (int step = 0; step < 400; ++step) solver.step(crowd.scene, 1.0F / 60);
     const long before = allocations;
     for (int step = 0; step < 60; ++step) solver.step(crowd.scene, 1.0F / 60);
+    return allocations - before;
+}
+
+/// The same for capsules of all kinds in a crowd, some of which are always on the move.
+long allocations_of_capsules(int threads)
+{
+    testing::ShapeCrowd crowd;
+    Solver solver({.gravity = {0, 0, -9.81F}}, {.threads = threads, .alone_below = 0});
+    const auto stir = [&](int step) {
+        const BodyId body = crowd.people[static_cast<std::size_t>(step) % crowd.people.size()];
+        crowd.scene.set_velocity(body, {step % 2 == 0 ? 1.0F : -1.0F, 0.5F, 0}, {});
+        solver.step(crowd.scene, 1.0F / 60);
+    };
+    for (int step = 0; step < 600; ++step) stir(step);
+    const long before = allocations;
+    for (int step = 0; step < 60; ++step) stir(step);
     return allocations - before;
 }
 
@@ -224,6 +241,11 @@ TEST(Allocation, AWarmStepThatMeasuresAndStopsIslandsAllocatesNothing)
 TEST(Allocation, WarmDiscsAllocateNothing)
 {
     for (const int threads : {1, 2}) EXPECT_EQ(allocations_of_discs(threads), 0) << threads << " threads";
+}
+
+TEST(Allocation, WarmCapsulesAllocateNothing)
+{
+    for (const int threads : {1, 2}) EXPECT_EQ(allocations_of_capsules(threads), 0) << threads << " threads";
 }
 
 TEST(Allocation, WarmQuestionsOfAHostAllocateNothing)

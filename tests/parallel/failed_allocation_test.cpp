@@ -12,6 +12,7 @@
 #include "disc_crowd.h"
 #include "lattice_crowd.h"
 #include "mixed_scene.h"
+#include "shape_crowd.h"
 
 namespace motley {
 namespace {
@@ -132,6 +133,33 @@ TEST(FailedAllocation, PatchesWithoutMemoryAreRefusedAndTheNextOnesDone)
     ran_out = true;
     // Only every seventh allocation: those that a small scene makes as well have failed in the test above.
     for (long successes = 0; ran_out; successes += 7)
+        ASSERT_EQ(hash_after(successes, ran_out), expected) << "allocation " << successes;
+}
+
+TEST(FailedAllocation, CapsulesWithoutMemoryAreNotLost)
+{
+    const testing::ShapeCrowd crowd(8, 20);
+    const auto hash_after = [&](long successes, bool& ran_out) {
+        Scene scene = crowd.scene;
+        Solver solver({.gravity = {0, 0, -9.81F}}, {.threads = 2, .alone_below = 0});
+        StepReport report;
+        {
+            const FailingAllocator failing(successes, false);
+            report = solver.step(scene, dt);
+            ran_out = FailingAllocator::has_failed();
+        }
+        if (report.status == StepStatus::refused) {
+            EXPECT_EQ(report.error, "out of memory");
+            EXPECT_EQ(scene.state_hash(), crowd.scene.state_hash());
+            EXPECT_EQ(solver.step(scene, dt).status, StepStatus::done);
+        }
+        for (int step = 0; step < 3; ++step) EXPECT_EQ(solver.step(scene, dt).status, StepStatus::done);
+        return scene.state_hash();
+    };
+    bool ran_out = false;
+    const std::uint64_t expected = hash_after(testing::never, ran_out);
+    ran_out = true;
+    for (long successes = 0; ran_out; ++successes)
         ASSERT_EQ(hash_after(successes, ran_out), expected) << "allocation " << successes;
 }
 

@@ -48,6 +48,7 @@ void DiscStore::remove_segments_of(std::uint32_t wall)
         segments[left++] = segments[i];
     }
     segments.resize(left);
+    is_torn = false;
     for (std::size_t band = 0; band < band_count; ++band) {
         for (DiscBlocks& blocks : bands[band].blocks) {
             for (WallTouch& touch : blocks.touches)
@@ -69,12 +70,14 @@ void DiscStore::forget_row(std::uint32_t row)
 {
     if (row < anchors.size() && !is_removed_row(row)) anchors[row].skin = forgotten_skin;
     is_stale = true;
+    is_torn = false;
 }
 
 void DiscStore::forget_removed_row(std::uint32_t row)
 {
     if (row < anchors.size()) anchors[row].skin = removed_skin;
     is_stale = true;
+    is_torn = false;
 }
 
 void DiscStore::renumber(std::span<const std::uint32_t> new_rows)
@@ -100,6 +103,7 @@ void DiscStore::renumber_contacts(std::span<const std::uint32_t> new_rows)
     }
     std::sort(late.begin(), late.end());
     searcher.reset();
+    is_torn = false;
     constexpr std::int32_t a_row = offsets_a_row(BodyKind::planar);
     const auto renumber_offset = [&](std::int32_t& offset) {
         offset = static_cast<std::int32_t>(new_rows[static_cast<std::size_t>(offset / a_row)]) * a_row;

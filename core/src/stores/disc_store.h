@@ -132,6 +132,9 @@ struct DiscStore {
     int age = 0;                          ///< steps since then
     /// Whether a body, a disc or a wall was added, removed or teleported since then.
     bool is_stale = true;
+    /// Whether memory ran out half-way in a search of all discs: blocks have lost impulses, which the searcher still has
+    /// unless something was removed since.
+    bool is_torn = false;
 
     [[nodiscard]] bool is_in_use() const { return count > 0; }
     [[nodiscard]] const DiscShape* shape_of(std::uint32_t slot) const

@@ -25,6 +25,12 @@ void assign_with_room(Vector& values, std::size_t size, const typename Vector::v
     if (values.capacity() < size) values.reserve(with_room_to_grow(size));
     values.assign(size, value);
 }
+/// For a list that is filled anew in each step: if it has nearly used its room, makes more for the next time.
+template <class Vector>
+void keep_room(Vector& values)
+{
+    if (values.capacity() < values.size() + values.size() / 8) values.reserve(2 * values.size());
+}
 /// Reserves room for `more` elements, so that adding them cannot fail half-way. At least doubles the capacity when it
 /// is too small, so that repeated calls stay cheap.
 template <class Vector>

@@ -2,6 +2,7 @@
 // neither of the two bodies. At most 32 blocks are open at a time, so that contacts stay near their neighbours.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -28,8 +29,10 @@ class BlockFiller {
         blocks_ = &blocks;
         row_floats_ = static_cast<std::size_t>(row_floats);
         impulse_floats_ = static_cast<std::size_t>(impulse_floats);
-        if (masks_.size() < bodies) masks_.resize(with_room_to_grow(bodies), 0);
+        // Memory may have run out while blocks were open.
+        if (open_ != 0) std::fill(masks_.begin(), masks_.end(), 0U);
         open_ = 0;
+        if (masks_.size() < bodies) masks_.resize(with_room_to_grow(bodies), 0);
     }
     /// Makes room for so many blocks.
     static void make_room(DiscBlocks& blocks, std::size_t row_floats, std::size_t impulse_floats,
@@ -115,11 +118,12 @@ class BlockFiller {
     /// A block of padding lanes: of null bodies, and with zeros for rows and impulses.
     std::size_t add_block()
     {
-        const auto block = static_cast<std::size_t>(blocks_->count++);
+        const auto block = static_cast<std::size_t>(blocks_->count);
         const std::size_t rows = row_floats_ * block_lanes, impulses = impulse_floats_ * block_lanes;
         // More room, because a band that is searched for again has a few blocks more or less than before.
         if (blocks_->lanes.size() <= block)
             make_room(*blocks_, row_floats_, impulse_floats_, block + block / 2 + 8);
+        ++blocks_->count;
         blocks_->bodies[block] = {};
         blocks_->lanes[block] = 0;
         std::memset(&blocks_->rows[block * rows], 0, rows * sizeof(float));

@@ -54,11 +54,11 @@ void DiscFinder::open(SceneCore& scene, int workers)
 {
     DiscStore& discs = scene.discs;
     workers_.resize(static_cast<std::size_t>(workers));
-    name_search(discs);
     discs.late.clear();
     discs.late_reach = discs.late_drift = 0;
-    discs.band_count = static_cast<std::size_t>(strips.band_count()) + 1;
-    if (discs.bands.size() < discs.band_count) discs.bands.resize(discs.band_count);
+    const auto bands = static_cast<std::size_t>(strips.band_count()) + 1;
+    if (discs.bands.size() < bands) discs.bands.resize(bands);
+    discs.band_count = bands;
     place_segments(discs);
     discs.rows_by_place.resize(strips.discs().size());
     // So that sort_disc_rows() need not allocate.
@@ -295,10 +295,11 @@ void DiscFinder::add_touch(SceneCore& scene, DiscBand& band, Worker& worker, con
             using Fields = DiscFieldsOf<c.value>;
             const auto i = static_cast<std::size_t>(c.value);
             DiscBlocks& blocks = band.blocks[i];
+            // First, so that every lane in use has a touch even if memory runs out.
+            grow_to(blocks.touches, block_lanes * (static_cast<std::size_t>(blocks.count) + 1));
             const BlockFiller::Place at = worker.fillers[i].take(BlockFiller::no_body, number);
             blocks.bodies[at.block].a[at.lane] = offset_of(scene.bodies.row_of(wall.body));
             blocks.bodies[at.block].b[at.lane] = offset_of(BodyRow(BodyKind::planar, disc.row));
-            grow_to(blocks.touches, block_lanes * blocks.lanes.size());
             blocks.touches[block_lanes * at.block + at.lane] = {segment.index, impulse.side};
             typename Fields::Row row{};
             row.in_sweep.effective_mass = 1 / disc.inverse_mass;

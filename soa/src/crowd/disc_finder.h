@@ -18,6 +18,13 @@ class DiscFinder {
   public:
     DiscStrips strips;        ///< first the discs are sorted
     CarriedImpulses carried;  ///< the impulses of the bands as they were are kept
+    /// Makes the next search of all discs that of this finder.
+    void name_search(DiscStore& discs);
+    /// Whether `carried` has them already, because memory ran out in the middle of this finder's last search.
+    [[nodiscard]] bool has_impulses_of(const DiscStore& discs) const
+    {
+        return discs.is_torn && discs.searcher == self_ && discs.search == searches_;
+    }
     /// Then there is space for the contacts of every band, for so many workers...
     void open(SceneCore& scene, int workers);
     /// ...and the contacts of every band are found; band 0 has those of discs that reach far.
@@ -53,7 +60,6 @@ class DiscFinder {
     void place_segments(const DiscStore& discs);
     static void make_room_for_touches(DiscBand& band, std::size_t blocks);
     void list_rows(DiscStore& discs, std::uint32_t first, std::uint32_t last) const;
-    void name_search(DiscStore& discs);
     void make_strips_of(SceneCore& scene);
     void begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers, bool goes_on);
     void find_late_of(SceneCore& scene, std::uint32_t row, float dt);

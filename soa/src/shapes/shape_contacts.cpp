@@ -175,6 +175,7 @@ void ShapeContacts::list(const SceneCore& scene, const ShapePairs& pairs, std::i
         default:
             for (const ShapePair& pair : share_of(pairs.discs())) list_disc(scene, pairs, pair, contacts);
     }
+    keep_room(contacts);
 }
 
 void ShapeContacts::list_half_spaces(const SceneCore& scene, const ShapePairs& pairs, std::uint32_t capsule,

@@ -96,7 +96,7 @@ void ShapePairs::place(const SceneCore& scene, std::int64_t chunk)
 void ShapePairs::place_discs(const SceneCore& scene, std::int64_t chunk)
 {
     const BodyRows& planar = scene.bodies.rows(BodyKind::planar);
-    bool any_leaves = disc_anchors_.size() < disc_rows_;
+    bool any_leaves = std::min(disc_anchors_.size(), disc_slots_.size()) < disc_rows_;
     for_each_row_of_chunk(chunk, static_cast<std::uint32_t>(disc_rows_), [&](std::uint32_t row) {
         if (any_leaves) return;
         const DiscAnchor& anchor = disc_anchors_[row];
@@ -285,6 +285,7 @@ void ShapePairs::find(const SceneCore& scene, std::int64_t chunk)
         find_capsules(scene, order_[i], found);
     if (chunk < chunk_count()) find_walls(scene, chunk, found);
     if (chunk < disc_chunk_count()) find_discs(scene, chunk, found);
+    for (std::vector<ShapePair>* pairs : {&found.capsules, &found.walls, &found.discs}) keep_room(*pairs);
 }
 
 void ShapePairs::sort(std::vector<ShapePair>& pairs)
@@ -306,9 +307,10 @@ void ShapePairs::collect(SceneCore& scene)
         append(walls_, found.walls);
         append(discs_, found.discs);
     }
-    sort(capsules_);
-    sort(walls_);
-    sort(discs_);
+    for (std::vector<ShapePair>* pairs : {&capsules_, &walls_, &discs_}) {
+        sort(*pairs);
+        keep_room(*pairs);
+    }
     if (!scene.shapes.version) scene.shapes.version = std::make_shared<const char>('\0');
     shape_version_ = scene.shapes.version;
     joint_version_ = scene.joints->version;
