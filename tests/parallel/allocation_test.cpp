@@ -116,7 +116,7 @@ long allocations_of_capsules(int threads)
         crowd.scene.set_velocity(body, {step % 2 == 0 ? 1.0F : -1.0F, 0.5F, 0}, {});
         solver.step(crowd.scene, 1.0F / 60);
     };
-    for (int step = 0; step < 600; ++step) stir(step);
+    for (int step = 0; step < 2000; ++step) stir(step);
     const long before = allocations;
     for (int step = 0; step < 60; ++step) stir(step);
     return allocations - before;
