@@ -54,6 +54,9 @@ struct RunCommand {
         app.add_option("--steering", options.steering,
                        "of evacuation, counterflow and crowd: plain, social-force or orca")
             ->transform(CLI::CheckedTransformer(steering_names));
+        app.add_flag(
+            "--torsos", options.torsos,
+            "of bottleneck, evacuation and counterflow: people are capsules across the shoulders, not discs");
         app.add_option("--friction", options.friction, "between people; default: the scene's")
             ->check(CLI::Range(0.0, 1e6));
         app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();

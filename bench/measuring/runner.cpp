@@ -141,6 +141,7 @@ void settle_options(const SceneEntry& entry, RunOptions& options)
     if (options.density > 0 && !takes.density) refuse("--density", "has a density of its own");
     if (options.steering != SteeringModel::plain && !takes.steering)
         refuse("--steering", "has a steering of its own");
+    if (options.torsos && !takes.torsos) refuse("--torsos", "has people as discs only");
     if (!takes.listed && !takes.found) return;
     const SolverSettings& settings = options.settings;
     const char* needs_list = options.lists_contacts              ? "--listed"
@@ -149,6 +150,7 @@ void settle_options(const SceneEntry& entry, RunOptions& options)
                              : settings.measures                 ? "--measures"
                              : options.direct_every > 0          ? "--direct-every"
                                                                  : nullptr;
+    if (needs_list != nullptr && options.torsos) refuse(needs_list, "cannot list the contacts of torsos");
     if (needs_list != nullptr && !takes.listed)
         refuse(needs_list,
                "leaves its contacts to the library, which finds contacts but has no such option for them");

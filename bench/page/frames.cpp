@@ -54,13 +54,20 @@ class Picture {
             pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                     static_cast<std::size_t>(x)] = c;
     }
-    void disc(double x, double y, double radius, Colour c)
+    /// A capsule, or a disc: all within `radius` of the axis from `from` to `to`.
+    void capsule(Vec2<double> from, Vec2<double> to, double radius, Colour c)
     {
         const Colour edge{static_cast<std::uint8_t>(c.r * 6 / 10), static_cast<std::uint8_t>(c.g * 6 / 10),
                           static_cast<std::uint8_t>(c.b * 6 / 10)};
-        for (int py = static_cast<int>(y - radius); py <= static_cast<int>(y + radius) + 1; ++py) {
-            for (int px = static_cast<int>(x - radius); px <= static_cast<int>(x + radius) + 1; ++px) {
-                const double d = std::hypot(px + 0.5 - x, py + 0.5 - y);
+        const Vec2<double> along = to - from;
+        const double length2 = std::max(dot(along, along), 1e-12);
+        for (int py = static_cast<int>(std::min(from.y, to.y) - radius);
+             py <= static_cast<int>(std::max(from.y, to.y) + radius) + 1; ++py) {
+            for (int px = static_cast<int>(std::min(from.x, to.x) - radius);
+                 px <= static_cast<int>(std::max(from.x, to.x) + radius) + 1; ++px) {
+                const Vec2<double> off = Vec2<double>{px + 0.5, py + 0.5} - from;
+                const Vec2<double> gap = off - std::clamp(dot(off, along) / length2, 0.0, 1.0) * along;
+                const double d = std::sqrt(dot(gap, gap));
                 if (d < radius) set(px, py, d > radius - 1 && radius > 3 ? edge : c);
             }
         }
@@ -152,6 +159,22 @@ std::vector<double> pressures_on(std::int32_t wall, const Crowd& crowd, std::spa
     return bands;
 }
 
+/// From the centre of a torso to the end of its axis, m, world.
+Vec2<double> shoulder_of(const Agent& agent, double yaw)
+{
+    const Vec2<float> end = Crowd::shoulder(agent);
+    const auto x = static_cast<double>(end.x), y = static_cast<double>(end.y);
+    return {std::cos(yaw) * x - std::sin(yaw) * y, std::sin(yaw) * x + std::cos(yaw) * y};
+}
+
+double circumference_of(const Agent& agent, bool is_torso)
+{
+    constexpr double turn = 6.283185307179586;
+    if (!is_torso) return turn * static_cast<double>(agent.radius);
+    return turn * static_cast<double>(Crowd::depth_radius(agent)) +
+           4 * static_cast<double>(Crowd::shoulder(agent).y);
+}
+
 }  // namespace
 
 FrameWriter::FrameWriter(std::string folder) : folder_(std::move(folder))
@@ -214,10 +237,14 @@ void FrameWriter::write(const Crowd& crowd, const Scene& scene)
         }
     }
     for (std::size_t i = 0; i < crowd.positions.size() && i < load.size(); ++i) {
-        const double radius = static_cast<double>(crowd.agents[i].radius);
-        const double pressure = load[i] / (6.283185307179586 * radius);
-        picture.disc(x(crowd.positions[i].x), y(crowd.positions[i].y), radius * scale_,
-                     colour_of(pressure / full_pressure));
+        const Agent& agent = crowd.agents[i];
+        const Vec2<double> at{crowd.positions[i].x, crowd.positions[i].y};
+        const double pressure = load[i] / circumference_of(agent, crowd.are_torsos);
+        const Vec2<double> end = crowd.are_torsos ? shoulder_of(agent, crowd.yaws[i]) : Vec2<double>{};
+        const double radius =
+            static_cast<double>(crowd.are_torsos ? Crowd::depth_radius(agent) : agent.radius);
+        picture.capsule(pixel(at - end), pixel(at + end), radius * scale_,
+                        colour_of(pressure / full_pressure));
     }
     draw_bar(picture, 0, "N/m", full_pressure);
     draw_bar(picture, 1, "kN/m", full_wall_pressure / 1000);

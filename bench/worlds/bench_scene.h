@@ -27,6 +27,7 @@ struct RunOptions {
     double door = 0;      ///< m, width of the door, where there is one; 0: the scene's default
     double density = 0;   ///< people per m2, where the scene can choose; 0: the scene's default
     SteeringModel steering = SteeringModel::plain;
+    bool torsos = false;  ///< people are capsules across the shoulders instead of discs
     std::uint64_t seed = 12345;
     int direct_every =
         0;  ///< steps between two comparisons with the simultaneous solution of the same step; 0: never
@@ -97,13 +98,14 @@ class CrowdScene : public BenchScene {
     /// Lets the library find the contacts of people and walls, unless the options want them listed.
     void share_out_contacts(const RunOptions& options)
     {
+        people.are_torsos = options.torsos;
         if (!options.lists_contacts) people.hand_over(scene);
     }
 };
 
 /// What of RunOptions a scene follows beyond what all do.
 struct SceneTakes {
-    bool door = false, density = false, steering = false;
+    bool door = false, density = false, steering = false, torsos = false;
     bool listed = false;  ///< contacts can be listed by the host
     bool found = false;   ///< contacts can be found by the library
 };

@@ -27,14 +27,23 @@ void Crowd::add(Scene& scene, Agent agent, Vec2<double> position)
     bodies_.push_back(agent.body);
     radii_.push_back(agent.radius);
     serial_.push_back(next_serial_++);
-    if (is_handed_over_) scene.set_disc(agent.body, {.radius = agent.radius, .friction = friction});
+    if (is_handed_over_) give_shape(scene, agent);
+}
+
+void Crowd::give_shape(Scene& scene, const Agent& agent) const
+{
+    if (!are_torsos) return scene.set_disc(agent.body, {.radius = agent.radius, .friction = friction});
+    const Vec2<float> end = shoulder(agent);
+    scene.add_capsule({.body = agent.body,
+                       .from = {-end.x, -end.y, 0},
+                       .to = {end.x, end.y, 0},
+                       .radius = depth_radius(agent),
+                       .friction = friction});
 }
 
 void Crowd::hand_over(Scene& scene)
 {
-    std::vector<DiscDefinition> discs;
-    for (const Agent& agent : agents) discs.push_back({.radius = agent.radius, .friction = friction});
-    scene.set_discs(bodies_, std::span<const DiscDefinition>(discs));
+    for (const Agent& agent : agents) give_shape(scene, agent);
     for (const Wall& wall : walls) {
         const Vec2<double> ends[] = {wall.from, wall.to};
         wall_ids_.push_back(scene.add_wall({.points = ends, .friction = friction}));
@@ -67,6 +76,31 @@ void Crowd::observe(const Scene& scene, Executor& executor)
                      scene.read_positions(some, std::span(positions).subspan(first, count));
                      scene.read_velocities(some, std::span(velocities).subspan(first, count));
                  });
+    if (!are_torsos) return;
+    yaws.resize(agents.size());
+    scene.read_yaws(bodies_, std::span(yaws));
+}
+
+/// Torques that turn everyone to the goal, critically damped within the relaxation time.
+void Crowd::turn_torsos(const Scene& scene)
+{
+    spins_.resize(agents.size());
+    torques_.resize(agents.size());
+    scene.read_velocities(bodies_, {}, std::span(spins_));
+    constexpr double turn = 6.283185307179586;
+    for (std::size_t i = 0; i < agents.size(); ++i) {
+        const Agent& agent = agents[i];
+        const double ahead = std::atan2(agent.goal.y - positions[i].y, agent.goal.x - positions[i].x);
+        const auto off = static_cast<float>(std::remainder(ahead - yaws[i], turn));
+        const float rate = 2 / relaxation_time, moment = 0.5F * agent.mass * agent.radius * agent.radius;
+        torques_[i] = {0, 0, moment * rate * (rate * off - 2 * spins_[i].z)};
+    }
+}
+
+std::int32_t Crowd::index_of(WallId wall) const
+{
+    const auto found = std::find(wall_ids_.begin(), wall_ids_.end(), wall);
+    return found != wall_ids_.end() ? static_cast<std::int32_t>(found - wall_ids_.begin()) : -1;
 }
 
 std::vector<Touch> Crowd::found_touches(const Scene& scene) const
@@ -83,10 +117,22 @@ std::vector<Touch> Crowd::found_touches(const Scene& scene) const
         if (contact.wall == WallId{}) {
             touch.a = index.of(contact.a);
         } else {
-            const auto wall = std::find(wall_ids_.begin(), wall_ids_.end(), contact.wall);
-            if (wall != wall_ids_.end()) touch.wall = static_cast<std::int32_t>(wall - wall_ids_.begin());
+            touch.wall = index_of(contact.wall);
         }
         all.push_back(touch);
+    }
+    for (const ShapeContact& contact : scene.shape_contacts()) {
+        if (contact.normal_force <= 0) continue;
+        const Vec2<float> normal{contact.normal.x, contact.normal.y};
+        const bool is_wall = contact.wall != WallId{};
+        all.push_back({.a = is_wall ? -1 : index.of(contact.a),
+                       .b = index.of(contact.b),
+                       .wall = is_wall ? index_of(contact.wall) : -1,
+                       .normal = normal,
+                       .separation = static_cast<double>(contact.separation),
+                       .force = static_cast<double>(contact.normal_force),
+                       .friction = static_cast<double>(normal.x * contact.friction_force.y -
+                                                       normal.y * contact.friction_force.x)});
     }
     return all;
 }
@@ -118,9 +164,11 @@ std::vector<Touch> Crowd::touches(const Scene& scene) const
 void Crowd::steer(Scene& scene, Executor& executor)
 {
     forces_.resize(agents.size());
+    if (are_torsos) turn_torsos(scene);
+    const std::span<const Vec3<float>> torques(torques_);
     if (steering) {
         steering->find_forces(*this, forces_, executor);
-        scene.set_forces(bodies_, std::span<const Vec3<float>>(forces_));
+        scene.set_forces(bodies_, std::span<const Vec3<float>>(forces_), torques);
         return;
     }
     parallel_for(
@@ -139,7 +187,8 @@ void Crowd::steer(Scene& scene, Executor& executor)
             // run at once.
             const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
             scene.set_forces(std::span<const BodyId>(bodies_).subspan(first, count),
-                             std::span<const Vec3<float>>(forces_).subspan(first, count));
+                             std::span<const Vec3<float>>(forces_).subspan(first, count),
+                             are_torsos ? torques.subspan(first, count) : torques);
         });
 }
 
@@ -263,7 +312,7 @@ void Crowd::write_contact(Contact& contact, Pair& pair) const
     // Two people at the same point are pushed apart along x.
     const bool apart = distance > 1e-9F;
     const float inverse = apart ? 1 / distance : 0;
-    const float radius_a = radii_[a], radius_b = radii_[b];
+    const float radius_a = listed_radius(a), radius_b = listed_radius(b);
     const float separation = distance - radius_a - radius_b;
     contact.body_a = bodies_[a];
     contact.body_b = bodies_[b];

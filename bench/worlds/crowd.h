@@ -49,6 +49,9 @@ class Crowd {
     /// m: above 0, y has this period: a strip without ends. The library knows no periods, so the contacts across the
     /// seam stay listed when all others are found.
     double period_y = 0;
+    /// People are capsules across the shoulders, 2.3 radii wide and 1.2 deep, and turn to where they walk. Their contacts
+    /// must be found by the library; across a seam they meet as discs as wide as they are deep.
+    bool are_torsos = false;
     std::unique_ptr<Steering> steering;  ///< null: the plain one of steer()
 
     AlignedVector<Agent> agents;
@@ -56,14 +59,18 @@ class Crowd {
     /// As of the last observe().
     AlignedVector<Vec3<double>> positions;
     AlignedVector<Vec3<float>> velocities;
+    AlignedVector<double> yaws;  ///< rad; of torsos only
 
     /// Adds a person as a planar body: a uniform disc.
     void add(Scene& scene, Agent agent, Vec2<double> position);
     /// Forgets agent `index` and removes its body; the last agent takes its place.
     void remove(Scene& scene, std::size_t index);
 
-    /// Gives everybody a disc and makes the walls walls of the scene, so that the solver finds the contacts. People who
-    /// are added later get a disc as well.
+    /// From the centre of a torso that looks along x to an end of its axis, m.
+    [[nodiscard]] static Vec2<float> shoulder(const Agent& agent) { return {0, 0.55F * agent.radius}; }
+    [[nodiscard]] static float depth_radius(const Agent& agent) { return 0.6F * agent.radius; }
+    /// Gives everybody a disc, or a torso, and makes the walls walls of the scene, so that the solver finds the contacts. People who
+    /// are added later get one as well.
     void hand_over(Scene& scene);
     [[nodiscard]] bool is_handed_over() const { return is_handed_over_; }
 
@@ -105,7 +112,7 @@ class Crowd {
   private:
     AlignedVector<BodyId> bodies_;
     AlignedVector<float> radii_;  ///< of the agents, contiguous
-    AlignedVector<Vec3<float>> forces_;
+    AlignedVector<Vec3<float>> forces_, torques_, spins_;
     NeighbourGrid grid_;
     AlignedVector<Contact> contacts_;  // the first contact_count_ of them
     AlignedVector<Pair> pairs_;
@@ -123,6 +130,14 @@ class Crowd {
     };
     std::vector<Findings> findings_;
 
+    void give_shape(Scene& scene, const Agent& agent) const;
+    void turn_torsos(const Scene& scene);
+    [[nodiscard]] std::int32_t index_of(WallId wall) const;
+    /// The radius of a person in a list of contacts, m.
+    [[nodiscard]] float listed_radius(std::size_t agent) const
+    {
+        return are_torsos ? depth_radius(agents[agent]) : radii_[agent];
+    }
     [[nodiscard]] Vec2<double> nearest_point(const Wall& wall, std::size_t agent) const;
     [[nodiscard]] bool is_near(const Wall& wall, std::size_t agent) const;
     void find_pairs_across_the_seam(std::vector<Pair>& pairs) const;

@@ -157,9 +157,13 @@ TEST(Shapes, ATorsoPressedFlatAgainstAWallBearsThePush)
     run(solver, scene, 120);
     const std::vector<ShapeContact> contacts = scene.shape_contacts();
     ASSERT_EQ(contacts.size(), 2U);
-    for (const ShapeContact& contact : contacts) EXPECT_NEAR(contact.normal_force, 250, 1);
+    for (const ShapeContact& contact : contacts) {
+        EXPECT_NEAR(contact.normal_force, 250, 1);
+        EXPECT_EQ(contact.wall, wall);
+    }
     EXPECT_NEAR(scene.state(person).yaw, 0, 1e-4);
     scene.remove_wall(wall);
+    EXPECT_TRUE(scene.shape_contacts().empty()) << "contacts with a wall that is gone";
     run(solver, scene, 1);
     EXPECT_TRUE(scene.shape_contacts().empty());
 }

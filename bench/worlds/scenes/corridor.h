@@ -25,7 +25,12 @@ class PeriodicCorridor : public CrowdScene {
     void observe(double, const Solver&) override
     {
         for (const Vec3<double>& p : people.positions) breaches_ += p.x <= 0 || p.x >= width ? 1 : 0;
-        for (const Touch& touch : people.touches(scene)) deepest_ = std::max(deepest_, -touch.separation);
+        for (const Touch& touch : people.touches(scene)) {
+            // Torsos meet as discs across the seam, and overlap where they are put back.
+            const double y = people.positions[static_cast<std::size_t>(touch.b)].y;
+            if (people.are_torsos && (y < 1 || y > length - 1)) continue;
+            deepest_ = std::max(deepest_, -touch.separation);
+        }
         if (is_measured_) measure();
     }
     [[nodiscard]] std::vector<Mark> marks() const override
@@ -73,7 +78,7 @@ class PeriodicCorridor : public CrowdScene {
             Vec3<double>& p = people.positions[i];
             if (p.y >= 0 && p.y < length) continue;
             p.y += p.y < 0 ? length : -length;
-            scene.set_pose(people.agents[i].body, p, {0, 0, 0, 1}, 0);
+            scene.set_pose(people.agents[i].body, p, {0, 0, 0, 1}, people.are_torsos ? people.yaws[i] : 0);
         }
     }
 };

@@ -134,6 +134,13 @@ void list_half_space(const Side& a, const PlacedHalfSpace& half_space, const Sid
 
 }  // namespace
 
+std::int64_t segment_of(std::uint64_t key)
+{
+    const auto partner = static_cast<Partner>(key >> 61 & 3);
+    return partner == Partner::wall ? static_cast<std::int64_t>(key >> 4 & ((std::uint64_t{1} << 29) - 1))
+                                    : -1;
+}
+
 void ShapeContacts::open(const SceneCore& scene, const ShapePairs& pairs, double dt)
 {
     dt_ = dt;

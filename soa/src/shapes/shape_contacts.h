@@ -17,6 +17,9 @@ namespace motley {
 /// of the capsule, what it touches, and which of the two points of such a contact it is.
 inline constexpr std::uint64_t found_key = std::uint64_t{1} << 63;
 
+/// The segment of a wall in the key of a contact with one, or -1.
+std::int64_t segment_of(std::uint64_t key);
+
 class ShapeContacts {
   public:
     /// Starts a step of dt seconds.

@@ -58,6 +58,7 @@ struct HalfSpaceDefinition {
 struct ShapeContact {
     BodyId a{};              ///< of the half-space, wall, disc or other capsule
     BodyId b{};              ///< of a capsule
+    WallId wall{};           ///< null unless it touches a wall
     Vec3<float> normal{};    ///< unit, from a to b, world, as it was when the last step began
     Vec3<float> arm_b{};     ///< m, world, likewise: from the centre of mass of b to the contact point
     float separation = 0;    ///< m along the normal, likewise; negative when overlapping
