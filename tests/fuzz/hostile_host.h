@@ -88,7 +88,7 @@ class HostileHost {
 
     void call_something()
     {
-        switch (byte() % 17) {
+        switch (byte() % 18) {
             case 0:
             case 1:
                 return add_body();
@@ -134,6 +134,16 @@ class HostileHost {
                                 {number(), number(), number(), number(), number(), number()});
                 scene_.set_user_data(changed, 7);
                 return demand(scene_.user_data(changed) == 7, "user data is lost");
+            }
+            case 15: {
+                const BodyId changed = body();
+                const auto model = static_cast<BodyModel>(byte() % 4);  // one of them is none
+                const std::uint8_t round = byte() % 2;
+                scene_.change_body(changed, {model, round ? Sym3<float>{1, 0, 0, 1, 0, 1}
+                                                          : Sym3<float>{number(), number(), number(),
+                                                                        number(), number(), number()}});
+                return demand(scene_.is_alive(changed) && scene_.model(changed) == model,
+                              "a changed body has another model");
             }
             default:
                 return step();

@@ -61,6 +61,10 @@ struct SceneCore {
     void require_alive(ConstraintId joint, const char* what) const;
     [[noreturn]] static void refuse_dead(BodyId body, const char* what);
     JointBodies check_joint_bodies(int type, BodyId a, BodyId b) const;
+    /// Refuses what Scene::change_body refuses.
+    void check_change(BodyId body, const BodyChange& change) const;
+    /// Refuses a model of a body under which one of its joints would be refused, and names the joint.
+    void check_joints_after(BodyId body, BodyModel model) const;
     static void check_break_limit(const BreakLimit& limit);
     static void check_wish(const char* field, int at_least);
     void check_island_wish(const IslandIterations& asked) const;
