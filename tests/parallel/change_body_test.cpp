@@ -2,13 +2,14 @@
 // double; closed forms; bodies that were added with the new model, bit for bit; and scenes that were read back from bytes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <vector>
 
 #include "disc_crowd.h"
 #include "motley/motley.h"
+#include "scene/scene_core.h"
 
 namespace motley {
 namespace {
@@ -392,17 +393,17 @@ TEST(ChangeBody, FindsTheImpulsesOfItsContactsAgain)
     Row row;
     Solver solver(SolverSettings{});
     for (int step = 0; step < 600; ++step) solver.step(row.scene, dt, row.contacts());
-    ASSERT_LT(row.off(), 1e-3);
+    ASSERT_LT(row.off(), 1e-6);
     Row cold = row;
     cold.generation = 1;
     solver.step(cold.scene, dt, cold.contacts());
-    EXPECT_GT(cold.off(), 0.05) << "one step finds the forces without a warm start";
+    EXPECT_GT(cold.off(), 0.3) << "one step finds the forces without a warm start";
     for (const BodyModel to : {BodyModel::rigid, BodyModel::particle, BodyModel::planar}) {
         for (std::size_t i = 0; i < row.balls.size(); i += 2)
             row.scene.change_body(row.balls[i], {to, {1.3F, 0, 0, 1.3F, 0, 1.6F}});
         for (int step = 0; step < 5; ++step) {
             solver.step(row.scene, dt, row.contacts());
-            EXPECT_LT(row.off(), 1e-3) << "to " << static_cast<int>(to) << ", step " << step;
+            EXPECT_LT(row.off(), 1e-6) << "to " << static_cast<int>(to) << ", step " << step;
         }
     }
 }
@@ -496,9 +497,13 @@ struct ChangingCrowd {
     testing::DiscCrowd crowd{{.people = 600, .friction = 0.3F}};
     std::vector<Contact> contacts;
 
-    void change(int step)
+    /// Returns the people who were given a disc again.
+    std::vector<BodyId> change(int step)
     {
+        std::vector<BodyId> with_new_discs;
         for (std::size_t i = static_cast<std::size_t>(step) % 7; i < crowd.people.size(); i += 41) {
+            // So that some leave the plane while others come back, into rows that were just left.
+            if ((7919 * i + 6007 * static_cast<std::size_t>(step)) % 3 == 0) continue;
             const BodyId person = crowd.people[i];
             BodyModel to = BodyModel::planar;
             if (crowd.scene.has_disc(person)) {
@@ -510,8 +515,10 @@ struct ChangingCrowd {
             DiscDefinition disc = crowd.discs[i];
             disc.friction = step % 2 == 0 ? 0.3F : 0;
             crowd.scene.set_disc(person, disc);
+            with_new_discs.push_back(person);
         }
         if (step % 10 == 0) crowd.pull_together(150);
+        return with_new_discs;
     }
 };
 
@@ -535,17 +542,48 @@ TEST(ChangeBody, InACrowdOfDiscsHasTheSameBitsOnEveryThreadAndInEveryLane)
     }
 }
 
+/// Discs that rub each other keep the effective masses of their contacts from search to search.
+TEST(ChangeBody, ToTheSameModelIsASetMassWithTheSpinThatKeepsTheMomentum)
+{
+    testing::DiscCrowd changed({.people = 300, .friction = 0.4F, .speed = 0.1F});
+    for (const BodyId person : changed.people) changed.scene.set_mass(person, 75, {0, 0, 0, 0, 0, 2});
+    changed.pull_together(300);
+    Solver solver(SolverSettings{}), other(SolverSettings{});
+    for (int step = 0; step < 300; ++step) solver.step(changed.scene, dt);
+    Scene still = changed.scene;
+    solver.step(still, dt);
+    ASSERT_GT(core_of(still).discs.age, 0) << "neighbours would be searched for anyway";
+    Scene same = changed.scene;
+    for (std::size_t i = 0; i < changed.people.size(); i += 2) {
+        const BodyId person = changed.people[i];
+        const Vec3<float> linear = same.state(person).linear_velocity;
+        changed.scene.set_velocity(person, linear, {0, 0, 0.25F});
+        changed.scene.change_body(person, {BodyModel::planar, {0, 0, 0, 0, 0, 0.5F}});
+        EXPECT_TRUE(changed.scene.has_disc(person));
+        same.set_mass(person, 75, {0, 0, 0, 0, 0, 0.5F});
+        same.set_velocity(person, linear, {0, 0, 1});
+    }
+    for (int step = 0; step < 20; ++step) {
+        solver.step(changed.scene, dt);
+        other.step(same, dt);
+        ASSERT_EQ(changed.scene.state_hash(), same.state_hash()) << "step " << step;
+    }
+}
+
 TEST(ChangeBody, InACrowdOfDiscsLeavesNoContactBehind)
 {
     ChangingCrowd changing;
     Scene& scene = changing.crowd.scene;
     Solver solver(SolverSettings{}), other(SolverSettings{});
     for (int step = 0; step < 60; ++step) {
-        changing.change(step);
+        const std::vector<BodyId> with_new_discs = changing.change(step);
+        // Between steps the contacts of the last one are told: of nobody who has left the plane, nor of whoever has got
+        // the row of such a person since.
         for (const DiscContact& contact : scene.disc_contacts()) {
-            for (const BodyId body : {contact.a, contact.b})
-                ASSERT_TRUE(scene.is_alive(body) && (contact.wall != WallId{} || scene.has_disc(body) ||
-                                                     scene.model(body) == BodyModel::planar));
+            for (const BodyId body : {contact.a, contact.b}) {
+                ASSERT_TRUE(body == scene.ground() || scene.model(body) == BodyModel::planar);
+                ASSERT_EQ(std::ranges::count(with_new_discs, body), 0);
+            }
         }
         Scene anew = load_scene(save_scene(scene));
         ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
