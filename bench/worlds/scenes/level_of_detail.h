@@ -9,8 +9,8 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <limits>
-#include <string>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "measuring/clock.h"
