@@ -100,9 +100,9 @@ class Scene {
     ///
     /// Refuses static, kinematic and contained bodies; a body with a disc that leaves the planar model, which wants
     /// clear_disc() first; inertias out of their ranges, and so small ones that the angular velocity would exceed 1e9
-    /// rad/s; and a model that a joint on the body cannot have, such as a
-    /// particle under an anchor off its centre. Takes a time in proportion to the joints on the body; where there are
-    /// any, the next step lays out all joints anew.
+    /// rad/s; and a model that a joint on the body cannot have, such as a particle under an anchor off its centre. A
+    /// contact of the host's list may be refused by the next step: between planar bodies its normal has z = 0. Takes a
+    /// time in proportion to the joints on the body; where there are any, the next step lays out all joints anew.
     void change_body(BodyId body, const BodyChange& change);
     /// A number of the host's own for a body: an index, or a pointer. 0 at birth; kept in copies and files of the
     /// scene. No step reads it. The first call for a scene allocates eight bytes a body.
