@@ -32,6 +32,8 @@ std::unique_ptr<Engine> make_motley_engine(const Rig& rig, SolverSettings settin
 
 /// Adds a rig to a scene: a body each, in order, and the joints. Returns the bodies.
 std::vector<BodyId> add_rig(Scene& scene, const Rig& rig);
+/// Adds its joints alone, between bodies that lie to each other as those of the rig do.
+void tie_rig(Scene& scene, const Rig& rig, std::span<const BodyId> bodies);
 
 /// One setting of a peer.
 struct PeerSetting {

@@ -65,11 +65,17 @@ std::vector<BodyId> add_rig(Scene& scene, const Rig& rig)
         body.angular_velocity = from.spin;
         ids.push_back(scene.add_body(body));
     }
+    tie_rig(scene, rig, ids);
+    return ids;
+}
+
+void tie_rig(Scene& scene, const Rig& rig, std::span<const BodyId> bodies)
+{
     for (const RigJoint& joint : rig.joints) {
         const auto end = [&](int body) -> std::pair<BodyId, Vec3<float>> {
             if (body == rig_world) return {scene.ground(), convert<float>(joint.anchor)};
             const auto i = static_cast<std::size_t>(body);
-            return {ids[i], convert<float>(joint.anchor - rig.bodies[i].position)};
+            return {bodies[i], convert<float>(joint.anchor - rig.bodies[i].position)};
         };
         const auto [a, anchor_a] = end(joint.a);
         const auto [b, anchor_b] = end(joint.b);
@@ -89,7 +95,6 @@ std::vector<BodyId> add_rig(Scene& scene, const Rig& rig)
             scene.add_joint(limit);
         }
     }
-    return ids;
 }
 
 std::unique_ptr<Engine> make_motley_engine(const Rig& rig, SolverSettings settings,

@@ -19,7 +19,7 @@ struct RigBody {
     Vec3<float> velocity{};        ///< m/s
     Vec3<float> spin{};            ///< rad/s
     bool moves = true;
-    Vec3<float> half_extents{};  ///< m; only in rigs that collide
+    Vec3<float> half_extents{};  ///< m; of boxes that collide with something
 };
 
 enum class RigTie {

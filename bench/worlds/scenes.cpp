@@ -5,6 +5,7 @@
 #include "worlds/scenes/door_closes.h"
 #include "worlds/scenes/evacuation.h"
 #include "worlds/scenes/lean.h"
+#include "worlds/scenes/level_of_detail.h"
 #include "worlds/scenes/open_crowd.h"
 #include "worlds/scenes/pulse.h"
 #include "worlds/scenes/push.h"
@@ -67,6 +68,13 @@ std::vector<SceneEntry> all_scenes()
          60,
          make<Corridor>,
          {.density = true, .listed = true, .found = true}},
+        {"level-of-detail",
+         "near people are discs with friction, far ones discs without or particles, the fallen figures: the "
+         "price of each",
+         2000,
+         30,
+         make<LevelOfDetail>,
+         {.density = true, .found = true}},
         {"door-closes",
          "walls close on people at 0.5, 2 and 20 m/s",
          300,

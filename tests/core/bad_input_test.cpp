@@ -27,6 +27,8 @@ struct Fixture {
             body.model = model;
             body.motion = motion;
             body.position.x = x;
+            if (model == BodyModel::rigid && motion == BodyMotion::dynamic_body)
+                body.angular_velocity = {0, 0, 1};
             return scene.add_body(body);
         };
         particle = add(BodyModel::particle, BodyMotion::dynamic_body, 1);
@@ -647,6 +649,53 @@ TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
              f.scene.set_mass(f.rigid, 1, {1, 2, 0, 1, 0, 1});
          },
          "set_mass.inertia", "positive definite"},
+        {"change of a removed body", [](Fixture& f) { f.scene.change_body(f.removed, {}); },
+         "change_body.body", "not alive"},
+        {"change of the null handle", [](Fixture& f) { f.scene.change_body({}, {}); }, "change_body.body",
+         "null"},
+        {"change of the ground", [](Fixture& f) { f.scene.change_body(f.scene.ground(), {}); },
+         "change_body.body", "static"},
+        {"change of a kinematic body",
+         [](Fixture& f) { f.scene.change_body(f.kinematic, {.model = BodyModel::planar}); },
+         "change_body.body", "kinematic"},
+        {"change to no model",
+         [](Fixture& f) { f.scene.change_body(f.rigid, {.model = static_cast<BodyModel>(3)}); },
+         "BodyChange.model", "3"},
+        {"change to an inertia below 0",
+         [](Fixture& f) {
+             f.scene.change_body(f.rigid, {.model = BodyModel::planar, .inertia = {1, 0, 0, 1, 0, -1}});
+         },
+         "BodyChange.inertia.zz", "-1"},
+        {"change to an inertia against the triangle inequality",
+         [](Fixture& f) {
+             f.scene.change_body(f.planar, {.inertia = {1, 0, 0, 1, 0, 3}});
+         },
+         "BodyChange.inertia", "triangle"},
+        {"change to an inertia that is not a number",
+         [](Fixture& f) {
+             f.scene.change_body(f.planar, {.inertia = {nan, 0, 0, 1, 0, 1}});
+         },
+         "BodyChange.inertia", "nan"},
+        {"change of a body with an anchor off its centre to a particle",
+         [](Fixture& f) { f.scene.change_body(f.rigid, {.model = BodyModel::particle}); },
+         "change_body.body has a joint, slot 1: BallSocketDefinition.local_anchor_a.x", "1"},
+        {"change of a disc to a rigid body",
+         [](Fixture& f) {
+             f.scene.set_disc(f.planar, {});
+             f.scene.change_body(f.planar, {});
+         },
+         "BodyChange.model", "clear_disc"},
+        {"change of a disc to a particle",
+         [](Fixture& f) {
+             f.scene.set_disc(f.planar, {});
+             f.scene.change_body(f.planar, {.model = BodyModel::particle});
+         },
+         "BodyChange.model", "particle"},
+        {"change to an inertia that spins the body up",
+         [](Fixture& f) {
+             f.scene.change_body(f.rigid, {.model = BodyModel::planar, .inertia = {0, 0, 0, 0, 0, 1e-20F}});
+         },
+         "BodyChange.inertia's angular velocity", "e+20"},
         {"revive a body that moves", [](Fixture& f) { f.scene.revive(f.rigid, {}, {}); }, "revive.body",
          "moves"},
         {"set_velocities sizes",

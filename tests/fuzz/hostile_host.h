@@ -89,7 +89,7 @@ class HostileHost {
 
     void call_something()
     {
-        switch (byte() % 20) {
+        switch (byte() % 21) {
             case 0:
             case 1:
                 return add_body();
@@ -145,6 +145,16 @@ class HostileHost {
             }
             case 17:
                 return scene_.set_disc(body(), {number(), number(), byte(), byte()});
+            case 18: {
+                const BodyId changed = body();
+                const auto model = static_cast<BodyModel>(byte() % 4);  // one of them is none
+                const std::uint8_t round = byte() % 2;
+                scene_.change_body(changed, {model, round ? Sym3<float>{1, 0, 0, 1, 0, 1}
+                                                          : Sym3<float>{number(), number(), number(),
+                                                                        number(), number(), number()}});
+                return demand(scene_.is_alive(changed) && scene_.model(changed) == model,
+                              "a changed body has another model");
+            }
             default:
                 return step();
         }

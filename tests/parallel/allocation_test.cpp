@@ -210,6 +210,35 @@ long allocations_of_figures(bool exact, int threads)
     return allocations - before;
 }
 
+/// The same for people of whom some have become rigid bodies, and for changes into rows that were used before.
+long allocations_after_changes(int threads)
+{
+    testing::DiscCrowd crowd({.people = 600, .friction = 0.2F});
+    Scene& scene = crowd.scene;
+    for (std::size_t i = 0; i < crowd.people.size(); i += 3) scene.clear_disc(crowd.people[i]);
+    Solver solver(SolverSettings{}, {.threads = threads, .alone_below = 0});
+    const auto change = [&](BodyModel model) {
+        for (std::size_t i = 0; i < crowd.people.size(); i += 3)
+            scene.change_body(crowd.people[i], {model, {1, 0, 0, 1, 0, 1}});
+    };
+    const auto change_there_and_back = [&](int steps) {
+        for (const BodyModel model : {BodyModel::rigid, BodyModel::particle, BodyModel::planar}) {
+            change(model);
+            for (int step = 0; step < steps; ++step) solver.step(scene, 1.0F / 60);
+        }
+    };
+    change_there_and_back(60);
+    long before = allocations;
+    change_there_and_back(0);
+    const long of_changes = allocations - before;
+    scene.add_joint(DistanceDefinition{.body_a = crowd.people[0], .body_b = crowd.people[3]});
+    change(BodyModel::rigid);
+    solver.step(scene, 1.0F / 60);  // lays out the joints anew
+    before = allocations;
+    for (int step = 0; step < 60; ++step) solver.step(scene, 1.0F / 60);
+    return of_changes + allocations - before;
+}
+
 TEST(Allocation, TheCounterCounts)
 {
     const long before = allocations;
@@ -246,6 +275,12 @@ TEST(Allocation, WarmDiscsAllocateNothing)
 TEST(Allocation, WarmCapsulesAllocateNothing)
 {
     for (const int threads : {1, 2}) EXPECT_EQ(allocations_of_capsules(threads), 0) << threads << " threads";
+}
+
+TEST(Allocation, ChangesOfModelsAndTheStepsAfterThemAllocateNothingOnceWarm)
+{
+    for (const int threads : {1, 2})
+        EXPECT_EQ(allocations_after_changes(threads), 0) << threads << " threads";
 }
 
 TEST(Allocation, WarmQuestionsOfAHostAllocateNothing)

@@ -190,6 +190,10 @@ TEST(FailedAllocation, ASceneWithoutMemoryRefusesAndIsAsItWas)
          [](MixedScene& m) {
              m.scene.set_mass(m.balls[5], 7, {1, 0, 0, 1, 0, 1});
          }},
+        {"change_body",
+         [](MixedScene& m) {
+             m.scene.change_body(m.balls[5], {BodyModel::planar, {1, 0, 0, 1, 0, 1}});
+         }},
         {"renumber_bodies", [](MixedScene& m) { m.scene.renumber_bodies(); }},
     };
     for (const auto& [name, call] : calls) {

@@ -356,6 +356,33 @@ TEST(Shapes, APlatformLiftsWhatLiesOnIt)
     EXPECT_NEAR(state.linear_velocity.z, 0.25, 1e-3);
 }
 
+/// A walker with a capsule stumbles: what was pushed in the plane falls, and lies on the floor on its capsule.
+TEST(Shapes, StayOnABodyThatGetsAnotherModel)
+{
+    Scene scene;
+    scene.add_half_space({.friction = 0.5F});
+    const Vec2<double> ends[] = {{1, -5}, {1, 5}};
+    scene.add_wall({.points = ends});
+    BodyDefinition walker{.model = BodyModel::planar, .position = {0, 0, 1}, .mass = 70};
+    walker.linear_velocity = {3, 0, 0};
+    const BodyId person = scene.add_body(walker);
+    scene.add_capsule(
+        {.body = person, .from = {0, -0.3F, 0}, .to = {0, 0.3F, 0}, .radius = 0.15F, .friction = 0.5F});
+    Solver solver({.gravity = {0, 0, -g}});
+    run(solver, scene, 60);
+    EXPECT_LE(scene.state(person).position.x, 0.851);
+    EXPECT_NEAR(scene.state(person).position.z, 1, 1e-12) << "a planar body does not fall";
+    scene.change_body(person, {BodyModel::rigid, {4, 0, 0, 1, 0, 4}});
+    run(solver, scene, 180);
+    EXPECT_NEAR(scene.state(person).position.z, 0.15, 2e-3);
+    EXPECT_EQ(scene.shape_contacts_of(person).size(), 4U) << "two with the floor, two with the wall";
+    BodyLoad load;
+    scene.read_loads({&person, 1}, {}, StridedSpan<BodyLoad>(&load, 1));
+    EXPECT_NEAR(load.net_force.z, 70 * g, 1);
+    EXPECT_THROW(scene.change_body(person, {BodyModel::particle, {}}), InvalidInput)
+        << "its capsule has ends";
+}
+
 TEST(Shapes, LeaveWithTheirBodies)
 {
     Scene scene;

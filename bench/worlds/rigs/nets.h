@@ -60,9 +60,9 @@ inline Rig make_chains(std::int64_t bodies, std::uint64_t)
     return rig;
 }
 
-/// Figures of eleven boxes that hang by the pelvis, each with its own spin; their hinges and swing-twists all have
-/// limits.
-inline Rig make_ragdolls(std::int64_t bodies, std::uint64_t seed)
+/// One figure of eleven boxes, y up, about the centre of its pelvis, which is the first; its hinges and swing-twists all
+/// have limits.
+inline Rig make_figure()
 {
     struct Part {
         Vec3<double> centre;
@@ -80,41 +80,52 @@ inline Rig make_ragdolls(std::int64_t bodies, std::uint64_t seed)
                                                  {{.1, -.32, 0}, 7, {.07F, .21F, .07F}},
                                                  {{-.1, -.75, 0}, 4, {.05F, .21F, .05F}},
                                                  {{.1, -.75, 0}, 4, {.05F, .21F, .05F}}}};
-    static const std::array<RigJoint, 11> joints{
-        {{.a = rig_world, .b = 0, .anchor = {0, .1, 0}},
-         {0, 1, {0, .12, 0}, RigTie::swing_twist, {0, 1, 0}, -.3F, .3F, .3F},
-         {1, 2, {0, .6, 0}, RigTie::swing_twist, {0, 1, 0}, -.5F, .5F, .4F},
-         {1, 3, {-.2, .5, 0}, RigTie::swing_twist, {-1, 0, 0}, -.5F, .5F, .8F},
-         {1, 4, {.2, .5, 0}, RigTie::swing_twist, {1, 0, 0}, -.5F, .5F, .8F},
-         {3, 5, {-.51, .5, 0}, RigTie::hinge, {0, 0, 1}, -.6F, .6F, 0},
-         {4, 6, {.51, .5, 0}, RigTie::hinge, {0, 0, 1}, -.6F, .6F, 0},
-         {0, 7, {-.1, -.1, 0}, RigTie::swing_twist, {0, -1, 0}, -.4F, .4F, .6F},
-         {0, 8, {.1, -.1, 0}, RigTie::swing_twist, {0, -1, 0}, -.4F, .4F, .6F},
-         {7, 9, {-.1, -.53, 0}, RigTie::hinge, {1, 0, 0}, -.6F, .6F, 0},
-         {8, 10, {.1, -.53, 0}, RigTie::hinge, {1, 0, 0}, -.6F, .6F, 0}}};
+    Rig rig;
+    for (const Part& part : parts) {
+        const Vec3<float>& h = part.half;
+        const float third = part.mass / 3;
+        rig.bodies.push_back({.position = part.centre,
+                              .mass = part.mass,
+                              .inertia = {third * (h.y * h.y + h.z * h.z), third * (h.x * h.x + h.z * h.z),
+                                          third * (h.x * h.x + h.y * h.y)},
+                              .half_extents = h});
+    }
+    rig.joints = {{0, 1, {0, .12, 0}, RigTie::swing_twist, {0, 1, 0}, -.3F, .3F, .3F},
+                  {1, 2, {0, .6, 0}, RigTie::swing_twist, {0, 1, 0}, -.5F, .5F, .4F},
+                  {1, 3, {-.2, .5, 0}, RigTie::swing_twist, {-1, 0, 0}, -.5F, .5F, .8F},
+                  {1, 4, {.2, .5, 0}, RigTie::swing_twist, {1, 0, 0}, -.5F, .5F, .8F},
+                  {3, 5, {-.51, .5, 0}, RigTie::hinge, {0, 0, 1}, -.6F, .6F, 0},
+                  {4, 6, {.51, .5, 0}, RigTie::hinge, {0, 0, 1}, -.6F, .6F, 0},
+                  {0, 7, {-.1, -.1, 0}, RigTie::swing_twist, {0, -1, 0}, -.4F, .4F, .6F},
+                  {0, 8, {.1, -.1, 0}, RigTie::swing_twist, {0, -1, 0}, -.4F, .4F, .6F},
+                  {7, 9, {-.1, -.53, 0}, RigTie::hinge, {1, 0, 0}, -.6F, .6F, 0},
+                  {8, 10, {.1, -.53, 0}, RigTie::hinge, {1, 0, 0}, -.6F, .6F, 0}};
+    return rig;
+}
+
+/// Figures that hang by the pelvis, each with its own spin.
+inline Rig make_ragdolls(std::int64_t bodies, std::uint64_t seed)
+{
+    const Rig one = make_figure();
+    const Vec3<double> hook{0, .1, 0};
     Random random(seed);
     Rig rig;
-    for (int figure = 0; figure < bodies / static_cast<int>(parts.size()); ++figure) {
+    for (int figure = 0; figure < bodies / static_cast<int>(one.bodies.size()); ++figure) {
         const Vec3<double> at{3.0 * (figure % 32), 0, 3.0 * (figure / 32)};
         Vec3<float> spin;
         spin.x = static_cast<float>(3 * random.symmetric());
         spin.y = static_cast<float>(3 * random.symmetric());
         spin.z = static_cast<float>(3 * random.symmetric());
         const int first = static_cast<int>(rig.bodies.size());
-        for (const Part& part : parts) {
-            const Vec3<float>& h = part.half;
-            const float third = part.mass / 3;
-            const Vec3<float> arm = convert<float>(part.centre - Vec3<double>{0, .1, 0});
-            rig.bodies.push_back(
-                {.position = at + part.centre,
-                 .mass = part.mass,
-                 .inertia = {third * (h.y * h.y + h.z * h.z), third * (h.x * h.x + h.z * h.z),
-                             third * (h.x * h.x + h.y * h.y)},
-                 .velocity = cross(spin, arm),
-                 .spin = spin});
+        for (RigBody part : one.bodies) {
+            part.velocity = cross(spin, convert<float>(part.position - hook));
+            part.spin = spin;
+            part.position = at + part.position;
+            rig.bodies.push_back(part);
         }
-        for (RigJoint joint : joints) {
-            if (joint.a != rig_world) joint.a += first;
+        rig.joints.push_back({.a = rig_world, .b = first, .anchor = at + hook});
+        for (RigJoint joint : one.joints) {
+            joint.a += first;
             joint.b += first;
             joint.anchor = at + joint.anchor;
             rig.joints.push_back(joint);

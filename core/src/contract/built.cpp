@@ -53,21 +53,21 @@ void check_joint_is_built(int type)
     check(type, JointTypes{});
 }
 
-void check_model_is_built(BodyModel model)
+void check_model_is_built(const char* field, BodyModel model)
 {
 #ifdef MOTLEY_WITHOUT_PARTICLE
     if (model == BodyModel::particle)
-        refuse("BodyDefinition.model", "particle", "one that is built, MOTLEY_MODELS: " MOTLEY_BUILT_MODELS);
+        refuse(field, "particle", "one that is built, MOTLEY_MODELS: " MOTLEY_BUILT_MODELS);
 #endif
 #ifdef MOTLEY_WITHOUT_PLANAR
     if (model == BodyModel::planar)
-        refuse("BodyDefinition.model", "planar", "one that is built, MOTLEY_MODELS: " MOTLEY_BUILT_MODELS);
+        refuse(field, "planar", "one that is built, MOTLEY_MODELS: " MOTLEY_BUILT_MODELS);
 #endif
 #ifdef MOTLEY_WITHOUT_RIGID
     if (model == BodyModel::rigid)
-        refuse("BodyDefinition.model", "rigid", "one that is built, MOTLEY_MODELS: " MOTLEY_BUILT_MODELS);
+        refuse(field, "rigid", "one that is built, MOTLEY_MODELS: " MOTLEY_BUILT_MODELS);
 #endif
-    static_cast<void>(model);
+    static_cast<void>(field), static_cast<void>(model);
 }
 
 }  // namespace motley

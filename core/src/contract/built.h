@@ -8,7 +8,7 @@ namespace motley {
 
 /// Refuses a type of joint, by its number in JointTypes, that is not built.
 void check_joint_is_built(int type);
-/// Refuses a model of dynamic bodies that is not built.
-void check_model_is_built(BodyModel model);
+/// Refuses a model of dynamic bodies that is not built; `field` is where the host named it.
+void check_model_is_built(const char* field, BodyModel model);
 
 }  // namespace motley

@@ -10,7 +10,6 @@
 namespace motley {
 namespace {
 
-constexpr float largest_speed = 1e9F;
 constexpr double largest_position = 1e12;
 
 void check_moment(const char* who, const char* field, float moment)
@@ -115,15 +114,23 @@ void check_mass(const char* who, BodyModel model, float mass, const Sym3<float>&
 {
     if (!(mass >= lightest_body && mass <= heaviest_body))
         refuse(std::string(who) + ".mass", mass, "1e-10 to 1e10 (kg)");
+    check_inertia_of(who, model, inertia);
+}
+
+void check_inertia_of(const char* who, BodyModel model, const Sym3<float>& inertia)
+{
     if (model == BodyModel::planar) check_moment(who, ".inertia.zz", inertia.zz);
     if (model == BodyModel::rigid) check_inertia(who, inertia);
 }
 
+void check_model(const char* field, BodyModel model)
+{
+    if (model > BodyModel::rigid) refuse(field, static_cast<double>(model), "particle, planar or rigid");
+}
+
 void check_definition(const BodyDefinition& d)
 {
-    if (d.model > BodyModel::rigid) {
-        refuse("BodyDefinition.model", static_cast<double>(d.model), "particle, planar or rigid");
-    }
+    check_model("BodyDefinition.model", d.model);
     if (d.motion > BodyMotion::static_body) {
         refuse("BodyDefinition.motion", static_cast<double>(d.motion),
                "dynamic_body, kinematic_body or static_body");
@@ -139,7 +146,7 @@ void check_definition(const BodyDefinition& d)
     }
     check_velocity_of(d.model, d.motion, &d.linear_velocity, &d.angular_velocity);
     if (fixed) return;
-    check_model_is_built(d.model);
+    check_model_is_built("BodyDefinition.model", d.model);
     check_mass("BodyDefinition", d.model, d.mass, d.inertia);
 }
 

@@ -10,6 +10,9 @@ namespace motley {
 inline constexpr float lightest_body = 1e-10F, heaviest_body = 1e10F;
 inline constexpr float least_moment = 1e-20F, most_moment = 1e20F;
 
+/// The largest component of a velocity that a host may give, m/s and rad/s.
+inline constexpr float largest_speed = 1e9F;
+
 bool is_finite(const Vec3<float>& v);
 /// Refuses a value outside [low, high] or not finite.
 void check(const char* field, double value, double low, double high, const char* expected);
@@ -24,9 +27,13 @@ void check_velocity_of(BodyModel model, BodyMotion motion, const Vec3<float>* li
                        const Vec3<float>* angular);
 /// For a rigid body: must be positive definite, with moments that obey the triangle inequality.
 void check_inertia(const char* who, const Sym3<float>& inertia);
+/// Of `who`.inertia what the model has.
+void check_inertia_of(const char* who, BodyModel model, const Sym3<float>& inertia);
 /// `who`.mass, and of `who`.inertia what the model has.
 void check_mass(const char* who, BodyModel model, float mass, const Sym3<float>& inertia);
 void check_definition(const BodyDefinition& definition);
+/// Refuses a number that names no model.
+void check_model(const char* field, BodyModel model);
 void check_disc(const DiscDefinition& disc);
 /// One piece of a wall, `name` being that of its first point.
 void check_segment(const char* name, const Vec2<double>& from, const Vec2<double>& to);

@@ -1,6 +1,9 @@
-// What a host keeps and changes of the bodies themselves: their list, its own number of each, their masses.
+// What a host keeps and changes of the bodies themselves: their list, its own number of each, their masses and models.
 #include "scene/scene_core.h"
 
+#include <string>
+
+#include "contract/built.h"
 #include "motley/core/invalid_input.h"
 #include "scene/body_checks.h"
 #include "stores/joint_store.h"
@@ -41,6 +44,44 @@ void Scene::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
     // Contacts of discs keep their effective mass from search to search.
     if (core_->has_disc(body)) core_->discs.is_stale = true;
     // Which joints are solved at once depends on the ratio of the masses that they connect.
+    if (core_->bodies.first_ends[body.slot] != 0) core_->joints->version.reset();
+}
+
+void SceneCore::check_change(BodyId body, const BodyChange& change) const
+{
+    require_alive(body, "change_body.body");
+    if (bodies.motion(body) != BodyMotion::dynamic_body)
+        refuse("change_body.body", "a static or kinematic body", "a dynamic body");
+    if (bodies.contained[body.slot] != 0)
+        refuse("change_body.body", "a contained body", "one that moves: revive() comes first");
+    check_model("BodyChange.model", change.model);
+    check_model_is_built("BodyChange.model", change.model);
+    if (has_disc(body) && change.model != BodyModel::planar)
+        refuse("BodyChange.model", change.model == BodyModel::rigid ? "rigid" : "particle",
+               "planar for a body with a disc: clear_disc() comes first");
+    check_inertia_of("BodyChange", change.model, change.inertia);
+    check_joints_after(body, change.model);
+    for (const Capsule& capsule : shapes.capsules) {
+        if (capsule.body == body) check_capsule_on(change.model, capsule.from, capsule.to);
+    }
+    const Vec3<double> turns = bodies.angular_velocity_after(body, change);
+    for (const double component : {turns.x, turns.y, turns.z})
+        check("BodyChange.inertia's angular velocity, which keeps the angular momentum,", component,
+              -largest_speed, largest_speed, "-1e9 to 1e9 (rad/s)");
+}
+
+void Scene::change_body(BodyId body, const BodyChange& change)
+{
+    core_->check_change(body, change);
+    core_->bodies.make_room_to_change(body, change.model);
+    const BodyRow from = core_->bodies.row_of(body);
+    core_->bodies.change(body, change);
+    // As of a removed body: contacts of discs in blocks must not be taken for those of the next body in the row.
+    if (from.kind() == BodyKind::planar && change.model != BodyModel::planar)
+        core_->discs.forget_removed_row(from.row());
+    if (core_->has_disc(body)) core_->discs.is_stale = true;  // as in set_mass
+    core_->shapes.version.reset();  // what is met as seen from above may be met in space now
+    // Blocks of joints refer to rows and are for pairs of kinds.
     if (core_->bodies.first_ends[body.slot] != 0) core_->joints->version.reset();
 }
 

@@ -63,6 +63,10 @@ struct SceneCore {
     void require_alive(ConstraintId joint, const char* what) const;
     [[noreturn]] static void refuse_dead(BodyId body, const char* what);
     JointBodies check_joint_bodies(int type, BodyId a, BodyId b) const;
+    /// Refuses what Scene::change_body refuses.
+    void check_change(BodyId body, const BodyChange& change) const;
+    /// Refuses a model of a body under which one of its joints would be refused, and names the joint.
+    void check_joints_after(BodyId body, BodyModel model) const;
     static void check_break_limit(const BreakLimit& limit);
     static void check_wish(const char* field, int at_least);
     void check_island_wish(const IslandIterations& asked) const;
@@ -87,6 +91,8 @@ struct SceneCore {
     /// Refuses what Scene::add_capsule and Scene::add_half_space refuse.
     void check_capsule(const CapsuleDefinition& capsule) const;
     void check_half_space(const HalfSpaceDefinition& half_space) const;
+    /// Refuses ends of a capsule that a dynamic body of such a model cannot have.
+    static void check_capsule_on(BodyModel model, const Vec3<float>& from, const Vec3<float>& to);
     /// Makes room, so that putting so many shapes cannot fail. Refuses more than keys of contacts can name.
     void make_room_for_shapes(std::size_t capsules, std::size_t half_spaces);
     /// Adds a capsule that is checked, and for which there is room.

@@ -32,6 +32,25 @@ JointBodies SceneCore::check_joint_bodies(int type, BodyId a, BodyId b) const
     return {bodies.model(a), bodies.model(b), fixed_a, fixed_b};
 }
 
+void SceneCore::check_joints_after(BodyId body, BodyModel model) const
+{
+    joints->for_each_on(bodies.first_ends[body.slot], [&](const JointStores::Slot& joint) {
+        joints->for_each([&](const auto& store, int type) {
+            if (type != joint.type) return;
+            using Type = typename std::remove_cvref_t<decltype(store)>::Type;
+            const auto& definition = store.definitions[joint.index];
+            JointBodies after = check_joint_bodies(type, definition.body_a, definition.body_b);
+            (definition.body_a == body ? after.model_a : after.model_b) = model;
+            try {
+                Type::validate(definition, after);
+            } catch (const InvalidInput& refusal) {
+                throw InvalidInput("change_body.body has a joint, slot " +
+                                   std::to_string(store.slots[joint.index]) + ": " + refusal.what());
+            }
+        });
+    });
+}
+
 ConstraintId SceneCore::take_joint_slot(int type, std::size_t index)
 {
     std::uint32_t slot;

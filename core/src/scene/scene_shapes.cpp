@@ -34,10 +34,15 @@ void SceneCore::check_capsule(const CapsuleDefinition& capsule) const
     // Bodies that cannot be pushed have orientations, whatever their model.
     const BodyModel model =
         bodies.motion(body) == BodyMotion::dynamic_body ? bodies.model(body) : BodyModel::rigid;
-    check_end("CapsuleDefinition.from", capsule.from, model);
-    check_end("CapsuleDefinition.to", capsule.to, model);
+    check_capsule_on(model, capsule.from, capsule.to);
     check("CapsuleDefinition.radius", capsule.radius, 1e-6, 1e6, "1e-6 to 1e6 (m)");
     check_surface("CapsuleDefinition", capsule.friction, capsule.restitution);
+}
+
+void SceneCore::check_capsule_on(BodyModel model, const Vec3<float>& from, const Vec3<float>& to)
+{
+    check_end("CapsuleDefinition.from", from, model);
+    check_end("CapsuleDefinition.to", to, model);
 }
 
 void SceneCore::check_half_space(const HalfSpaceDefinition& half_space) const

@@ -69,24 +69,8 @@ void BodyStore::make_room(std::span<const BodyDefinition> definitions)
 {
     std::array<std::size_t, body_kind_count> wanted{};
     for (const BodyDefinition& d : definitions) ++wanted[static_cast<std::size_t>(kind_of(d))];
-    for (int k = 0; k < body_kind_count; ++k) {
-        const auto kind = static_cast<BodyKind>(k);
-        BodyRows& r = rows(kind);
-        const std::size_t more = more_than(wanted[static_cast<std::size_t>(k)], r.free_rows);
-        if (more == 0) continue;
-        for (AlignedVector<float>* values : {&r.velocity, &r.delta, &r.unpushed, &r.acceleration})
-            make_room_for(*values, more * 4 * static_cast<std::size_t>(quads_of(kind)));
-        make_room_for(r.pose, more);
-        make_room_for(r.slot, more);
-        if (quads_of(kind) == 2) {
-            make_room_for(r.orientation, more);
-            make_room_for(r.world_inverse_inertia, 8 * more);
-        }
-        if (kind != BodyKind::rigid) continue;
-        make_room_for(r.start_inverse_inertia, 8 * more);
-        make_room_for(r.inertia, more);
-        make_room_for(r.inverse_inertia, more);
-    }
+    for (std::size_t kind = 0; kind < body_kind_count; ++kind)
+        make_room_in_rows(static_cast<BodyKind>(kind), wanted[kind]);
     const std::size_t more = more_than(definitions.size(), free_slots_);
     if (more == 0) return;
     make_room_for(slots_, more);
@@ -97,6 +81,25 @@ void BodyStore::make_room(std::span<const BodyDefinition> definitions)
     make_room_for(contained, more);
     make_room_for(inverse_masses, more);
     make_room_for(inverse_inertias, more);
+}
+
+void BodyStore::make_room_in_rows(BodyKind kind, std::size_t wanted)
+{
+    BodyRows& r = rows(kind);
+    const std::size_t more = more_than(wanted, r.free_rows);
+    if (more == 0) return;
+    for (AlignedVector<float>* values : {&r.velocity, &r.delta, &r.unpushed, &r.acceleration})
+        make_room_for(*values, more * 4 * static_cast<std::size_t>(quads_of(kind)));
+    make_room_for(r.pose, more);
+    make_room_for(r.slot, more);
+    if (quads_of(kind) == 2) {
+        make_room_for(r.orientation, more);
+        make_room_for(r.world_inverse_inertia, 8 * more);
+    }
+    if (kind != BodyKind::rigid) return;
+    make_room_for(r.start_inverse_inertia, 8 * more);
+    make_room_for(r.inertia, more);
+    make_room_for(r.inverse_inertia, more);
 }
 
 void BodyStore::make_room_to_remove(std::span<const BodyId> bodies)
@@ -167,43 +170,61 @@ BodyId BodyStore::add(const BodyDefinition& d)
         contained[slot] = 0;
     }
 
+    inverse_masses[slot] = dynamic ? 1 / d.mass : 0.0F;
+    Content content;
+    content.pose = {convert<PoseReal>(d.position), static_cast<PoseReal>(d.yaw)};
+    if (quads_of(kind) == 2) {  // only then is it checked
+        const Quat<double>& q = d.orientation;
+        const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+        content.orientation =
+            convert<PoseReal>(Quat<double>{q.x / length, q.y / length, q.z / length, q.w / length});
+    }
+    content.linear = d.linear_velocity;
+    content.angular = d.angular_velocity;
+    write(slot, slots_[slot].row, content, d.inertia);
+    return {slot, slots_[slot].generation};
+}
+
+void BodyStore::write(std::uint32_t slot, BodyRow where, const Content& content, const Sym3<float>& inertia)
+{
+    const BodyKind kind = where.kind();
+    const std::uint32_t row = where.row();
     BodyRows& r = rows(kind);
+    slots_[slot].row = where;
     r.slot[row] = slot;
-    r.pose[row] = {convert<PoseReal>(d.position), static_cast<PoseReal>(d.yaw)};
-    const float inverse_mass = dynamic ? 1 / d.mass : 0.0F;
-    inverse_masses[slot] = inverse_mass;
-    inverse_inertias[slot] = kind == BodyKind::planar ? 1 / d.inertia.zz : 0.0F;
-    const Vec3<float>& v = d.linear_velocity;
-    const Vec3<float>& w = d.angular_velocity;
+    r.pose[row] = content.pose;
+    const float inverse_mass = inverse_masses[slot];
+    inverse_inertias[slot] = kind == BodyKind::planar ? 1 / inertia.zz : 0.0F;
+    const auto& [x, y, z] = content.linear;
+    const Vec3<float>& w = content.angular;
+    const Vec3<float>& a = content.acceleration;
+    const Vec3<float>& torque = content.torque;
     const std::size_t quad = static_cast<std::size_t>(quads_of(kind)) * row;
-    set_quad(r.acceleration, quad, 0, 0, 0, 0);
     switch (kind) {
         case BodyKind::particle:
-            set_quad(r.velocity, quad, v.x, v.y, v.z, inverse_mass);
+            set_quad(r.velocity, quad, x, y, z, inverse_mass);
             set_quad(r.delta, quad, 0, 0, 0, 0);
+            set_quad(r.acceleration, quad, a.x, a.y, a.z, 0);
             break;
         case BodyKind::planar:
-            set_quad(r.velocity, quad, v.x, v.y, w.z, inverse_mass);
+            set_quad(r.velocity, quad, x, y, w.z, inverse_mass);
             set_quad(r.delta, quad, 0, 0, 0, inverse_inertias[slot]);
+            set_quad(r.acceleration, quad, a.x, a.y, inverse_inertias[slot] * torque.z, 0);
             break;
         case BodyKind::rigid:
-        case BodyKind::fixed: {
-            set_quad(r.velocity, quad, v.x, v.y, v.z, inverse_mass);
+        case BodyKind::fixed:
+            set_quad(r.velocity, quad, x, y, z, inverse_mass);
             set_quad(r.velocity, quad + 1, w.x, w.y, w.z, 0);
-            set_quad(r.acceleration, quad + 1, 0, 0, 0, 0);
-            const Quat<double>& q = d.orientation;
-            const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-            r.orientation[row] =
-                convert<PoseReal>(Quat<double>{q.x / length, q.y / length, q.z / length, q.w / length});
+            set_quad(r.acceleration, quad, a.x, a.y, a.z, 0);
+            set_quad(r.acceleration, quad + 1, torque.x, torque.y, torque.z, 0);
+            r.orientation[row] = content.orientation;
             if (kind == BodyKind::rigid) {
-                r.inertia[row] = d.inertia;
-                r.inverse_inertia[row] = inverse_of(d.inertia);
+                r.inertia[row] = inertia;
+                r.inverse_inertia[row] = inverse_of(inertia);
                 refresh_world_inertia(row);
             }
             break;
-        }
     }
-    return {slot, slots_[slot].generation};
 }
 
 void BodyStore::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
@@ -236,7 +257,16 @@ void BodyStore::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
 
 void BodyStore::remove(BodyId body)
 {
-    const BodyRow where = row_of(body);
+    free_row(row_of(body));
+    if (contained[body.slot] != 0) --contained_count;
+    contained[body.slot] = 0;
+    live_[body.slot] = 0;
+    if (++slots_[body.slot].generation == 0) slots_[body.slot].generation = 1;  // zero is the null handle's
+    free_slots_.push_back(body.slot);
+}
+
+void BodyStore::free_row(BodyRow where)
+{
     BodyRows& r = rows(where.kind());
     const std::size_t quads = static_cast<std::size_t>(quads_of(where.kind()));
     // A free row must not move: no mass, no speed, no force, no displacement.
@@ -249,13 +279,8 @@ void BodyStore::remove(BodyId body)
             set_quad(r.start_inverse_inertia, q, 0, 0, 0, 0);
         }
     }
-    if (contained[body.slot] != 0) --contained_count;
-    contained[body.slot] = 0;
     r.slot[where.row()] = 0;
     r.free_rows.push_back(where.row());
-    live_[body.slot] = 0;
-    if (++slots_[body.slot].generation == 0) slots_[body.slot].generation = 1;  // zero is the null handle's
-    free_slots_.push_back(body.slot);
 }
 
 void BodyStore::refresh_world_inertia(std::uint32_t row)

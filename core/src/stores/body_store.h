@@ -89,6 +89,12 @@ class BodyStore {
     /// Changes the mass, kg, and the inertia, kg m2, of a dynamic body; both are checked. Its velocity stays, and so
     /// does the force on it, to rounding.
     void set_mass(BodyId body, float mass, const Sym3<float>& inertia);
+    /// Reserves room so that change() of this body to this model cannot fail.
+    void make_room_to_change(BodyId body, BodyModel model);
+    /// The angular velocity, rad/s, that keeps the angular momentum of a dynamic body through a change.
+    [[nodiscard]] Vec3<double> angular_velocity_after(BodyId body, const BodyChange& change) const;
+    /// Does what Scene::change_body says of a dynamic body that moves. The change is checked.
+    void change(BodyId body, const BodyChange& change);
     /// Gives every body a new row, in the order of a space-filling curve, and closes the gaps of free rows.
     void renumber();
     /// Moves the planar body in row i to row new_rows[i], and calls swap(i, j) for what else is kept by row whenever two
@@ -162,7 +168,22 @@ class BodyStore {
     AlignedVector<BodyMotion> motions_;
     std::vector<std::uint32_t> free_slots_;
 
+    /// Reserves room for so many more bodies of a kind, so that take_row() cannot fail.
+    void make_room_in_rows(BodyKind kind, std::size_t more);
     std::uint32_t take_row(BodyKind kind);
+    /// Frees a row, and stops it: nothing may move it.
+    void free_row(BodyRow where);
+    /// A body as a row has it, whatever its kind. Numbers that a kind lacks are zero.
+    struct Content {
+        BodyPose pose;
+        Quat<PoseReal> orientation{0, 0, 0, 1};  ///< rigid and fixed
+        Vec3<float> linear, angular;             ///< velocity, m/s and rad/s
+        Vec3<float> acceleration;                ///< by the force, m/s2
+        Vec3<float> torque;                      ///< N m
+    };
+    [[nodiscard]] Content read(BodyRow where) const;
+    /// Gives a slot a row with this content and, if it is planar or rigid, this inertia.
+    void write(std::uint32_t slot, BodyRow where, const Content& content, const Sym3<float>& inertia);
     void swap_planar(std::uint32_t i, std::uint32_t j);
     /// Enters the rows of a kind into the table of slots.
     void enter_rows(BodyKind kind);

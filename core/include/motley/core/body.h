@@ -40,6 +40,14 @@ struct BodyDefinition {
     Sym3<float> inertia{1, 0, 0, 1, 0, 1};
 };
 
+/// What a body becomes: see Scene::change_body().
+struct BodyChange {
+    BodyModel model = BodyModel::rigid;
+    /// About the centre of mass in the body frame, kg m2, of which the new model reads what BodyDefinition::inertia
+    /// says, in the same ranges.
+    Sym3<float> inertia{1, 0, 0, 1, 0, 1};
+};
+
 /// The state of one body as the host reads it, in the world frame.
 struct BodyState {
     Vec3<double> position{};               ///< centre of mass, m

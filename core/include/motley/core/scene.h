@@ -83,6 +83,29 @@ class Scene {
     /// contained body takes it when it is revived. Refuses what add_body refuses, and static and kinematic bodies.
     /// Where the body has joints, the next step lays out all joints anew.
     void set_mass(BodyId body, float mass, const Sym3<float>& inertia);
+    /// Gives a dynamic body another model in place: who is near, far or has fallen is modelled by what the scene requires
+    /// of them. The handle stays, and with it user data, joints, break limits, island iterations, and what contacts of
+    /// the host's list are found again by.
+    ///
+    /// Kept: the mass, position and linear velocity, bit for bit; the angular momentum and the torque, to the rounding of
+    /// floats (for a model with another inertia the angular velocity changes); the force. Joints and contacts keep the
+    /// impulses from which the next step starts.
+    /// Kept only as far as the new model has it: a planar body has no velocity, force and momentum along z, and no
+    /// angular momentum and torque about x and y; it keeps its z. A particle has no rotation and no torque. What is
+    /// given up does not come back.
+    /// A planar body that becomes rigid is turned by its yaw about z. A rigid one that becomes planar gives up its tilt,
+    /// by the least rotation that makes it upright, and gets as its yaw the turn about z that is left, in the turn that
+    /// is nearest to the yaw that it had last; upside down it gets that yaw itself. A particle remembers its yaw.
+    /// The model that a body has already may be given: then only its inertia and its angular velocity change, and a disc
+    /// stays.
+    ///
+    /// Refuses static, kinematic and contained bodies; a body with a disc that leaves the planar model, which wants
+    /// clear_disc() first; inertias out of their ranges, and so small ones that the angular velocity would exceed 1e9
+    /// rad/s; and a model that a joint or a capsule on the body cannot have, such as a particle under an anchor off its
+    /// centre. A contact of the host's list may be refused by the next step: between planar bodies its normal has z = 0.
+    /// Takes a time in proportion to the joints on the body and, in a scene with capsules, to their number; where there
+    /// are joints on it, the next step lays out all joints anew.
+    void change_body(BodyId body, const BodyChange& change);
     /// A number of the host's own for a body: an index, or a pointer. 0 at birth; kept in copies and files of the
     /// scene. No step reads it. The first call for a scene allocates eight bytes a body.
     void set_user_data(BodyId body, std::uint64_t value);

@@ -1,0 +1,237 @@
+// See fallen.h.
+#include "worlds/fallen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engines/engine.h"
+#include "worlds/rigs/nets.h"
+
+namespace motley::bench {
+namespace {
+
+constexpr float floor_friction = 0.6F, people_friction = 0.3F;
+constexpr double margin = 0.1;  ///< m: gaps up to this become contacts
+
+/// Turns y up, as rigs have it, to z up.
+template <class Real>
+Vec3<Real> z_up(const Vec3<Real>& v)
+{
+    return {v.x, -v.z, v.y};
+}
+Rig z_up(Rig rig)
+{
+    const auto sizes = [](const Vec3<float>& v) { return Vec3<float>{v.x, v.z, v.y}; };
+    for (RigBody& body : rig.bodies) {
+        body.position = z_up(body.position);
+        body.inertia = sizes(body.inertia);
+        body.half_extents = sizes(body.half_extents);
+    }
+    for (RigJoint& joint : rig.joints) {
+        joint.anchor = z_up(joint.anchor);
+        joint.axis = z_up(joint.axis);
+    }
+    return rig;
+}
+
+Sym3<float> tensor_of(const RigBody& body)
+{
+    return {body.inertia.x, 0, 0, body.inertia.y, 0, body.inertia.z};
+}
+
+/// What a body of this mass adds to the momenta about a centre of mass that is at rest at the origin.
+Momenta momenta_of(const BodyState& state, const RigBody& part)
+{
+    const Vec3<double> w = rotate(conjugate(state.orientation), convert<double>(state.angular_velocity));
+    const Vec3<double> own =
+        rotate(state.orientation, Vec3<double>{static_cast<double>(part.inertia.x) * w.x,
+                                               static_cast<double>(part.inertia.y) * w.y,
+                                               static_cast<double>(part.inertia.z) * w.z});
+    const Vec3<double> linear = static_cast<double>(part.mass) * convert<double>(state.linear_velocity);
+    return {linear, own + cross(state.position, linear)};
+}
+
+/// Where the centre of mass of the fallen is, m.
+Vec3<double> centre_of(const Scene& scene, const Fallen& fallen)
+{
+    Vec3<double> sum{};
+    double masses = 0;
+    for (std::size_t i = 0; i < fallen.bodies.size(); ++i) {
+        const auto mass = static_cast<double>(fallen.shape->rig.bodies[i].mass);
+        sum = sum + mass * scene.state(fallen.bodies[i]).position;
+        masses += mass;
+    }
+    return 1 / masses * sum;
+}
+
+Contact contact_at(BodyId a, BodyId b, std::uint64_t key, float friction)
+{
+    Contact contact;
+    contact.body_a = a;
+    contact.body_b = b;
+    contact.key = key;
+    contact.friction = friction;
+    return contact;
+}
+
+}  // namespace
+
+FallenShape::FallenShape(Rig parts, float wanted_mass) : rig(std::move(parts)), mass(wanted_mass)
+{
+    float sum = 0;
+    for (const RigBody& body : rig.bodies) sum += body.mass;
+    for (RigBody& body : rig.bodies) {
+        const float scale = wanted_mass / sum;
+        body.mass *= scale;
+        body.inertia = scale * body.inertia;
+        centre = centre + static_cast<double>(body.mass / wanted_mass) * body.position;
+    }
+    for (const RigBody& body : rig.bodies) {
+        const Vec3<float> r = convert<float>(body.position - centre);
+        const float m = body.mass;
+        inertia = inertia + tensor_of(body) +
+                  Sym3<float>{m * (r.y * r.y + r.z * r.z), -m * r.x * r.y, -m * r.x * r.z,
+                              m * (r.x * r.x + r.z * r.z), -m * r.y * r.z, m * (r.x * r.x + r.y * r.y)};
+    }
+}
+
+FallenShape FallenShape::figure(float mass)
+{
+    return FallenShape(z_up(make_figure()), mass);
+}
+
+FallenShape FallenShape::single(float mass)
+{
+    const Vec3<float> half{0.2F, 0.12F, 0.85F};
+    const float third = mass / 3;
+    Rig rig;
+    rig.bodies.push_back(
+        {.mass = mass,
+         .inertia = {third * (half.y * half.y + half.z * half.z), third * (half.x * half.x + half.z * half.z),
+                     third * (half.x * half.x + half.y * half.y)},
+         .half_extents = half});
+    return FallenShape(std::move(rig), mass);
+}
+
+Momenta momenta_of(const Scene& scene, BodyId body, const Standing& person)
+{
+    const BodyState state = scene.state(body);
+    return {static_cast<double>(person.mass) * convert<double>(state.linear_velocity),
+            {0, 0, static_cast<double>(person.moment() * state.angular_velocity.z)}};
+}
+
+Momenta momenta_of(const Scene& scene, const Fallen& fallen)
+{
+    const Vec3<double> centre = centre_of(scene, fallen);
+    Momenta all;
+    for (std::size_t i = 0; i < fallen.bodies.size(); ++i) {
+        BodyState state = scene.state(fallen.bodies[i]);
+        state.position = state.position - centre;
+        const Momenta part = momenta_of(state, fallen.shape->rig.bodies[i]);
+        all = {all.linear + part.linear, all.angular + part.angular};
+    }
+    return all;
+}
+
+Fallen fall(Scene& scene, BodyId body, const FallenShape& shape, std::uint32_t number)
+{
+    // With the inertia of the whole the body turns as all of it will; its own mass then keeps that velocity.
+    scene.change_body(body, {BodyModel::rigid, shape.inertia});
+    const RigBody& first = shape.rig.bodies.front();
+    scene.set_mass(body, first.mass, tensor_of(first));
+    const BodyState state = scene.state(body);
+    Fallen fallen{&shape, {body}, number};
+    for (std::size_t i = 1; i < shape.rig.bodies.size(); ++i) {
+        const RigBody& part = shape.rig.bodies[i];
+        const Vec3<double> arm = rotate(state.orientation, part.position);
+        fallen.bodies.push_back(scene.add_body(
+            {.position = state.position + arm,
+             .orientation = state.orientation,
+             .linear_velocity = state.linear_velocity + cross(state.angular_velocity, convert<float>(arm)),
+             .angular_velocity = state.angular_velocity,
+             .mass = part.mass,
+             .inertia = tensor_of(part)}));
+    }
+    tie_rig(scene, shape.rig, fallen.bodies);
+    return fallen;
+}
+
+void tip_over(Scene& scene, const Fallen& fallen, float rate)
+{
+    const Vec3<double> first = scene.state(fallen.bodies.front()).position, foot{first.x, first.y, 0};
+    const Vec3<float> tip{0, rate, 0};
+    for (const BodyId body : fallen.bodies) {
+        const BodyState state = scene.state(body);
+        scene.set_velocity(body, state.linear_velocity + cross(tip, convert<float>(state.position - foot)),
+                           state.angular_velocity + tip);
+    }
+}
+
+void rise(Scene& scene, const Fallen& fallen, const Standing& person, double height)
+{
+    const Momenta momenta = momenta_of(scene, fallen);
+    const Vec3<double> centre = centre_of(scene, fallen);
+    const BodyId body = fallen.bodies.front();
+    scene.remove_bodies(std::span(fallen.bodies).subspan(1));
+    // A ball with the moment of the disc takes the momenta of all.
+    const float moment = person.moment();
+    scene.set_mass(body, person.mass, {moment, 0, 0, moment, 0, moment});
+    scene.set_velocity(body, convert<float>(1 / static_cast<double>(person.mass) * momenta.linear),
+                       convert<float>(1 / static_cast<double>(moment) * momenta.angular));
+    scene.change_body(body, {BodyModel::planar, {0, 0, 0, 0, 0, moment}});
+    scene.set_pose(body, {centre.x, centre.y, height}, {0, 0, 0, 1}, scene.state(body).yaw);
+}
+
+void add_floor_contacts(const Scene& scene, const Fallen& fallen, std::vector<Contact>& list)
+{
+    for (std::size_t i = 0; i < fallen.bodies.size(); ++i) {
+        const Vec3<float>& half = fallen.shape->rig.bodies[i].half_extents;
+        // The box as a capsule along its longest side.
+        const float longest = std::max({half.x, half.y, half.z});
+        const float radius = (half.x + half.y + half.z - longest) / 2;
+        const float reach = std::max(0.0F, longest - radius);
+        const Vec3<double> along = half.x == longest   ? Vec3<double>{reach, 0, 0}
+                                   : half.y == longest ? Vec3<double>{0, reach, 0}
+                                                       : Vec3<double>{0, 0, reach};
+        const BodyState state = scene.state(fallen.bodies[i]);
+        for (const double end : {-1.0, 1.0}) {
+            const Vec3<double> arm = rotate(state.orientation, end * along);
+            const double gap = state.position.z + arm.z - static_cast<double>(radius);
+            if (gap > margin) continue;
+            const std::uint64_t key = std::uint64_t{fallen.number} << 32 | (2 * i + (end > 0 ? 1 : 0));
+            Contact contact = contact_at(scene.ground(), fallen.bodies[i], key, floor_friction);
+            contact.normal = {0, 0, 1};
+            contact.separation = static_cast<float>(gap);
+            contact.arm_b = convert<float>(arm - Vec3<double>{0, 0, static_cast<double>(radius) + gap});
+            contact.arm_a = convert<float>(state.position) + contact.arm_b;
+            list.push_back(contact);
+        }
+    }
+}
+
+void add_contacts_with(const Scene& scene, const Fallen& fallen, BodyId standing, const Standing& person,
+                       std::uint32_t number, std::vector<Contact>& list)
+{
+    constexpr std::uint64_t of_people = std::uint64_t{1} << 63;
+    const Vec3<double> at = scene.state(standing).position;
+    for (std::size_t i = 0; i < fallen.bodies.size(); ++i) {
+        const Vec3<float>& half = fallen.shape->rig.bodies[i].half_extents;
+        const float radius = (half.x + half.y + half.z) / 3;
+        const Vec3<double> centre = scene.state(fallen.bodies[i]).position;
+        const double x = centre.x - at.x, y = centre.y - at.y, distance = std::hypot(x, y);
+        const double gap = distance - static_cast<double>(person.radius + radius);
+        if (gap > margin || distance < 1e-6) continue;
+        Contact contact = contact_at(
+            standing, fallen.bodies[i],
+            of_people | std::uint64_t{fallen.number} << 32 | std::uint64_t{number} << 8 | i, people_friction);
+        contact.normal = {static_cast<float>(x / distance), static_cast<float>(y / distance), 0};
+        contact.separation = static_cast<float>(gap);
+        contact.arm_b = -radius * contact.normal;
+        contact.arm_a = (static_cast<float>(distance) - radius) * contact.normal +
+                        Vec3<float>{0, 0, static_cast<float>(centre.z - at.z)};
+        list.push_back(contact);
+    }
+}
+
+}  // namespace motley::bench
