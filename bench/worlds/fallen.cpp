@@ -11,8 +11,7 @@
 namespace motley::bench {
 namespace {
 
-constexpr float floor_friction = 0.6F, people_friction = 0.3F;
-constexpr double margin = 0.1;  ///< m: gaps up to this become contacts
+constexpr float friction = 0.6F;
 
 /// Turns y up, as rigs have it, to z up.
 template <class Real>
@@ -65,14 +64,17 @@ Vec3<double> centre_of(const Scene& scene, const Fallen& fallen)
     return 1 / masses * sum;
 }
 
-Contact contact_at(BodyId a, BodyId b, std::uint64_t key, float friction)
+/// The box as a capsule along its longest side.
+CapsuleDefinition capsule_of(const RigBody& box, BodyId body, std::uint32_t group)
 {
-    Contact contact;
-    contact.body_a = a;
-    contact.body_b = b;
-    contact.key = key;
-    contact.friction = friction;
-    return contact;
+    const Vec3<float>& half = box.half_extents;
+    const float longest = std::max({half.x, half.y, half.z});
+    const float radius = (half.x + half.y + half.z - longest) / 2;
+    const float reach = std::max(0.0F, longest - radius);
+    const Vec3<float> end = half.x == longest   ? Vec3<float>{reach, 0, 0}
+                            : half.y == longest ? Vec3<float>{0, reach, 0}
+                                                : Vec3<float>{0, 0, reach};
+    return {.body = body, .from = -end, .to = end, .radius = radius, .friction = friction, .group = group};
 }
 
 }  // namespace
@@ -141,7 +143,7 @@ Fallen fall(Scene& scene, BodyId body, const FallenShape& shape, std::uint32_t n
     const RigBody& first = shape.rig.bodies.front();
     scene.set_mass(body, first.mass, tensor_of(first));
     const BodyState state = scene.state(body);
-    Fallen fallen{&shape, {body}, number};
+    Fallen fallen{&shape, {body}, number, {}};
     for (std::size_t i = 1; i < shape.rig.bodies.size(); ++i) {
         const RigBody& part = shape.rig.bodies[i];
         const Vec3<double> arm = rotate(state.orientation, part.position);
@@ -154,6 +156,12 @@ Fallen fall(Scene& scene, BodyId body, const FallenShape& shape, std::uint32_t n
              .inertia = tensor_of(part)}));
     }
     tie_rig(scene, shape.rig, fallen.bodies);
+    // Parts of one person do not touch each other.
+    for (std::size_t i = 0; i < fallen.bodies.size(); ++i) {
+        const ShapeId capsule =
+            scene.add_capsule(capsule_of(shape.rig.bodies[i], fallen.bodies[i], number + 1));
+        if (i == 0) fallen.capsule = capsule;
+    }
     return fallen;
 }
 
@@ -173,6 +181,7 @@ void rise(Scene& scene, const Fallen& fallen, const Standing& person, double hei
     const Momenta momenta = momenta_of(scene, fallen);
     const Vec3<double> centre = centre_of(scene, fallen);
     const BodyId body = fallen.bodies.front();
+    scene.remove_shape(fallen.capsule);
     scene.remove_bodies(std::span(fallen.bodies).subspan(1));
     // A ball with the moment of the disc takes the momenta of all.
     const float moment = person.moment();
@@ -181,57 +190,6 @@ void rise(Scene& scene, const Fallen& fallen, const Standing& person, double hei
                        convert<float>(1 / static_cast<double>(moment) * momenta.angular));
     scene.change_body(body, {BodyModel::planar, {0, 0, 0, 0, 0, moment}});
     scene.set_pose(body, {centre.x, centre.y, height}, {0, 0, 0, 1}, scene.state(body).yaw);
-}
-
-void add_floor_contacts(const Scene& scene, const Fallen& fallen, std::vector<Contact>& list)
-{
-    for (std::size_t i = 0; i < fallen.bodies.size(); ++i) {
-        const Vec3<float>& half = fallen.shape->rig.bodies[i].half_extents;
-        // The box as a capsule along its longest side.
-        const float longest = std::max({half.x, half.y, half.z});
-        const float radius = (half.x + half.y + half.z - longest) / 2;
-        const float reach = std::max(0.0F, longest - radius);
-        const Vec3<double> along = half.x == longest   ? Vec3<double>{reach, 0, 0}
-                                   : half.y == longest ? Vec3<double>{0, reach, 0}
-                                                       : Vec3<double>{0, 0, reach};
-        const BodyState state = scene.state(fallen.bodies[i]);
-        for (const double end : {-1.0, 1.0}) {
-            const Vec3<double> arm = rotate(state.orientation, end * along);
-            const double gap = state.position.z + arm.z - static_cast<double>(radius);
-            if (gap > margin) continue;
-            const std::uint64_t key = std::uint64_t{fallen.number} << 32 | (2 * i + (end > 0 ? 1 : 0));
-            Contact contact = contact_at(scene.ground(), fallen.bodies[i], key, floor_friction);
-            contact.normal = {0, 0, 1};
-            contact.separation = static_cast<float>(gap);
-            contact.arm_b = convert<float>(arm - Vec3<double>{0, 0, static_cast<double>(radius) + gap});
-            contact.arm_a = convert<float>(state.position) + contact.arm_b;
-            list.push_back(contact);
-        }
-    }
-}
-
-void add_contacts_with(const Scene& scene, const Fallen& fallen, BodyId standing, const Standing& person,
-                       std::uint32_t number, std::vector<Contact>& list)
-{
-    constexpr std::uint64_t of_people = std::uint64_t{1} << 63;
-    const Vec3<double> at = scene.state(standing).position;
-    for (std::size_t i = 0; i < fallen.bodies.size(); ++i) {
-        const Vec3<float>& half = fallen.shape->rig.bodies[i].half_extents;
-        const float radius = (half.x + half.y + half.z) / 3;
-        const Vec3<double> centre = scene.state(fallen.bodies[i]).position;
-        const double x = centre.x - at.x, y = centre.y - at.y, distance = std::hypot(x, y);
-        const double gap = distance - static_cast<double>(person.radius + radius);
-        if (gap > margin || distance < 1e-6) continue;
-        Contact contact = contact_at(
-            standing, fallen.bodies[i],
-            of_people | std::uint64_t{fallen.number} << 32 | std::uint64_t{number} << 8 | i, people_friction);
-        contact.normal = {static_cast<float>(x / distance), static_cast<float>(y / distance), 0};
-        contact.separation = static_cast<float>(gap);
-        contact.arm_b = -radius * contact.normal;
-        contact.arm_a = (static_cast<float>(distance) - radius) * contact.normal +
-                        Vec3<float>{0, 0, static_cast<float>(centre.z - at.z)};
-        list.push_back(contact);
-    }
 }
 
 }  // namespace motley::bench

@@ -1,5 +1,5 @@
 // People who fall: a person's body becomes a rigid one in place, the pelvis of a figure or the whole person, and a person
-// again on rising. What the host does is here: the other bodies of the figure, its joints, and its contacts.
+// again on rising. What the host does is here: the other bodies of the figure, its joints and its capsules.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,8 @@ struct Standing {
 struct Fallen {
     const FallenShape* shape = nullptr;
     std::vector<BodyId> bodies;  ///< the first one is the person's
-    std::uint32_t number = 0;    ///< of the person, below 2^24: part of contact keys
+    std::uint32_t number = 0;    ///< of the person
+    ShapeId capsule{};           ///< of the person's own body
 };
 
 /// Momentum, kg m/s, and angular momentum about the centre of mass, kg m2/s.
@@ -58,11 +59,5 @@ void tip_over(Scene& scene, const Fallen& fallen, float rate);
 /// All bodies but the person's are removed. That one becomes planar, upright where the centre of mass is, `height` m above
 /// the floor, with the momenta that the fallen had in the plane.
 void rise(Scene& scene, const Fallen& fallen, const Standing& person, double height);
-
-/// Adds the contacts of the fallen with the floor, z = 0, to a list: of the balls at the ends of each box.
-void add_floor_contacts(const Scene& scene, const Fallen& fallen, std::vector<Contact>& list);
-/// Adds those with somebody who stands, taken as an upright cylinder: of a ball around each box. `number` is below 2^24.
-void add_contacts_with(const Scene& scene, const Fallen& fallen, BodyId standing, const Standing& person,
-                       std::uint32_t number, std::vector<Contact>& list);
 
 }  // namespace motley::bench
