@@ -706,6 +706,14 @@ TEST(BadInput, EverySettingIsChecked)
     refused("projections", [](auto& s) { s.projections = -1; });
     refused("tolerance", [](auto& s) { s.tolerance = -1; });
     refused("budget_ms", [](auto& s) { s.budget_ms = nan; });
+    refused("sleep_speed", [](auto& s) { s.sleep_speed = -1; });
+    refused("sleep_speed", [](auto& s) { s.sleep_speed = nan; });
+    refused("sleep_speed", [](auto& s) {
+        s.sleep_speed = 0.01F;
+        s.method = Method::direct;
+    });
+    refused("sleep_after", [](auto& s) { s.sleep_after = -1; });
+    refused("sleep_after", [](auto& s) { s.sleep_after = infinity; });
     refused("gravity.x", [](auto& s) { s.gravity.x = nan; });
     refused("gravity.y", [](auto& s) { s.gravity.y = nan; });
     refused("gravity.z", [](auto& s) { s.gravity.z = infinity; });

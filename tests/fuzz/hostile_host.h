@@ -88,7 +88,7 @@ class HostileHost {
 
     void call_something()
     {
-        switch (byte() % 17) {
+        switch (byte() % 18) {
             case 0:
             case 1:
                 return add_body();
@@ -134,6 +134,11 @@ class HostileHost {
                                 {number(), number(), number(), number(), number(), number()});
                 scene_.set_user_data(changed, 7);
                 return demand(scene_.user_data(changed) == 7, "user data is lost");
+            }
+            case 15: {
+                const BodyId sleeper = body();
+                scene_.wake(sleeper);
+                return demand(!scene_.is_asleep(sleeper), "a woken body sleeps");
             }
             default:
                 return step();
@@ -199,6 +204,9 @@ class HostileHost {
         if (flags & 32) settings.joint_hertz = number();
         if (flags & 64) settings.contact_hertz = number();
         if (flags & 128) settings.bad_contacts = BadContacts::skip;
+        const std::uint8_t sleep = byte();
+        if (sleep & 1) settings.sleep_speed = number();
+        if (sleep & 2) settings.sleep_after = number();
         solver_.set_settings(settings);
     }
 
@@ -235,6 +243,8 @@ class HostileHost {
                 static_cast<double>(s.angular_velocity.x) + static_cast<double>(s.angular_velocity.y) +
                 static_cast<double>(s.angular_velocity.z);
             demand(std::isfinite(sum), "a body is not finite after a step");
+            const Vec3<float>&v = s.linear_velocity, &w = s.angular_velocity;
+            demand(!scene_.is_asleep(id) || (dot(v, v) == 0 && dot(w, w) == 0), "a sleeper moves");
         }
         for (const ConstraintId id : joints_) {
             if (scene_.is_alive(id)) static_cast<void>(scene_.joint_report(id));

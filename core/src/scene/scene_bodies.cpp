@@ -37,6 +37,7 @@ void Scene::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
     if (core_->bodies.motion(body) != BodyMotion::dynamic_body)
         refuse("set_mass.body", "a static or kinematic body", "a dynamic body");
     check_mass("set_mass", core_->bodies.model(body), mass, inertia);
+    core_->wake_island(body.slot);
     core_->bodies.set_mass(body, mass, inertia);
     // Contacts of discs keep their effective mass from search to search.
     if (core_->has_disc(body)) core_->discs.is_stale = true;

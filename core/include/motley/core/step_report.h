@@ -93,6 +93,7 @@ struct StepReport {
     /// Method::direct: islands with a larger residual than 1e-9 m/s or rad/s, summed over the substeps. 0: all are
     /// solved. Contradictory joints have no solution; they are solved in the least squares sense, and counted here.
     std::int64_t direct_unsolved = 0;
+    std::int64_t bodies_asleep = 0;     ///< when the step has ended: see SolverSettings::sleep_speed
     std::int64_t bodies_contained = 0;  ///< bodies frozen in this step because their state was not finite
     BodyId first_contained{};           ///< one of them
 
