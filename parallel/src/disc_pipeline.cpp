@@ -66,7 +66,7 @@ bool DiscPipeline::is_anyone_awake(const SceneCore& scene)
 void DiscPipeline::divide(SceneCore& scene)
 {
     DiscStore& discs = scene.discs;
-    if (discs.is_divided) return;
+    if (discs.is_divided || !discs.is_in_use()) return;
     finder_.make_room_for_workers(runner_.workers());
     // Should memory run out on the way, the next step searches again.
     discs.is_stale = true;

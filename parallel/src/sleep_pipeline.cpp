@@ -78,19 +78,19 @@ double reach_of(const SleepPipeline::Step& step, BodyRow where, const Vec3<float
     return dt * (speed + (moves ? dt * length(acceleration) : 0));
 }
 
-/// The two discs of a lane, and their gap now, m.
-struct PairNow {
-    BodyRow a, b;
-    double gap;
-};
-template <DiscClass c>
-PairNow pair_now(const SceneCore& scene, const DiscBlocks& blocks, std::size_t block, std::size_t lane)
+BodyRow planar_row(std::int32_t offset)
 {
-    constexpr std::int32_t a_row = offsets_a_row(BodyKind::planar);
-    const auto a = static_cast<std::uint32_t>(blocks.bodies[block].a[lane] / a_row),
-               b = static_cast<std::uint32_t>(blocks.bodies[block].b[lane] / a_row);
+    return {BodyKind::planar, static_cast<std::uint32_t>(offset / offsets_a_row(BodyKind::planar))};
+}
+
+/// The gap between the two discs of a lane as they are now, m.
+template <DiscClass c>
+double gap_of(const SceneCore& scene, const DiscBlocks& blocks, std::size_t block, std::size_t lane)
+{
     const AlignedVector<BodyPose>& poses = scene.bodies.rows(BodyKind::planar).pose;
-    const Vec2<double> between = in_plane(poses[b].position) - in_plane(poses[a].position);
+    const BlockBodies& bodies = blocks.bodies[block];
+    const Vec2<double> between = in_plane(poses[planar_row(bodies.b[lane]).row()].position) -
+                                 in_plane(poses[planar_row(bodies.a[lane]).row()].position);
     const auto row = load_lane<typename DiscFieldsOf<c>::Row>(blocks.rows.data(), block, lane);
     double radii = 0;
     if constexpr (is_rough(c)) {
@@ -98,8 +98,7 @@ PairNow pair_now(const SceneCore& scene, const DiscBlocks& blocks, std::size_t b
     } else {
         radii = static_cast<double>(row.reach);
     }
-    return {BodyRow(BodyKind::planar, a), BodyRow(BodyKind::planar, b),
-            std::sqrt(dot(between, between)) - radii};
+    return std::sqrt(dot(between, between)) - radii;
 }
 
 template <class Work>
@@ -141,7 +140,8 @@ void SleepPipeline::wake(const Step& step)
     SleepStore& sleep = scene.sleep;
     if (step.settings.sleep_speed > 0) make_room(scene);
     const Vec3<float>&was = sleep.gravity, &is = step.settings.gravity;
-    if (was.x != is.x || was.y != is.y || was.z != is.z || step.settings.sleep_speed == 0) scene.wake_all();
+    const bool all_wake = was.x != is.x || was.y != is.y || was.z != is.z || step.settings.sleep_speed == 0;
+    if (all_wake && scene.bodies.sleepers > 0) scene.wake_all();
     sleep.gravity = is;
     sleep.speed = step.settings.sleep_speed;
     layout_.kept = {};
@@ -264,15 +264,15 @@ void SleepPipeline::wake_for_discs(const Step& step)
             if constexpr (!is_wall(c.value)) {
                 const DiscBlocks& blocks = own.blocks[static_cast<std::size_t>(c.value)];
                 for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
-                    const PairNow pair = pair_now<c.value>(scene, blocks, block, lane);
-                    const bool a_sleeps = scene.bodies.is_asleep(pair.a),
-                               b_sleeps = scene.bodies.is_asleep(pair.b);
+                    const BodyRow a = planar_row(blocks.bodies[block].a[lane]),
+                                  b = planar_row(blocks.bodies[block].b[lane]);
+                    const bool a_sleeps = scene.bodies.is_asleep(a), b_sleeps = scene.bodies.is_asleep(b);
                     if (a_sleeps == b_sleeps) return;
                     // A removed body may have left its row to another one.
-                    if (discs.is_removed_row(pair.a.row()) || discs.is_removed_row(pair.b.row())) return;
-                    const double goes = reach_of(step, a_sleeps ? pair.b : pair.a, {});
-                    if (pair.gap <= touching_distance + goes)
-                        touched.push_back(slot_of(scene.bodies, a_sleeps ? pair.a : pair.b));
+                    if (discs.is_removed_row(a.row()) || discs.is_removed_row(b.row())) return;
+                    const double goes = reach_of(step, a_sleeps ? b : a, {});
+                    if (gap_of<c.value>(scene, blocks, block, lane) <= touching_distance + goes)
+                        touched.push_back(slot_of(scene.bodies, a_sleeps ? a : b));
                 });
             }
         });
@@ -388,25 +388,24 @@ void SleepPipeline::tie_discs(const Step& step)
             const DiscBlocks& blocks = scene.discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
             if (is_wall(c.value) && !walls_move) return;
             for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
-                const bool pushes =
-                    load_lane<typename Fields::Impulse>(blocks.sums.data(), block, lane).normal > 0;
+                const BodyRow b = planar_row(blocks.bodies[block].b[lane]);
+                const auto pushes = [&] {
+                    return load_lane<typename Fields::Impulse>(blocks.sums.data(), block, lane).normal > 0;
+                };
                 if constexpr (is_wall(c.value)) {
                     const auto row = load_lane<typename Fields::Row>(blocks.rows.data(), block, lane);
                     const WallSegment& segment =
                         scene.discs.segments[blocks.touches[block_lanes * block + lane].segment];
-                    const BodyRow b(BodyKind::planar,
-                                    static_cast<std::uint32_t>(blocks.bodies[block].b[lane] /
-                                                               offsets_a_row(BodyKind::planar)));
                     const double goes = static_cast<double>(step.dt) * speed_of_wall(scene, segment);
                     const auto gap = static_cast<double>(row.in_sweep.separation);
-                    if (goes > 0 && (pushes || gap <= 2 * touching_distance + goes + reach_of(step, b, {})))
+                    if (goes > 0 && (pushes() || gap <= 2 * touching_distance + goes + reach_of(step, b, {})))
                         tie(step, scene.bodies.row_of(segment.body), b);
                 } else {
-                    const PairNow pair = pair_now<c.value>(scene, blocks, block, lane);
-                    if (!candidate(pair.a) && !candidate(pair.b)) return;
-                    if (pushes || pair.gap <= 2 * touching_distance + reach_of(step, pair.a, {}) +
-                                                  reach_of(step, pair.b, {}))
-                        tie(step, pair.a, pair.b);
+                    const BodyRow a = planar_row(blocks.bodies[block].a[lane]);
+                    if (!candidate(a) && !candidate(b)) return;
+                    if (pushes() || gap_of<c.value>(scene, blocks, block, lane) <=
+                                        2 * touching_distance + reach_of(step, a, {}) + reach_of(step, b, {}))
+                        tie(step, a, b);
                 }
             });
         });

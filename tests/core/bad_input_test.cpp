@@ -610,6 +610,9 @@ TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
          "read_joint_reports.joints", "not alive"},
         {"user data of a removed body", [](Fixture& f) { f.scene.set_user_data(f.removed, 1); },
          "set_user_data.body", "not alive"},
+        {"sleep of a removed body", [](Fixture& f) { (void)f.scene.is_asleep(f.removed); }, "is_asleep.body",
+         "not alive"},
+        {"waking nobody", [](Fixture& f) { f.scene.wake({}); }, "wake.body", "null"},
         {"user data of nobody", [](Fixture& f) { (void)f.scene.user_data({}); }, "user_data.body", "null"},
         {"mass of a removed body",
          [](Fixture& f) {

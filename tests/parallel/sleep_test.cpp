@@ -251,6 +251,25 @@ TEST(Sleep, ARestingColumnReportsItsWeight)
     EXPECT_EQ(column.scene.state_hash(), hash);
 }
 
+TEST(Sleep, FilesKeepWhoSleepsAndWhatTheyBear)
+{
+    Column column;
+    Solver solver(column.settings());
+    column.step(solver, 400);
+    const std::vector<Contact> contacts = column.contacts();
+    Scene read = load_scene(save_scene(column.scene));
+    for (const BodyId ball : column.balls) EXPECT_TRUE(read.is_asleep(ball));
+    step(solver, read, 2, contacts);
+    step(solver, column.scene, 2, contacts);
+    EXPECT_EQ(read.state_hash(), column.scene.state_hash());
+    EXPECT_GT(read.contact_impulses()[0].normal, 0);
+    EXPECT_EQ(read.contact_impulses()[0].normal, column.scene.contact_impulses()[0].normal);
+    // The file remembers which contacts bore them.
+    Scene again = load_scene(save_scene(column.scene));
+    step(solver, again, 1, std::span(contacts).subspan(1));
+    for (const BodyId ball : column.balls) EXPECT_FALSE(again.is_asleep(ball));
+}
+
 TEST(Sleep, AJointOfSleepersReportsWhatItBears)
 {
     Scene scene;
@@ -530,30 +549,32 @@ TEST(Sleep, BitsAreEqualForEveryInstructionSetAndNumberOfThreadsAndThroughFiles)
 /// Who sleeps beside a crowd that moves stays put, and is not lost when the contacts of all are found anew.
 TEST(Sleep, ASleepingCrowdBesideAMovingOneStaysPut)
 {
-    DiscCrowd crowd({.people = 400, .speed = 0, .spacing = 0.45});
+    PressedRow row(20, 400);
     std::vector<BodyId> moving;
     for (int i = 0; i < 100; ++i) {
         BodyDefinition person = person_at(30 + 0.6 * (i % 10), 0.6 * static_cast<double>(i / 10));
         person.linear_velocity = {i % 2 == 0 ? 0.4F : -0.4F, i % 3 == 0 ? 0.4F : -0.4F, 0};
-        moving.push_back(crowd.scene.add_body(person));
-        crowd.scene.set_disc(moving.back(), {radius});
+        moving.push_back(row.scene.add_body(person));
+        row.scene.set_disc(moving.back(), {radius});
     }
     Solver solver(sleepy());
-    step(solver, crowd.scene, 120);
-    std::vector<Vec3<double>> before(crowd.people.size()), after(crowd.people.size());
-    crowd.scene.read_positions(crowd.people, std::span(before));
-    std::vector<BodyLoad> loads(crowd.people.size()), later(crowd.people.size());
-    crowd.scene.read_loads(crowd.people, {}, std::span(loads));
-    for (const BodyId body : crowd.people) ASSERT_TRUE(crowd.scene.is_asleep(body));
-    step(solver, crowd.scene, 200);
-    crowd.scene.read_positions(crowd.people, std::span(after));
-    crowd.scene.read_loads(crowd.people, {}, std::span(later));
-    for (std::size_t i = 0; i < before.size(); ++i) {
+    ASSERT_LT(steps_until_asleep(solver, row.scene, row.people[0]), 1000);
+    const std::size_t people = row.people.size();
+    std::vector<Vec3<double>> before(people), after(people);
+    std::vector<BodyLoad> loads(people), later(people);
+    row.scene.read_positions(row.people, std::span(before));
+    row.scene.read_loads(row.people, {}, std::span(loads));
+    step(solver, row.scene, 200);
+    row.scene.read_positions(row.people, std::span(after));
+    row.scene.read_loads(row.people, {}, std::span(later));
+    for (std::size_t i = 0; i < people; ++i) {
         EXPECT_EQ(before[i].x, after[i].x);
         EXPECT_EQ(before[i].y, after[i].y);
+        EXPECT_GT(loads[i].normal_force, 300);
         EXPECT_EQ(loads[i].normal_force, later[i].normal_force);
     }
-    for (const BodyId body : moving) EXPECT_FALSE(crowd.scene.is_asleep(body));
+    EXPECT_FALSE(row.is_anyone(false));
+    for (const BodyId body : moving) EXPECT_FALSE(row.scene.is_asleep(body));
 }
 
 /// Woken contacts go on with the impulses that they had: nothing jumps.
