@@ -17,7 +17,7 @@ struct SleepOptions {
 
 struct SleepLine {
     std::string name;
-    double seconds = 0;         ///< a step, median
+    double seconds = 0;         ///< a step, median of the rounds' means
     std::int64_t contacts = 0;  ///< solved in the last step
     std::int64_t asleep = 0;    ///< after it
 };

@@ -360,7 +360,6 @@ void SleepPipeline::tie_joints(const Step& step)
     });
 }
 
-/// What touches by this rule touches by that of wake() too, or an island would wake as soon as it has fallen asleep.
 void SleepPipeline::tie_contacts(const Step& step)
 {
     const ContactList& list = step.scene.contacts.current();

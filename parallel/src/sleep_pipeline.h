@@ -1,5 +1,10 @@
 // Who wakes when a step begins, and who falls asleep when it has ended, by the rules of scene/sleep.h. What a host's
 // calls wake is in core/src/scene/scene_sleep.cpp.
+//
+// Waking looks only at sleepers that have somebody awake beside them: at the list of contacts, at bands of discs of which
+// DiscBand::half_awake counts such pairs, and at walls that move. Islands are looked for when somebody has been slow for
+// long, at most every eighth step. What ties two bodies reaches a little further than what wakes, or an island would wake
+// as soon as it has fallen asleep.
 #pragma once
 
 #include <cstdint>

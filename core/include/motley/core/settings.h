@@ -97,7 +97,7 @@ struct SolverSettings {
     /// speed of a body is the root mean square over its mass, sqrt(v^2 + w . I w / m) with velocity v, angular velocity
     /// w, inertia I and mass m. 0.01 suits a crowd. Refused with Method::direct.
     float sleep_speed = 0;
-    float sleep_after = 0.5F;  ///< s, 0 to 1e9
+    float sleep_after = 0.5F;  ///< s, 0 to 1e9; to a step, and up to 7 steps more where islands move beside
 
     /// Throws InvalidInput naming the first field out of its range.
     void validate() const;
