@@ -289,6 +289,71 @@ TEST(Sleep, AJointOfSleepersReportsWhatItBears)
     }
 }
 
+TEST(Sleep, AJointThatChangesAndAHandThatMovesWake)
+{
+    const auto joint_of = [](BodyId hand, BodyId ball, float arm) {
+        return BallSocketDefinition{hand, ball, {0, 0, 0}, {0, arm, 0}};
+    };
+    for (const char* name : {"set_joint", "remove_joint", "the hand moves", "the hand is set elsewhere"}) {
+        Scene scene;
+        BodyDefinition hand;
+        hand.motion = BodyMotion::kinematic_body;
+        const BodyId above = scene.add_body(hand);
+        BodyDefinition ball;
+        ball.position = {0, -1, 0};
+        const BodyId body = scene.add_body(ball);
+        const ConstraintId joint = scene.add_joint(joint_of(above, body, 1));
+        SolverSettings settings = sleepy();
+        settings.gravity = {0, -10, 0};
+        Solver solver(settings);
+        ASSERT_LT(steps_until_asleep(solver, scene, body), 300);
+        const std::string what = name;
+        const Vec3<double> before = scene.state(body).position;
+        if (what == "set_joint") scene.set_joint(joint, joint_of(above, body, 1.1F));
+        if (what == "remove_joint") scene.remove_joint(joint);
+        if (what == "the hand moves") scene.set_velocity(above, {0.1F, 0, 0}, {});
+        if (what == "the hand is set elsewhere") scene.set_pose(above, {0.1, 0, 0}, {0, 0, 0, 1}, 0);
+        step(solver, scene);
+        EXPECT_FALSE(scene.is_asleep(body)) << name;
+        const Vec3<double> moved = scene.state(body).position - before;
+        EXPECT_GT(std::sqrt(dot(moved, moved)), 1e-4) << name;
+    }
+}
+
+/// As WhoHitsASleeperKeepsMomentum, with a ball of a host's list.
+TEST(Sleep, AListedContactThatIsAboutToTouchWakes)
+{
+    Scene scene;
+    BodyDefinition ball;
+    ball.mass = 2;
+    const BodyId sleeper = scene.add_body(ball);
+    ball.mass = 3;
+    ball.position.x = -1.5;
+    const BodyId other = scene.add_body(ball);
+    Solver solver(sleepy());
+    ASSERT_LT(steps_until_asleep(solver, scene, other), 100);
+    ASSERT_TRUE(scene.is_asleep(sleeper));
+    scene.set_velocity(other, {2, 0, 0}, {});
+    for (int i = 0; i < 40; ++i) {
+        Contact contact;
+        contact.body_a = other;
+        contact.body_b = sleeper;
+        contact.key = 1;
+        contact.normal = {1, 0, 0};
+        const double gap = scene.state(sleeper).position.x - scene.state(other).position.x - 1;
+        contact.separation = static_cast<float>(gap);
+        contact.arm_a = {0.5F, 0, 0};
+        contact.arm_b = {-0.5F, 0, 0};
+        const bool reaches = gap <= 0.001 + 2.0 / 60;
+        step(solver, scene, 1, {&contact, 1});
+        EXPECT_TRUE(!reaches || !scene.is_asleep(sleeper)) << "step " << i;
+        const double momentum = 2 * static_cast<double>(scene.state(sleeper).linear_velocity.x) +
+                                3 * static_cast<double>(scene.state(other).linear_velocity.x);
+        ASSERT_NEAR(momentum, 6, 1e-5) << "step " << i;
+    }
+    EXPECT_GT(scene.state(sleeper).linear_velocity.x, 1);
+}
+
 TEST(Sleep, NobodySleepsWhileAnIslandMateMoves)
 {
     // A chain of rods hangs at rest from a body that turns in its socket for longer than sleep_after.
