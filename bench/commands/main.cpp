@@ -12,6 +12,7 @@
 #include "commands/replay.h"
 #include "commands/run_command.h"
 #include "commands/scale.h"
+#include "commands/sleep.h"
 #include "commands/soak.h"
 #include "commands/solver_command.h"
 #include "commands/sweep.h"
@@ -204,6 +205,15 @@ int main(int count, char** arguments)
     scale_app->add_option("--threads", scale_options.solver.threads, "threads, the caller's counted")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
+    SleepOptions sleep_options;
+    CLI::App* sleep_app =
+        app.add_subcommand("sleep", "what a crowd and listed contacts at rest cost, awake and asleep");
+    sleep_app->add_option("--rounds", sleep_options.rounds, "runs of each, in turn")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    sleep_app->add_option("--threads", sleep_options.solver.threads, "threads, the caller's counted")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
     ThreadsCommand threads_command;
     CLI::App* threads_app = app.add_subcommand(
         "threads", "what threads are worth: copies of a scene, on one thread and on several, in turn");
@@ -263,6 +273,10 @@ int main(int count, char** arguments)
         }
         if (*scale_app) {
             fmt::print("{}", table_of(measure_scale(scale_options)));
+            return 0;
+        }
+        if (*sleep_app) {
+            fmt::print("{}", table_of(measure_sleep(sleep_options)));
             return 0;
         }
         if (*threads_app) return threads_command();

@@ -47,7 +47,7 @@ void ContactPipeline::colour_and_verify_keys(SceneCore& scene)
     ContactCache& cache = scene.contacts;
     runner_.run(1 + cache.part_count(), [&](std::int64_t chunk) {
         if (chunk == 0) {
-            layout_.colour_contacts(scene.bodies, cache.staged());
+            layout_.colour_contacts(scene.bodies, cache);
         } else {
             cache.verify(chunk - 1);
         }

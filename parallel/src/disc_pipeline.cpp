@@ -26,6 +26,7 @@ void DiscPipeline::find(SceneCore& scene, float dt)
         return;
     }
     find_wall_ends(scene, wall_ends_);
+    if (!discs.is_stale && !is_anyone_awake(scene)) return;
     if (discs.steps_since_sorting < DiscStore::least_steps_between_sortings) ++discs.steps_since_sorting;
     if (!discs.is_stale && ++discs.age < longest_age && !have_walls_left(scene, dt)) {
         list_leaving(scene, dt);
@@ -35,6 +36,7 @@ void DiscPipeline::find(SceneCore& scene, float dt)
             if (leaving_.empty()) return;
             discs.is_stale = true;
             finder_.find_late(scene, leaving_, dt);
+            place_resting(scene, wall_ends_, discs.bands[0]);
             discs.is_stale = false;
             return;
         }
@@ -52,7 +54,30 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     discs.wants_sorting = discs.steps_since_sorting == DiscStore::least_steps_between_sortings &&
                           DiscFinder::are_rows_scattered(discs);
     discs.age = 0;
+    discs.is_divided = true;
     discs.is_stale = discs.is_torn = false;
+}
+
+/// Nobody has a new neighbour while all planar bodies sleep.
+bool DiscPipeline::is_anyone_awake(const SceneCore& scene)
+{
+    const std::vector<std::uint32_t>& awake = scene.bodies.rows(BodyKind::planar).awake;
+    return std::any_of(awake.begin(), awake.end(), [](std::uint32_t count) { return count > 0; });
+}
+
+void DiscPipeline::divide(SceneCore& scene)
+{
+    DiscStore& discs = scene.discs;
+    if (discs.is_divided || !discs.is_in_use()) return;
+    finder_.make_room_for_workers(runner_.workers());
+    // Should memory run out on the way, the next step searches again.
+    discs.is_stale = true;
+    runner_.run(static_cast<std::int64_t>(discs.band_count), [&](std::int64_t band, int worker) {
+        finder_.divide(scene, static_cast<std::size_t>(band), worker);
+        place_resting(scene, wall_ends_, discs.bands[static_cast<std::size_t>(band)]);
+    });
+    discs.is_divided = true;
+    discs.is_stale = false;
 }
 
 /// Whether a wall may go further in this step than the last search allowed for.
@@ -81,6 +106,7 @@ void DiscPipeline::list_leaving(const SceneCore& scene, float dt)
     runner_.run(chunks, [&](std::int64_t chunk) {
         std::vector<std::uint32_t>& leaving = leaving_of_[static_cast<std::size_t>(chunk)];
         leaving.clear();
+        if (!rows.is_chunk_awake(chunk)) return;
         for_each_row_of_chunk(chunk, size, [&](std::uint32_t row) {
             const DiscAnchor& anchor = discs.anchors[row];
             const Vec3<PoseReal>& at = rows.pose[row].position;
@@ -135,11 +161,13 @@ void DiscPipeline::find_contacts(SceneCore& scene)
     finder_.open(scene, runner_.workers());
     runner_.run(static_cast<std::int64_t>(scene.discs.band_count), [&](std::int64_t band, int worker) {
         finder_.find(scene, static_cast<std::size_t>(band), worker);
+        place_resting(scene, wall_ends_, scene.discs.bands[static_cast<std::size_t>(band)]);
     });
 }
 
 void DiscPipeline::prepare(SceneCore& scene)
 {
+    if (layout_.discs().empty()) return;
     const float warm = layout_.context.step.warm_start_scale;
     const DiscKernels& kernels = layout_.kernels().discs;
     runner_.run(layout_.disc_bands(), [&](std::int64_t band) {

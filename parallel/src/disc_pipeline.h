@@ -16,6 +16,8 @@ class DiscPipeline {
 
     /// Before a step of dt seconds: finds contacts anew, or those of discs that may have new neighbours.
     void find(SceneCore& scene, float dt);
+    /// After that: sorts out the contacts of those who sleep, if others sleep than in the last step.
+    void divide(SceneCore& scene);
     /// Makes the rows of this step.
     void prepare(SceneCore& scene);
 
@@ -27,6 +29,7 @@ class DiscPipeline {
     std::vector<std::uint32_t> leaving_;   ///< rows of discs that may leave their skins in this step
     std::vector<std::vector<std::uint32_t>> leaving_of_;  ///< the same by chunk of rows
 
+    [[nodiscard]] static bool is_anyone_awake(const SceneCore& scene);
     [[nodiscard]] bool have_walls_left(const SceneCore& scene, float dt) const;
     void list_leaving(const SceneCore& scene, float dt);
     void sort_into_strips(SceneCore& scene, float dt);

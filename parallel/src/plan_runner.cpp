@@ -224,6 +224,7 @@ void PlanRunner::move_bodies(const Step& step)
     scene.bodies.contained_count += static_cast<std::size_t>(step.report.bodies_contained);
     scene.joints->version.reset();  // joints of contained bodies are left out from now on
     scene.discs.is_stale = true;    // and so are their discs
+    scene.wake_contained();
 }
 
 bool PlanRunner::sweeps_long(const SolverSettings& settings)

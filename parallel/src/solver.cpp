@@ -18,6 +18,7 @@
 #include "plan_runner.h"
 #include "scene/scene_core.h"
 #include "shape_pipeline.h"
+#include "sleep_pipeline.h"
 #include "stage_runner.h"
 #include "step/plan.h"
 #include "step_clock.h"
@@ -113,6 +114,7 @@ struct Solver::Impl {
     ShapePipeline shapes;
     ContactPipeline pipeline;
     DiscPipeline discs;
+    SleepPipeline sleep;
     Sweeper sweeper;
     PlanRunner plan_runner;
     Plan plan;         ///< of this step
@@ -130,6 +132,7 @@ struct Solver::Impl {
           shapes(runner),
           pipeline(runner, layout),
           discs(runner, layout),
+          sleep(runner, layout),
           sweeper(runner, layout),
           plan_runner(sweeper, discs, layout)
     {
@@ -141,7 +144,7 @@ struct Solver::Impl {
     void take_in(SceneCore& scene, std::span<const Contact> contacts, StepReport& report);
     void lay_out(SceneCore& scene, std::span<const Contact> contacts, StepReport& report);
     void plan_step(const SceneCore& scene);
-    void finish(SceneCore& scene, float dt, StepReport& report);
+    void finish(SceneCore& scene, std::span<const Contact> contacts, float dt, StepReport& report);
     void learn_times(const StepReport& report);
     // What the settings and the scene ask of a step:
     [[nodiscard]] bool picks_islands(const SceneCore& scene) const;
@@ -224,9 +227,11 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> ho
         if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);
         if (dt == 0 || !report.error.empty()) return clock.leave();
         clock.enter(Stage::colour);
+        sleep.wake({scene, contacts, dt, settings});
         lay_out(scene, contacts, report);
         if (!report.error.empty()) return clock.leave();
         discs.find(scene, dt);
+        discs.divide(scene);
         layout.list_discs(scene);
         layout.point_at(scene, step_constants(settings, dt, scene.last_substep));
         plan_step(scene);
@@ -234,7 +239,7 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> ho
         if (settings.measures) measure_start(host_scene, contacts, report.measures);
         plan_runner.run(plan, figure_plan, {scene, contacts, dt, settings, picks_islands(scene), report},
                         clock);
-        finish(scene, dt, report);
+        finish(scene, contacts, dt, report);
         clock.leave();
         if (settings.measures) report.measures.after = host_scene.errors();
         learn_times(report);
@@ -313,13 +318,16 @@ void Solver::Impl::plan_step(const SceneCore& scene)
 }
 
 /// After the bodies have moved: updates the scene and fills in the report.
-void Solver::Impl::finish(SceneCore& scene, float dt, StepReport& report)
+void Solver::Impl::finish(SceneCore& scene, std::span<const Contact> contacts, float dt, StepReport& report)
 {
+    sleep.keep_loads(scene);
     scene.contacts.accept_staged();
     shapes.remember(scene);
     scene.last_substep = layout.context.step.substep;
     scene.last_step = dt;
     scene.find_break_events();
+    sleep.fall_asleep({scene, contacts, dt, settings});
+    report.bodies_asleep = static_cast<std::int64_t>(scene.bodies.sleepers);
     layout.report(report);
     report.shape_contacts = static_cast<std::int64_t>(shapes.found());
     report.substeps = settings.substeps;

@@ -10,7 +10,7 @@ namespace motley {
 namespace {
 
 /// Bodies per chunk: a few microseconds of streaming.
-constexpr std::int64_t rows_per_chunk = 1024;
+constexpr std::int64_t rows_per_chunk = BodyRows::rows_per_chunk;
 
 }  // namespace
 
@@ -123,7 +123,7 @@ void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_
 void Sweeper::sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel)
 {
     const std::int64_t bands = layout_.disc_bands();
-    if (bands == 0) return;
+    if (layout_.discs().empty()) return;
     // The bodies of a band fit a core's first cache, and neighbours lie together.
     KernelContext at_hand = layout_.context;
     at_hand.bodies_are_far = false;
@@ -143,6 +143,7 @@ void Sweeper::add_up()
         if (chunk.streams.sums != nullptr)
             chunk.kernels->add_up(layout_.context, chunk.streams, chunk.begin, chunk.end);
     });
+    if (layout_.discs().empty()) return;
     runner_.run(layout_.disc_bands(), [&](std::int64_t band) {
         for (const SweepChunk& chunk : layout_.discs_of_band(band))
             chunk.kernels->add_up(layout_.context, chunk.streams, chunk.begin, chunk.end);
@@ -338,7 +339,9 @@ std::int64_t Sweeper::commit(BodyStore& bodies, std::uint32_t& first_slot)
         const BodyArrays& arrays = layout_.context.bodies[kind];
         const Flight flight{arrays.start_along, arrays.is_jointed, step.flight_excess, step.seconds,
                             step.gravity};
+        const BodyRows& own = bodies.rows(static_cast<BodyKind>(kind));
         runner_.run((rows + rows_per_chunk - 1) / rows_per_chunk, [&](std::int64_t chunk) {
+            if (!own.is_chunk_awake(chunk)) return;
             std::uint32_t slot = UINT32_MAX;
             int count = 0;
             const auto begin = static_cast<std::int32_t>(chunk * rows_per_chunk);

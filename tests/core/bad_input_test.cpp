@@ -612,6 +612,9 @@ TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
          "read_joint_reports.joints", "not alive"},
         {"user data of a removed body", [](Fixture& f) { f.scene.set_user_data(f.removed, 1); },
          "set_user_data.body", "not alive"},
+        {"sleep of a removed body", [](Fixture& f) { (void)f.scene.is_asleep(f.removed); }, "is_asleep.body",
+         "not alive"},
+        {"waking nobody", [](Fixture& f) { f.scene.wake({}); }, "wake.body", "null"},
         {"user data of nobody", [](Fixture& f) { (void)f.scene.user_data({}); }, "user_data.body", "null"},
         {"mass of a removed body",
          [](Fixture& f) {
@@ -755,6 +758,14 @@ TEST(BadInput, EverySettingIsChecked)
     refused("projections", [](auto& s) { s.projections = -1; });
     refused("tolerance", [](auto& s) { s.tolerance = -1; });
     refused("budget_ms", [](auto& s) { s.budget_ms = nan; });
+    refused("sleep_speed", [](auto& s) { s.sleep_speed = -1; });
+    refused("sleep_speed", [](auto& s) { s.sleep_speed = nan; });
+    refused("sleep_speed", [](auto& s) {
+        s.sleep_speed = 0.01F;
+        s.method = Method::direct;
+    });
+    refused("sleep_after", [](auto& s) { s.sleep_after = -1; });
+    refused("sleep_after", [](auto& s) { s.sleep_after = infinity; });
     refused("gravity.x", [](auto& s) { s.gravity.x = nan; });
     refused("gravity.y", [](auto& s) { s.gravity.y = nan; });
     refused("gravity.z", [](auto& s) { s.gravity.z = infinity; });

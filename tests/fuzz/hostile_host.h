@@ -89,7 +89,7 @@ class HostileHost {
 
     void call_something()
     {
-        switch (byte() % 21) {
+        switch (byte() % 22) {
             case 0:
             case 1:
                 return add_body();
@@ -154,6 +154,11 @@ class HostileHost {
                                                                         number(), number(), number()}});
                 return demand(scene_.is_alive(changed) && scene_.model(changed) == model,
                               "a changed body has another model");
+            }
+            case 19: {
+                const BodyId sleeper = body();
+                scene_.wake(sleeper);
+                return demand(!scene_.is_asleep(sleeper), "a woken body sleeps");
             }
             default:
                 return step();
@@ -244,6 +249,9 @@ class HostileHost {
         if (flags & 32) settings.joint_hertz = number();
         if (flags & 64) settings.contact_hertz = number();
         if (flags & 128) settings.bad_contacts = BadContacts::skip;
+        const std::uint8_t sleep = byte();
+        if (sleep & 1) settings.sleep_speed = number();
+        if (sleep & 2) settings.sleep_after = number();
         solver_.set_settings(settings);
     }
 
@@ -280,6 +288,8 @@ class HostileHost {
                 static_cast<double>(s.angular_velocity.x) + static_cast<double>(s.angular_velocity.y) +
                 static_cast<double>(s.angular_velocity.z);
             demand(std::isfinite(sum), "a body is not finite after a step");
+            const Vec3<float>&v = s.linear_velocity, &w = s.angular_velocity;
+            demand(!scene_.is_asleep(id) || (dot(v, v) == 0 && dot(w, w) == 0), "a sleeper moves");
         }
         for (const ConstraintId id : joints_) {
             if (scene_.is_alive(id)) static_cast<void>(scene_.joint_report(id));

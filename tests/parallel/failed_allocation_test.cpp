@@ -37,14 +37,14 @@ std::vector<Way> ways()
     SolverSettings careful = soft;
     careful.tolerance = 1e-3F;
     careful.measures = true;
+    SolverSettings sleepy = soft;
+    sleepy.sleep_speed = 0.2F;
+    sleepy.sleep_after = 0;
     SolverSettings direct = soft;
     direct.method = Method::direct;
     direct.substeps = 1;
-    return {{"soft", soft, 1},
-            {"soft", soft, 2},
-            {"exact", exact, 2},
-            {"careful", careful, 2},
-            {"direct", direct, 1}};
+    return {{"soft", soft, 1},       {"soft", soft, 2},     {"exact", exact, 2},
+            {"careful", careful, 2}, {"sleepy", sleepy, 2}, {"direct", direct, 1}};
 }
 
 /// The first contacts of a list. A step with few contacts comes first, so that everything grows in the next one.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "motley/core/invalid_input.h"
+#include "motley/core/settings.h"
 
 namespace motley {
 namespace {
@@ -47,6 +48,10 @@ void SolverSettings::validate() const
     check("SolverSettings.restitution_threshold", restitution_threshold, 0, big, "0 to 1e9 (m/s)");
     check("SolverSettings.baumgarte", baumgarte, 0, 1, "0 to 1");
     check("SolverSettings.penetration_slop", penetration_slop, 0, big, "0 to 1e9 (m)");
+    check("SolverSettings.sleep_speed", sleep_speed, 0, big, "0 to 1e9 (m/s)");
+    check("SolverSettings.sleep_after", sleep_after, 0, big, "0 to 1e9 (s)");
+    if (sleep_speed > 0 && method == Method::direct)
+        refuse("SolverSettings.sleep_speed", sleep_speed, "0 with Method::direct, which lets nobody sleep");
 }
 
 SolverSettings SolverSettings::resolved() const

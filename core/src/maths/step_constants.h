@@ -1,9 +1,11 @@
 // The numbers of a step that every constraint shares.
 #pragma once
 
-#include "motley/core/settings.h"
+#include "motley/core/vector.h"
 
 namespace motley {
+
+struct SolverSettings;
 
 /// How soft a constraint is. With K = J M^-1 J^T and the accumulated impulse lambda, a sweep changes lambda by
 /// -mass_scale K^-1 (J v + rate C) - impulse_scale lambda.

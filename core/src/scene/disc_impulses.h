@@ -27,9 +27,8 @@ void SceneCore::for_each_disc_impulse(const Work& work) const
     const BodyRows& planar = bodies.rows(BodyKind::planar);
     const BodyRows& fixed = bodies.rows(BodyKind::fixed);
     for (std::size_t band = 0; band < discs.band_count; ++band) {
-        for_each_disc_class([&](auto c) {
+        for_each_disc_blocks(discs.bands[band], [&](auto c, const DiscBlocks& blocks) {
             using Fields = DiscFieldsOf<c.value>;
-            const DiscBlocks& blocks = discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
             for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
                 for (std::size_t lane = 0; lane < blocks.lanes[block]; ++lane) {
                     const auto sum = load_lane<typename Fields::Impulse>(blocks.sums.data(), block, lane);

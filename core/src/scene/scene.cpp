@@ -59,6 +59,7 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
     core_->bodies.make_room_to_remove(bodies);
     make_room_for(core_->discs.free_walls, core_->discs.walls.size());
     make_room_for(core_->shapes.free_slots, core_->shapes.slots.size());
+    for (const BodyId body : bodies) core_->wake_island(body.slot);
     core_->remove_joints_of(bodies);
     core_->remove_discs_of(bodies);
     for (const BodyId body : bodies) {

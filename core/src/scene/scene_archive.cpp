@@ -59,6 +59,7 @@ void SceneArchive::check_bodies(const SceneCore& scene)
     const std::size_t slots = bodies.slots_.size();
     demand(slots > 0 && bodies.live_.size() == slots && bodies.models_.size() == slots &&
                bodies.motions_.size() == slots && bodies.contained.size() == slots &&
+               bodies.sleep.size() == slots && bodies.slow_for.size() == slots &&
                bodies.inverse_masses.size() == slots && bodies.inverse_inertias.size() == slots,
            "its tables of bodies differ in length");
     demand(bodies.live_[0] == 0 && bodies.contained[0] == 0, "a body of the null handle");
@@ -166,10 +167,41 @@ void SceneArchive::check_joints(const SceneCore& scene)
     demand(watched == 0, "a watch on no joint");
 }
 
+/// Each sleeper is the next one of one sleeper, so that islands are rings.
+void SceneArchive::check_sleep(const SceneCore& scene)
+{
+    const BodyStore& bodies = scene.bodies;
+    const auto sleeps = [&](std::uint32_t slot) {
+        return bodies.sleep[slot] != Sleep::awake && bodies.motions_[slot] == BodyMotion::dynamic_body;
+    };
+    std::vector<std::uint8_t> is_next(bodies.slots_.size(), 0);
+    for (std::uint32_t slot = 0; slot < bodies.slots_.size(); ++slot) {
+        const Sleep sleep = bodies.sleep[slot];
+        demand(sleep <= Sleep::roused, "a body that neither sleeps nor is awake");
+        demand(bodies.slow_for[slot] >= 0, "a body that is slow since the future");
+        if (sleep == Sleep::awake) continue;
+        demand(bodies.live_[slot] != 0 && bodies.contained[slot] == 0 &&
+                   (sleep == Sleep::roused || sleeps(slot)),
+               "a sleeper that cannot sleep");
+        if (!sleeps(slot)) continue;
+        demand(slot < scene.sleep.sleepers.size(), "a sleeper without an island");
+        const std::uint32_t next = scene.sleep.sleepers[slot].next;
+        demand(next < bodies.slots_.size() && bodies.live_[next] != 0 && sleeps(next) && is_next[next] == 0,
+               "a sleeper whose island is no ring");
+        is_next[next] = 1;
+    }
+    demand(scene.sleep.speed >= 0 && is_finite(scene.sleep.gravity) && scene.sleep.pause >= 0,
+           "sleep out of range");
+    const ContactList& list = scene.contacts.current();
+    for (std::size_t i = 0; list.has_sleepers && i < list.count; ++i)
+        demand(list.sleepers[i] < bodies.slots_.size(), "a contact of a sleeper that is no body");
+}
+
 void SceneArchive::check(const SceneCore& scene)
 {
     check_bodies(scene);
     check_joints(scene);
+    check_sleep(scene);
     check_discs(scene);
     check_capsules(scene);
     for (const IslandIterations& asked : scene.island_iterations) scene.check_island_wish(asked);

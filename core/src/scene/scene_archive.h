@@ -88,6 +88,7 @@ struct SceneArchive {
         visit_contacts(archive, scene.contacts);
         visit_discs(archive, scene.discs);
         visit_shapes(archive, scene.shapes);
+        visit_sleep(archive, scene.sleep);
         archive(scene.user_data);
         archive(scene.island_iterations);
         archive(scene.ground);
@@ -108,6 +109,7 @@ struct SceneArchive {
     static void check_joints(const SceneCore& scene);
     static void check_discs(const SceneCore& scene);
     static void check_capsules(const SceneCore& scene);
+    static void check_sleep(const SceneCore& scene);
     /// Computes what is not stored in files.
     static void derive(SceneCore& scene);
 
@@ -129,6 +131,8 @@ struct SceneArchive {
         archive(bodies.motions_);
         archive(bodies.free_slots_);
         archive(bodies.contained);
+        archive(bodies.sleep);
+        archive(bodies.slow_for);
         archive(bodies.inverse_masses);
         archive(bodies.inverse_inertias);
     }
@@ -145,6 +149,14 @@ struct SceneArchive {
         archive(joints.slots);
         archive(joints.free_slots);
         archive(joints.watched);
+    }
+    template <class Archive, class Store>
+    static void visit_sleep(Archive& archive, Store& sleep)
+    {
+        archive(sleep.sleepers);
+        archive(sleep.speed);
+        archive(sleep.gravity);
+        archive(sleep.pause);
     }
     /// The blocks as they are solved, without the room behind them.
     template <class Archive, class Store>
@@ -163,21 +175,25 @@ struct SceneArchive {
         archive(discs.late_reach);
         archive(discs.late_drift);
         archive(discs.age);
-        auto is_stale = static_cast<std::uint8_t>(discs.is_stale);
+        auto is_stale = static_cast<std::uint8_t>(discs.is_stale),
+             is_divided = static_cast<std::uint8_t>(discs.is_divided);
         archive(is_stale);
+        archive(is_divided);
         auto bands = static_cast<std::uint64_t>(discs.band_count);
         archive(bands);
         if constexpr (Archive::reads) {
-            if (is_stale > 1) throw std::runtime_error("has discs that are neither found nor not");
+            if (is_stale > 1 || is_divided > 1)
+                throw std::runtime_error("has discs that are neither found nor not");
             discs.is_stale = is_stale != 0;
+            discs.is_divided = is_divided != 0;
             if (bands > discs.anchors.size() + 2) throw std::runtime_error("has more bands than discs");
             discs.band_count = static_cast<std::size_t>(bands);
             discs.bands.resize(discs.band_count);
         }
         for (std::size_t band = 0; band < discs.band_count; ++band) {
-            for_each_disc_class([&](auto c) {
+            archive(discs.bands[band].half_awake);
+            for_each_disc_blocks(discs.bands[band], [&](auto c, auto& blocks) {
                 using Fields = DiscFieldsOf<c.value>;
-                auto& blocks = discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
                 archive(blocks.count);
                 const std::size_t count = blocks.count < 0 ? 0 : static_cast<std::size_t>(blocks.count);
                 visit_first(archive, blocks.bodies, count);
@@ -219,15 +235,18 @@ struct SceneArchive {
             std::vector<ContactList::Entry> entries;
             std::vector<std::uint8_t> colours;
             std::vector<ContactImpulse> impulses, step_impulses;
+            std::vector<std::uint32_t> sleepers;
             archive(entries);
             archive(colours);
             archive(impulses);
             archive(step_impulses);
+            archive(sleepers);
             if (entries.size() > UINT32_MAX / 2) throw std::runtime_error("has more contacts than fit");
             if (colours.size() != entries.size() || impulses.size() != entries.size() ||
-                step_impulses.size() != entries.size())
+                step_impulses.size() != entries.size() ||
+                (!sleepers.empty() && sleepers.size() != entries.size()))
                 throw std::runtime_error("has lists of different lengths");
-            if (!cache.restore(entries, colours, impulses, step_impulses))
+            if (!cache.restore(entries, colours, impulses, step_impulses, sleepers))
                 throw std::runtime_error("has a contact key twice");
         } else {
             const ContactList& list = cache.current();
@@ -240,6 +259,7 @@ struct SceneArchive {
             archive(in_use(list.colours, 0));
             archive(in_use(list.impulses, 1));
             archive(in_use(list.step_impulses, 0));
+            archive(list.has_sleepers ? in_use(list.sleepers, 0) : std::vector<std::uint32_t>{});
         }
     }
 };

@@ -93,8 +93,7 @@ void check_indices(const SceneCore& scene)
                "a contact of no row");
     };
     for (std::size_t band = 0; band < discs.band_count; ++band) {
-        for_each_disc_class([&](auto c) {
-            const DiscBlocks& blocks = discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
+        for_each_disc_blocks(discs.bands[band], [&](auto c, const DiscBlocks& blocks) {
             demand(blocks.count >= 0, "fewer blocks than none");
             for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
                 demand(blocks.lanes[block] > 0 && blocks.lanes[block] <= block_lanes, "a block of no lanes");
@@ -131,8 +130,7 @@ void check_blocks(const SceneCore& scene)
         demand(band - first_band[row] <= 1, "a disc in bands that are apart");
     };
     for (std::size_t band = 0; band < discs.band_count; ++band) {
-        for (std::size_t c = 0; c < disc_class_count; ++c) {
-            const DiscBlocks& blocks = discs.bands[band].blocks[c];
+        for_each_disc_blocks(discs.bands[band], [&](auto c, const DiscBlocks& blocks) {
             for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
                 ++number;
                 for (std::size_t lane = 0; lane < block_lanes; ++lane) {
@@ -142,7 +140,7 @@ void check_blocks(const SceneCore& scene)
                         continue;
                     }
                     take(b, band);
-                    if (!is_wall(static_cast<DiscClass>(c))) {
+                    if (!is_wall(c.value)) {
                         take(a, band);
                         continue;
                     }
@@ -152,7 +150,7 @@ void check_blocks(const SceneCore& scene)
                            "a touch of no wall");
                 }
             }
-        }
+        });
     }
 }
 

@@ -40,6 +40,7 @@ void Scene::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
     if (core_->bodies.motion(body) != BodyMotion::dynamic_body)
         refuse("set_mass.body", "a static or kinematic body", "a dynamic body");
     check_mass("set_mass", core_->bodies.model(body), mass, inertia);
+    core_->wake_island(body.slot);
     core_->bodies.set_mass(body, mass, inertia);
     // Contacts of discs keep their effective mass from search to search.
     if (core_->has_disc(body)) core_->discs.is_stale = true;
@@ -74,6 +75,7 @@ void Scene::change_body(BodyId body, const BodyChange& change)
 {
     core_->check_change(body, change);
     core_->bodies.make_room_to_change(body, change.model);
+    core_->wake_island(body.slot);
     const BodyRow from = core_->bodies.row_of(body);
     core_->bodies.change(body, change);
     // As of a removed body: contacts of discs in blocks must not be taken for those of the next body in the row.

@@ -7,6 +7,7 @@
 
 #include "motley/core/boxed.h"
 #include "motley/core/scene.h"
+#include "scene/sleep.h"
 #include "stores/body_store.h"
 #include "stores/busy_flag.h"
 #include "stores/contact_cache.h"
@@ -32,6 +33,7 @@ struct SceneCore {
     ContactCache contacts;
     DiscStore discs;
     ShapeStore shapes;
+    SleepStore sleep;
     std::vector<BreakEvent> break_events;             ///< with room for every watched joint
     std::vector<IslandIterations> island_iterations;  ///< of bodies alive
     std::vector<std::uint64_t> user_data;             ///< by body slot, of the host; 0 beyond its end
@@ -117,6 +119,26 @@ struct SceneCore {
     /// Moves planar bodies with discs to where their neighbours are in memory: into the order of the strips, and all others
     /// behind them. Results keep every bit.
     void sort_disc_rows();
+
+    // ---- sleep: scene_sleep.cpp, by the rules in sleep.h ----
+    /// Wakes the island of a body at once, if it sleeps; or all islands.
+    void wake_island(std::uint32_t slot);
+    void wake_all();
+    /// When others sleep than before: the next step sorts out their contacts and lays out the joints anew.
+    void sleepers_changed();
+    /// After a step that has contained bodies: wakes the islands of sleepers that took part.
+    void wake_contained();
+    /// Wakes the islands of the bodies that joints connect with this one.
+    void wake_joined_to(BodyId body);
+    /// Wakes those with a disc within `reach`, m, of a segment, or that touch a wall on this body.
+    void wake_near(const WallSegment& segment, double reach);
+    void wake_near_walls_of(BodyId body);
+    /// Marks a sleeper, whose island then wakes when the next step begins; or notes that a body that is not dynamic has
+    /// been moved. Changes the data of this body alone, as the rule on threads at Scene wants it.
+    void rouse(BodyId body);
+    /// Rouses a sleeper if its acceleration has changed so much since it fell asleep.
+    void rouse_if_pushed(BodyId body);
+
     void write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular);
     /// The mean force or torque over the last step of an impulse of that step.
     [[nodiscard]] Vec3<float> force_of(const Vec3<float>& impulse) const;

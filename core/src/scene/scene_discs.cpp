@@ -52,15 +52,18 @@ void Scene::set_discs(std::span<const BodyId> bodies, StridedSpan<const DiscDefi
         check_disc(discs[i]);
     }
     grow_to(core_->discs.shapes, core_->bodies.slot_count());
-    for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        core_->wake_island(bodies[i].slot);
         core_->discs.set_shape(bodies[i].slot,
                                {discs[i].radius, discs[i].friction, discs[i].category, discs[i].mask});
+    }
     core_->shapes.version.reset();  // capsules may meet them
 }
 
 void Scene::clear_disc(BodyId body)
 {
     core_->check_has_disc(body, "clear_disc.body");
+    core_->wake_island(body.slot);
     core_->discs.set_shape(body.slot, {});
     core_->forget_discs_of(body);
     core_->shapes.version.reset();
@@ -112,6 +115,8 @@ WallId SceneCore::put_wall(const WallDefinition& wall)
         discs.segments.push_back({wall.points[i], wall.points[(i + 1) % wall.points.size()], body,
                                   wall.friction, wall.category, wall.mask, slot, wall.surface_speed,
                                   wall.max_force, wall.one_way ? 1U : 0U});
+    for (std::size_t i = discs.segments.size() - count; i < discs.segments.size(); ++i)
+        wake_near(discs.segments[i], touching_distance);
     discs.is_stale = true;
     shapes.version.reset();
     return {slot, discs.walls[slot].generation};
@@ -123,6 +128,9 @@ void Scene::remove_wall(WallId wall)
         refuse("remove_wall.wall", "slot " + std::to_string(wall.slot) + ", not alive",
                "a wall of this scene");
     make_room_for(core_->discs.free_walls, 1);
+    for (const WallSegment& segment : core_->discs.segments) {
+        if (segment.wall == wall.slot) core_->wake_near(segment, touching_distance);
+    }
     core_->discs.remove_wall(wall.slot);
     core_->shapes.version.reset();
 }
@@ -136,6 +144,7 @@ void SceneCore::remove_discs_of(std::span<const BodyId> removed)
 {
     shapes.version.reset();
     for (const BodyId body : removed) {
+        wake_near_walls_of(body);
         if (has_disc(body)) discs.set_shape(body.slot, {});
         forget_discs_of(body);
         const BodyRow where = bodies.row_of(body);

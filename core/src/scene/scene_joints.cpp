@@ -105,6 +105,8 @@ void SceneCore::remove_joint_at(int type, std::size_t index)
 {
     joints->for_each([&](auto& store, int t) {
         if (t != type) return;
+        wake_island(store.definitions[index].body_a.slot);
+        wake_island(store.definitions[index].body_b.slot);
         JointStores::Slot& entry = joints->slots[store.slots[index]];
         entry.live = 0;
         if (entry.iterations != 0) --joints->with_iterations;
@@ -274,6 +276,8 @@ ConstraintId Scene::add_joint(const Definition& definition)
     store.make_room();
     const ConstraintId id = core_->take_joint_slot(type, store.size());
     store.push_back(definition, id.slot);
+    core_->wake_island(definition.body_a.slot);
+    core_->wake_island(definition.body_b.slot);
     core_->joints->link(2 * id.slot, core_->bodies.first_ends[definition.body_a.slot]);
     core_->joints->link(2 * id.slot + 1, core_->bodies.first_ends[definition.body_b.slot]);
     core_->joints->version.reset();
@@ -291,6 +295,8 @@ void Scene::set_joint(ConstraintId joint, const Definition& definition)
     if (definition.body_a != now.body_a || definition.body_b != now.body_b)
         refuse("set_joint.definition", "other bodies", "the bodies of the joint");
     Type::validate(definition, core_->check_joint_bodies(type, definition.body_a, definition.body_b));
+    core_->wake_island(definition.body_a.slot);
+    core_->wake_island(definition.body_b.slot);
     // Locks and other joints are laid out differently.
     if (Type::is_equality(definition) != Type::is_equality(now)) core_->joints->version.reset();
     store.define(index, definition);

@@ -57,6 +57,10 @@ void Scene::set_pose(BodyId body, const Vec3<double>& position, const Quat<doubl
     const double length2 = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
     check("set_pose.orientation", length2, 1e-12, 1e12,
           "a quaternion with a length from 1e-6 to 1e6 (squared shown)");
+    core_->wake_island(body.slot);
+    core_->wake_joined_to(body);
+    core_->wake_near_walls_of(body);
+    core_->rouse(body);
     const BodyRow where = core_->bodies.row_of(body);
     BodyRows& rows = core_->bodies.rows(where.kind());
     rows.pose[where.row()] = {convert<PoseReal>(position), static_cast<PoseReal>(yaw)};
@@ -68,6 +72,7 @@ void Scene::set_pose(BodyId body, const Vec3<double>& position, const Quat<doubl
             core_->bodies.refresh_world_inertia(where.row());
     }
     core_->forget_discs_of(body);
+    core_->wake_near_walls_of(body);
     // A teleport makes the cached impulses meaningless.
     core_->joints->for_each_on(core_->bodies.first_ends[body.slot], [&](const JointStores::Slot& joint) {
         core_->joints->for_each([&](auto& store, int type) {
@@ -84,6 +89,8 @@ void SceneCore::check_velocity(BodyId body, const Vec3<float>* linear, const Vec
 void SceneCore::write_velocity(BodyId body, const Vec3<float>* linear, const Vec3<float>* angular)
 {
     if (bodies.contained[body.slot] != 0) return;  // frozen where it is
+    const auto moves = [](const Vec3<float>* v) { return v && (v->x != 0 || v->y != 0 || v->z != 0); };
+    if (bodies.is_asleep(body.slot) && (moves(linear) || moves(angular))) rouse(body);
     const BodyRow where = bodies.row_of(body);
     float* v =
         &bodies.rows(where.kind())
@@ -162,14 +169,14 @@ void Scene::set_forces(std::span<const BodyId> bodies, StridedSpan<const Vec3<fl
         a[0] = inverse_mass * forces[i].x;
         a[1] = inverse_mass * forces[i].y;
         if (where.kind() != BodyKind::planar) a[2] = inverse_mass * forces[i].z;
-        if (torques.empty()) continue;
-        if (where.kind() == BodyKind::planar)
+        if (!torques.empty() && where.kind() == BodyKind::planar)
             a[2] = core_->bodies.inverse_inertias[bodies[i].slot] * torques[i].z;
-        if (where.kind() == BodyKind::rigid) {
+        if (!torques.empty() && where.kind() == BodyKind::rigid) {
             a[4] = torques[i].x;
             a[5] = torques[i].y;
             a[6] = torques[i].z;
         }
+        core_->rouse_if_pushed(bodies[i]);
     }
 }
 

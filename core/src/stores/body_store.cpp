@@ -45,6 +45,8 @@ BodyStore::BodyStore()
     motions_.push_back(BodyMotion::static_body);
     first_ends.push_back(0);
     contained.push_back(0);
+    sleep.push_back(Sleep::awake);
+    slow_for.push_back(0);
     inverse_masses.push_back(0);
     inverse_inertias.push_back(0);
     for (int kind = 0; kind < body_kind_count; ++kind)
@@ -79,6 +81,8 @@ void BodyStore::make_room(std::span<const BodyDefinition> definitions)
     make_room_for(motions_, more);
     make_room_for(first_ends, more);
     make_room_for(contained, more);
+    make_room_for(sleep, more);
+    make_room_for(slow_for, more);
     make_room_for(inverse_masses, more);
     make_room_for(inverse_inertias, more);
 }
@@ -92,6 +96,7 @@ void BodyStore::make_room_in_rows(BodyKind kind, std::size_t wanted)
         make_room_for(*values, more * 4 * static_cast<std::size_t>(quads_of(kind)));
     make_room_for(r.pose, more);
     make_room_for(r.slot, more);
+    make_room_for(r.awake, more / BodyRows::rows_per_chunk + 1);
     if (quads_of(kind) == 2) {
         make_room_for(r.orientation, more);
         make_room_for(r.world_inverse_inertia, 8 * more);
@@ -119,6 +124,7 @@ std::uint32_t BodyStore::take_row(BodyKind kind)
         row = r.size();
         const std::size_t floats = static_cast<std::size_t>(quads_of(kind)) * 4 * (row + 1);
         r.slot.push_back(0);
+        if (row % BodyRows::rows_per_chunk == 0) r.awake.push_back(0);
         r.velocity.resize(floats);
         r.delta.resize(floats);
         r.unpushed.resize(floats);
@@ -157,6 +163,8 @@ BodyId BodyStore::add(const BodyDefinition& d)
         motions_.push_back(d.motion);
         first_ends.push_back(0);
         contained.push_back(0);
+        sleep.push_back(Sleep::awake);
+        slow_for.push_back(0);
         inverse_masses.push_back(0);
         inverse_inertias.push_back(0);
     } else {
@@ -168,6 +176,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
         motions_[slot] = d.motion;
         first_ends[slot] = 0;
         contained[slot] = 0;
+        slow_for[slot] = 0;
     }
 
     inverse_masses[slot] = dynamic ? 1 / d.mass : 0.0F;
@@ -192,6 +201,7 @@ void BodyStore::write(std::uint32_t slot, BodyRow where, const Content& content,
     BodyRows& r = rows(kind);
     slots_[slot].row = where;
     r.slot[row] = slot;
+    ++awake_beside({kind, row});
     r.pose[row] = content.pose;
     const float inverse_mass = inverse_masses[slot];
     inverse_inertias[slot] = kind == BodyKind::planar ? 1 / inertia.zz : 0.0F;
@@ -232,7 +242,8 @@ void BodyStore::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
     const BodyRow where = row_of(body);
     BodyRows& r = rows(where.kind());
     const std::size_t first = std::size_t{4} * static_cast<std::size_t>(quads_of(where.kind())) * where.row();
-    const bool planar = where.kind() == BodyKind::planar, moves = contained[body.slot] == 0;
+    const bool planar = where.kind() == BodyKind::planar,
+               moves = contained[body.slot] == 0 && !is_asleep(body.slot);
     // Accelerations are stored, not forces; of a rigid body the torque itself.
     const auto rescale = [&](std::size_t i, float inverse, float new_inverse) {
         r.acceleration[first + i] =
@@ -260,6 +271,12 @@ void BodyStore::remove(BodyId body)
     free_row(row_of(body));
     if (contained[body.slot] != 0) --contained_count;
     contained[body.slot] = 0;
+    if (is_asleep(body.slot)) {
+        --sleepers;
+    } else {
+        --awake_beside(row_of(body));
+    }
+    sleep[body.slot] = Sleep::awake;
     live_[body.slot] = 0;
     if (++slots_[body.slot].generation == 0) slots_[body.slot].generation = 1;  // zero is the null handle's
     free_slots_.push_back(body.slot);
@@ -295,24 +312,72 @@ void BodyStore::refresh_world_inertia(std::uint32_t row)
 
 void BodyStore::revive(BodyId body)
 {
-    const BodyRow where = row_of(body);
-    BodyRows& r = rows(where.kind());
     contained[body.slot] = 0;
     --contained_count;
+    thaw(body.slot);
+}
+
+void BodyStore::freeze(std::uint32_t slot)
+{
+    const BodyRow where = slots_[slot].row;
+    BodyRows& r = rows(where.kind());
+    const std::size_t quads = static_cast<std::size_t>(quads_of(where.kind()));
+    for (std::size_t q = quads * where.row(); q < quads * (where.row() + 1); ++q) {
+        set_quad(r.velocity, q, 0, 0, 0, 0);
+        if (where.kind() != BodyKind::rigid) continue;
+        set_quad(r.world_inverse_inertia, q, 0, 0, 0, 0);
+        set_quad(r.start_inverse_inertia, q, 0, 0, 0, 0);
+    }
+    if (where.kind() == BodyKind::planar) r.delta[std::size_t{4} * where.row() + 3] = 0;
+}
+
+void BodyStore::thaw(std::uint32_t slot)
+{
+    const BodyRow where = slots_[slot].row;
+    BodyRows& r = rows(where.kind());
     r.velocity[std::size_t{4} * static_cast<std::size_t>(quads_of(where.kind())) * where.row() + 3] =
-        inverse_masses[body.slot];
-    if (where.kind() == BodyKind::planar)
-        r.delta[std::size_t{4} * where.row() + 3] = inverse_inertias[body.slot];
+        inverse_masses[slot];
+    if (where.kind() == BodyKind::planar) r.delta[std::size_t{4} * where.row() + 3] = inverse_inertias[slot];
     if (where.kind() == BodyKind::rigid) refresh_world_inertia(where.row());
+}
+
+void BodyStore::fall_asleep(std::uint32_t slot)
+{
+    sleep[slot] = Sleep::asleep;
+    ++sleepers;
+    --awake_beside(slots_[slot].row);
+    freeze(slot);
+}
+
+void BodyStore::wake(std::uint32_t slot)
+{
+    sleep[slot] = Sleep::awake;
+    slow_for[slot] = 0;
+    --sleepers;
+    ++awake_beside(slots_[slot].row);
+    if (contained[slot] == 0) thaw(slot);
+}
+
+void BodyStore::count_awake(BodyKind kind)
+{
+    BodyRows& r = rows(kind);
+    r.awake.assign((r.size() - 1) / BodyRows::rows_per_chunk + 1, 0);
+    for (std::uint32_t row = 1; row < r.size(); ++row) {
+        if (r.slot[row] != 0 && !is_asleep(r.slot[row])) ++r.awake[row / BodyRows::rows_per_chunk];
+    }
 }
 
 void BodyStore::derive()
 {
     contained_count = static_cast<std::size_t>(std::count(contained.begin(), contained.end(), 1));
+    sleepers = 0;
+    for (std::uint32_t slot = 1; slot < slot_count(); ++slot)
+        sleepers += sleep[slot] != Sleep::awake && motions_[slot] == BodyMotion::dynamic_body ? 1 : 0;
     for (int k = 0; k < body_kind_count; ++k) {
         const auto kind = static_cast<BodyKind>(k);
         BodyRows& r = rows(kind);
         const auto quads = static_cast<std::size_t>(quads_of(kind));
+        count_awake(kind);
         r.delta.assign(r.velocity.size(), 0);
         r.unpushed.assign(r.velocity.size(), 0);
         if (quads == 2) r.world_inverse_inertia.assign(r.velocity.size(), 0);
@@ -322,10 +387,12 @@ void BodyStore::derive()
         }
         for (std::uint32_t row = 0; row < r.size(); ++row) {
             const std::uint32_t slot = r.slot[row];
-            const bool moves = slot != 0 && contained[slot] == 0;
+            const bool is_frozen = slot != 0 && is_asleep(slot);  // it may have got a speed for when it wakes
+            const bool moves = slot != 0 && contained[slot] == 0 && !is_frozen;
             float* velocity = &r.velocity[4 * quads * row];
             float* delta = &r.delta[4 * quads * row];
-            if (!moves) std::fill_n(velocity, 4 * quads, 0.0F);
+            if (!moves && !is_frozen) std::fill_n(velocity, 4 * quads, 0.0F);
+            velocity[3] = 0;
             if (slot == 0) std::fill_n(&r.acceleration[4 * quads * row], 4 * quads, 0.0F);
             if (quads == 2) delta[7] = 1;
             if (kind == BodyKind::rigid && slot != 0) r.inverse_inertia[row] = inverse_of(r.inertia[row]);
@@ -342,7 +409,8 @@ void BodyStore::restore_planar_inertia()
     BodyRows& r = rows(BodyKind::planar);
     for (std::uint32_t row = 1; row < r.size(); ++row) {
         const std::uint32_t slot = r.slot[row];
-        if (slot != 0 && contained[slot] == 0) r.delta[std::size_t{4} * row + 3] = inverse_inertias[slot];
+        if (slot != 0 && contained[slot] == 0 && !is_asleep(slot))
+            r.delta[std::size_t{4} * row + 3] = inverse_inertias[slot];
     }
 }
 
@@ -358,17 +426,11 @@ int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, con
         float* delta = &r.delta[std::size_t{4} * quads * row];
         if (!all_finite(velocity, 4 * quads) || !all_finite(delta, 4 * quads)) {
             // Frozen at its last finite pose: without inverse mass nothing can move it until the host revives it.
-            for (int i = 0; i < 4 * quads; ++i) velocity[i] = 0;
-            if (kind == BodyKind::rigid) {
-                for (std::size_t q = std::size_t{2} * row; q < std::size_t{2} * row + 2; ++q) {
-                    set_quad(r.world_inverse_inertia, q, 0, 0, 0, 0);
-                    set_quad(r.start_inverse_inertia, q, 0, 0, 0, 0);
-                }
-            }
+            freeze(r.slot[row]);
             count += contained[r.slot[row]] == 0 ? 1 : 0;
             contained[r.slot[row]] = 1;
             contained_slot = std::min(contained_slot, r.slot[row]);
-        } else {
+        } else if (!is_asleep(r.slot[row])) {
             BodyPose& pose = r.pose[row];
             const float* a = &r.acceleration[std::size_t{4} * quads * row];
             const bool in_plane = kind == BodyKind::planar;

@@ -43,6 +43,13 @@ struct BodyRow {
     [[nodiscard]] std::uint32_t row() const { return bits & 0x3FFFFFFFU; }
 };
 
+/// Whether a body sleeps: see scene/sleep.h.
+enum class Sleep : std::uint8_t {
+    awake,
+    asleep,
+    roused  ///< it sleeps until the next step begins; of a body that is not dynamic: it was changed since the last step
+};
+
 /// The type of positions and orientations from step to step. Floats halve their bytes, but resolve positions at 1 km
 /// from the origin only to 0.06 mm.
 #ifdef MOTLEY_FLOAT_POSITIONS
@@ -70,6 +77,13 @@ struct BodyRows {
     AlignedVector<Sym3<float>> inverse_inertia;  ///< rigid only, body frame
     std::vector<std::uint32_t> slot;             ///< the handle slot of each row, 0 for a free one
     std::vector<std::uint32_t> free_rows;        ///< the last one is reused first
+    /// For each chunk of rows the number of bodies in it that do not sleep. Steps skip chunks without any.
+    std::vector<std::uint32_t> awake;
+    static constexpr std::uint32_t rows_per_chunk = 1024;
+    [[nodiscard]] bool is_chunk_awake(std::int64_t chunk) const
+    {
+        return awake[static_cast<std::size_t>(chunk)] > 0;
+    }
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot.size()); }
 };
 
@@ -136,6 +150,25 @@ class BodyStore {
     {
         return contained_count > 0 && contained[rows(where.kind()).slot[where.row()]] != 0;
     }
+    /// For each slot whether the body sleeps. A sleeper's row has no speed and no inverse mass, as a contained body's.
+    std::vector<Sleep> sleep;
+    std::size_t sleepers = 0;  ///< dynamic bodies that sleep
+    [[nodiscard]] bool is_asleep(std::uint32_t slot) const
+    {
+        return sleepers > 0 && sleep[slot] != Sleep::awake && motions_[slot] == BodyMotion::dynamic_body;
+    }
+    [[nodiscard]] bool is_asleep(BodyRow where) const
+    {
+        return sleepers > 0 && where.kind() != BodyKind::fixed &&
+               sleep[rows(where.kind()).slot[where.row()]] != Sleep::awake;
+    }
+    /// s, for each slot: for how long the body has been slower than SolverSettings::sleep_speed.
+    std::vector<float> slow_for;
+    /// Takes speed and inverse mass from the row of an awake, dynamic body...
+    void fall_asleep(std::uint32_t slot);
+    /// ...and gives the inverse mass of a sleeper back, unless it is contained.
+    void wake(std::uint32_t slot);
+
     /// For each slot the inverse mass, 1/kg; kept while the body is contained, for its revival.
     AlignedVector<float> inverse_masses;
     std::vector<float> inverse_inertias;  ///< likewise, planar only
@@ -184,6 +217,15 @@ class BodyStore {
     [[nodiscard]] Content read(BodyRow where) const;
     /// Gives a slot a row with this content and, if it is planar or rigid, this inertia.
     void write(std::uint32_t slot, BodyRow where, const Content& content, const Sym3<float>& inertia);
+    /// Takes the inverse mass and inertia from a row, so that nothing moves it; or gives them back.
+    void freeze(std::uint32_t slot);
+    void thaw(std::uint32_t slot);
+    /// Counts the bodies of a kind in each chunk of rows that are awake.
+    void count_awake(BodyKind kind);
+    [[nodiscard]] std::uint32_t& awake_beside(BodyRow where)
+    {
+        return rows(where.kind()).awake[where.row() / BodyRows::rows_per_chunk];
+    }
     void swap_planar(std::uint32_t i, std::uint32_t j);
     /// Enters the rows of a kind into the table of slots.
     void enter_rows(BodyKind kind);

@@ -27,6 +27,8 @@ void ContactCache::begin(std::size_t count)
     grow(list.colours, room);
     grow(list.impulses, room + 1);
     grow(list.step_impulses, room);
+    grow(list.sleepers, room);
+    list.has_sleepers = false;
     const std::size_t most = std::max(lists_[0].entries.size(), lists_[1].entries.size());
     parts_.reserve(most / contacts_per_part + 1);
     grow(claimed_, most);
@@ -139,7 +141,8 @@ void ContactCache::verify(std::int64_t part)
 
 bool ContactCache::restore(std::span<const ContactList::Entry> entries, std::span<const std::uint8_t> colours,
                            std::span<const ContactImpulse> impulses,
-                           std::span<const ContactImpulse> step_impulses)
+                           std::span<const ContactImpulse> step_impulses,
+                           std::span<const std::uint32_t> sleepers)
 {
     begin(entries.size());
     ContactList& list = staged();
@@ -147,6 +150,8 @@ bool ContactCache::restore(std::span<const ContactList::Entry> entries, std::spa
     std::copy(colours.begin(), colours.end(), list.colours.begin());
     std::copy(impulses.begin(), impulses.end(), list.impulses.begin() + 1);
     std::copy(step_impulses.begin(), step_impulses.end(), list.step_impulses.begin());
+    std::copy(sleepers.begin(), sleepers.end(), list.sleepers.begin());
+    list.has_sleepers = !sleepers.empty();
     for (std::int64_t p = 0; p < part_count(); ++p) {
         Walk walk(*this, p);
         for (std::uint32_t i = part(p).begin; i < part(p).end; ++i) walk.find(i, list.entries[i].key);

@@ -33,6 +33,9 @@ struct ContactList {
     /// Of the last substep; that of contact i is at i + 1. The first one stays zero, for contacts that are new.
     AlignedVector<ContactImpulse> impulses = AlignedVector<ContactImpulse>(1);
     AlignedVector<ContactImpulse> step_impulses;  ///< of all substeps together
+    /// Of contacts that nobody awake has a part in, the slot of a body that sleeps, else 0. Only if `has_sleepers`.
+    AlignedVector<std::uint32_t> sleepers;
+    bool has_sleepers = false;
 };
 
 /// The contacts of the last step, and the new list, which is matched with them by key.
@@ -99,6 +102,14 @@ class ContactCache {
     void prefetch(std::uint32_t index) const { table_.prefetch(staged().entries[index].key); }
     /// Looks up a missed contact. Returns the lost contact with its key, or none: then it is new.
     std::uint32_t trace(std::int64_t part, std::uint32_t index);
+    /// After that: calls work(index) for each contact of the last list that is not in the new one.
+    template <class Work>
+    void for_each_gone(const Work& work) const
+    {
+        for (std::uint32_t i = 0; i < current().count; ++i) {
+            if (claimed_[i] == 0) work(i);
+        }
+    }
     /// Finds contacts matched by a walk that have the key of a new one.
     void verify(std::int64_t part);
     [[nodiscard]] bool has_repeated_key() const { return repeated_; }
@@ -106,7 +117,8 @@ class ContactCache {
     /// Fills an empty cache with the contacts of a last step. Returns false, and leaves the cache unusable, when a key
     /// occurs twice.
     bool restore(std::span<const ContactList::Entry> entries, std::span<const std::uint8_t> colours,
-                 std::span<const ContactImpulse> impulses, std::span<const ContactImpulse> step_impulses);
+                 std::span<const ContactImpulse> impulses, std::span<const ContactImpulse> step_impulses,
+                 std::span<const std::uint32_t> sleepers);
     /// The staged list becomes the current one.
     void accept_staged() { current_ = 1 - current_; }
     [[nodiscard]] std::span<const ContactImpulse> impulses() const

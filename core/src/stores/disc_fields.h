@@ -27,6 +27,13 @@ void for_each_disc_class(const Work& work)
     work(std::integral_constant<DiscClass, DiscClass::smooth_wall>{});
     work(std::integral_constant<DiscClass, DiscClass::rough_wall>{});
 }
+/// Calls work(class, blocks) for the blocks of a band that are solved, then for those of bodies that sleep.
+template <class Band, class Work>
+void for_each_disc_blocks(Band& band, const Work& work)
+{
+    for_each_disc_class([&](auto c) { work(c, band.blocks[static_cast<std::size_t>(c.value)]); });
+    for_each_disc_class([&](auto c) { work(c, band.resting[static_cast<std::size_t>(c.value)]); });
+}
 /// The same for the class `c` alone.
 template <class Work>
 void with_disc_class(DiscClass c, const Work& work)

@@ -1,6 +1,8 @@
 // See disc_store.h.
 #include "stores/disc_store.h"
 
+#include "stores/disc_fields.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -50,10 +52,10 @@ void DiscStore::remove_segments_of(std::uint32_t wall)
     segments.resize(left);
     is_torn = false;
     for (std::size_t band = 0; band < band_count; ++band) {
-        for (DiscBlocks& blocks : bands[band].blocks) {
+        for_each_disc_blocks(bands[band], [&](auto, DiscBlocks& blocks) {
             for (WallTouch& touch : blocks.touches)
                 touch.segment = touch.segment < moved.size() ? moved[touch.segment] : UINT32_MAX;
-        }
+        });
     }
     is_stale = true;
 }
@@ -109,15 +111,14 @@ void DiscStore::renumber_contacts(std::span<const std::uint32_t> new_rows)
         offset = static_cast<std::int32_t>(new_rows[static_cast<std::size_t>(offset / a_row)]) * a_row;
     };
     for (std::size_t band = 0; band < band_count; ++band) {
-        for (std::size_t c = 0; c < disc_class_count; ++c) {
-            DiscBlocks& blocks = bands[band].blocks[c];
+        for_each_disc_blocks(bands[band], [&](auto c, DiscBlocks& blocks) {
             for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
                 for (std::size_t lane = 0; lane < blocks.lanes[block]; ++lane) {
                     renumber_offset(blocks.bodies[block].b[lane]);
-                    if (!is_wall(static_cast<DiscClass>(c))) renumber_offset(blocks.bodies[block].a[lane]);
+                    if (!is_wall(c.value)) renumber_offset(blocks.bodies[block].a[lane]);
                 }
             }
-        }
+        });
     }
 }
 

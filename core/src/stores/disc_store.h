@@ -63,7 +63,9 @@ struct DiscBlocks {
     std::vector<WallTouch> touches;  ///< of walls: by 16 b + l
 };
 struct DiscBand {
-    std::array<DiscBlocks, disc_class_count> blocks;
+    std::array<DiscBlocks, disc_class_count> blocks;   ///< those that are solved
+    std::array<DiscBlocks, disc_class_count> resting;  ///< of bodies that sleep: they keep what they bore
+    std::uint32_t half_awake = 0;  ///< of `blocks`, contacts of a sleeper with a body that is awake
 };
 
 /// How the last search of all discs laid out its strips.
@@ -130,6 +132,8 @@ struct DiscStore {
     std::vector<Vec2<double>> wall_ends;  ///< two a segment: where the ends were, world
     float wall_skin = 0;                  ///< m: how far an end may move before a new search
     int age = 0;                          ///< steps since then
+    /// Whether `resting` has the contacts of those who sleep now.
+    bool is_divided = true;
     /// Whether a body, a disc or a wall was added, removed or teleported since then.
     bool is_stale = true;
     /// Whether memory ran out half-way in a search of all discs: blocks have lost impulses, which the searcher still has

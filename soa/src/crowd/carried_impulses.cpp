@@ -20,14 +20,19 @@ template <class Work>
 void CarriedImpulses::for_each_kept(const DiscStore& discs, std::size_t band, const Work& work)
 {
     const auto is_forgotten = [&](std::uint32_t row) { return discs.anchors[row].skin < 0; };
-    for_each_disc_class([&](auto c) {
+    for_each_disc_blocks(discs.bands[band], [&](auto c, const DiscBlocks& blocks) {
         using Fields = DiscFieldsOf<c.value>;
-        const DiscBlocks& blocks = discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
+        const bool rests = &blocks == &discs.bands[band].resting[static_cast<std::size_t>(c.value)];
         for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
             for (std::size_t lane = 0; lane < blocks.lanes[block]; ++lane) {
                 const auto held = load_lane<typename Fields::Impulse>(blocks.impulses.data(), block, lane);
                 Impulse impulse{held.normal, 0, 0};
                 if constexpr (is_rough(c.value)) impulse.tangent = held.tangent;
+                if (rests) {
+                    const auto sum = load_lane<typename Fields::Impulse>(blocks.sums.data(), block, lane);
+                    impulse.step_normal = sum.normal;
+                    if constexpr (is_rough(c.value)) impulse.step_tangent = sum.tangent;
+                }
                 // Not finite where a body had to be contained.
                 if (!std::isfinite(impulse.normal) || !std::isfinite(impulse.tangent)) impulse = {};
                 constexpr std::int32_t a_row = offsets_a_row(BodyKind::planar);
@@ -40,7 +45,8 @@ void CarriedImpulses::for_each_kept(const DiscStore& discs, std::size_t band, co
                     work(b, wall_bit | touch.segment, impulse);
                 } else {
                     const auto a = static_cast<std::uint32_t>(blocks.bodies[block].a[lane] / a_row);
-                    if (impulse.normal > 0 && !is_forgotten(a)) work(a, b, impulse);
+                    if ((impulse.normal > 0 || impulse.step_normal > 0) && !is_forgotten(a))
+                        work(a, b, impulse);
                 }
             }
         }
@@ -50,9 +56,10 @@ void CarriedImpulses::for_each_kept(const DiscStore& discs, std::size_t band, co
 void CarriedImpulses::count(const DiscStore& discs, std::size_t band)
 {
     std::uint32_t entries = 0;
-    for (const DiscBlocks& blocks : discs.bands[band].blocks)
+    for_each_disc_blocks(discs.bands[band], [&](auto, const DiscBlocks& blocks) {
         for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block)
             entries += blocks.lanes[block];
+    });
     places_[band] = entries;
 }
 

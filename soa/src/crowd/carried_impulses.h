@@ -14,7 +14,8 @@ class CarriedImpulses {
   public:
     struct Impulse {
         float normal = 0, tangent = 0;
-        float side = 0;  ///< WallTouch::side; 0: the pair was not known
+        float side = 0;                           ///< WallTouch::side; 0: the pair was not known
+        float step_normal = 0, step_tangent = 0;  ///< of the whole step; only of bodies that sleep
     };
     /// Starts over: then count() of every band, then open(), then keep() of band 0, then of every other band. Count and
     /// keep may run on different threads.

@@ -17,15 +17,6 @@ constexpr std::size_t most_later_neighbours = 32;
 /// m: discs further apart than this start without the impulse that they had.
 constexpr double still_touching = 0.005;
 
-/// The square of the distance of a point from a segment, m2.
-double distance2(const Vec2<double>& point, const Vec2<double>& from, const Vec2<double>& to)
-{
-    const Vec2<double> along = to - from;
-    const double t = std::clamp(dot(along, point - from) / dot(along, along), 0.0, 1.0);
-    const Vec2<double> apart = point - (from + t * along);
-    return dot(apart, apart);
-}
-
 /// The range along the strips in which a segment lies between two places across them, m.
 struct Range {
     double low, high;
@@ -48,12 +39,28 @@ float friction_of(float a, float b)
     return a == b ? a : std::sqrt(a * b);
 }
 
+/// Sleepers keep what they bore in the step in which they fell asleep.
+template <class Fields>
+void keep_sum(const CarriedImpulses::Impulse& impulse, DiscBlocks& blocks, const BlockFiller::Place& at)
+{
+    typename Fields::Impulse sum{};
+    sum.normal = impulse.step_normal;
+    if constexpr (Fields::Kind::rough) sum.tangent = impulse.step_tangent;
+    store_lane(sum, blocks.sums.data(), at.block, at.lane);
+}
+
 }  // namespace
+
+void DiscFinder::divide(SceneCore& scene, std::size_t band, int worker)
+{
+    Worker& own = workers_[static_cast<std::size_t>(worker)];
+    own.split.divide(scene, scene.discs.bands[band], own.fillers, own.resting_fillers);
+}
 
 void DiscFinder::open(SceneCore& scene, int workers)
 {
     DiscStore& discs = scene.discs;
-    workers_.resize(static_cast<std::size_t>(workers));
+    make_room_for_workers(workers);
     discs.late.clear();
     discs.late_reach = discs.late_drift = 0;
     const auto bands = static_cast<std::size_t>(strips.band_count()) + 1;
@@ -166,7 +173,7 @@ void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
     } else {
         find_in_strips(scene, band, own);
     }
-    for (BlockFiller& filler : own.fillers) filler.finish();
+    own.finish();
 }
 
 void DiscFinder::begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers, bool goes_on)
@@ -174,13 +181,17 @@ void DiscFinder::begin_fillers(DiscBand& band, Worker& worker, std::size_t numbe
     for_each_disc_class([&](auto c) {
         using Fields = DiscFieldsOf<c.value>;
         const auto i = static_cast<std::size_t>(c.value);
-        BlockFiller& filler = worker.fillers[i];
-        if (goes_on) {
-            filler.go_on(band.blocks[i], Fields::row_floats, Fields::impulse_floats, numbers);
-        } else {
-            filler.begin(band.blocks[i], Fields::row_floats, Fields::impulse_floats, numbers);
-        }
+        const auto begin = [&](BlockFiller& filler, DiscBlocks& blocks) {
+            if (goes_on) {
+                filler.go_on(blocks, Fields::row_floats, Fields::impulse_floats, numbers);
+            } else {
+                filler.begin(blocks, Fields::row_floats, Fields::impulse_floats, numbers);
+            }
+        };
+        begin(worker.fillers[i], band.blocks[i]);
+        begin(worker.resting_fillers[i], band.resting[i]);
     });
+    if (!goes_on) band.half_awake = 0;
 }
 
 /// The pairs of a strip with itself and with the next one, in order.
@@ -243,8 +254,13 @@ void DiscFinder::add_pair(SceneCore& scene, DiscBand& band, Worker& worker, cons
         if constexpr (!is_wall(c.value)) {
             using Fields = DiscFieldsOf<c.value>;
             const auto i = static_cast<std::size_t>(c.value);
-            DiscBlocks& blocks = band.blocks[i];
-            const BlockFiller::Place at = worker.fillers[i].take(number_a, number_b);
+            const bool a_rests = scene.bodies.is_asleep(BodyRow(BodyKind::planar, a.row)),
+                       b_rests = scene.bodies.is_asleep(BodyRow(BodyKind::planar, b.row));
+            const bool rests = a_rests && b_rests;
+            band.half_awake += a_rests != b_rests ? 1 : 0;
+            DiscBlocks& blocks = rests ? band.resting[i] : band.blocks[i];
+            const BlockFiller::Place at =
+                (rests ? worker.resting_fillers : worker.fillers)[i].take(number_a, number_b);
             blocks.bodies[at.block].a[at.lane] = offset_of(BodyRow(BodyKind::planar, a.row));
             blocks.bodies[at.block].b[at.lane] = offset_of(BodyRow(BodyKind::planar, b.row));
             typename Fields::Row row{};
@@ -261,6 +277,7 @@ void DiscFinder::add_pair(SceneCore& scene, DiscBand& band, Worker& worker, cons
             }
             store_lane(row, blocks.rows.data(), at.block, at.lane);
             store_lane(held, blocks.impulses.data(), at.block, at.lane);
+            if (rests) keep_sum<Fields>(impulse, blocks, at);
         }
     });
 }
@@ -294,10 +311,12 @@ void DiscFinder::add_touch(SceneCore& scene, DiscBand& band, Worker& worker, con
         if constexpr (is_wall(c.value)) {
             using Fields = DiscFieldsOf<c.value>;
             const auto i = static_cast<std::size_t>(c.value);
-            DiscBlocks& blocks = band.blocks[i];
+            const bool rests = scene.bodies.is_asleep(BodyRow(BodyKind::planar, disc.row));
+            DiscBlocks& blocks = rests ? band.resting[i] : band.blocks[i];
             // First, so that every lane in use has a touch even if memory runs out.
             grow_to(blocks.touches, block_lanes * (static_cast<std::size_t>(blocks.count) + 1));
-            const BlockFiller::Place at = worker.fillers[i].take(BlockFiller::no_body, number);
+            const BlockFiller::Place at =
+                (rests ? worker.resting_fillers : worker.fillers)[i].take(BlockFiller::no_body, number);
             blocks.bodies[at.block].a[at.lane] = offset_of(scene.bodies.row_of(wall.body));
             blocks.bodies[at.block].b[at.lane] = offset_of(BodyRow(BodyKind::planar, disc.row));
             blocks.touches[block_lanes * at.block + at.lane] = {segment.index, impulse.side};
@@ -314,6 +333,7 @@ void DiscFinder::add_touch(SceneCore& scene, DiscBand& band, Worker& worker, con
             }
             store_lane(row, blocks.rows.data(), at.block, at.lane);
             store_lane(held, blocks.impulses.data(), at.block, at.lane);
+            if (rests) keep_sum<Fields>(impulse, blocks, at);
         }
     });
 }

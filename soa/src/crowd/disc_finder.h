@@ -10,6 +10,7 @@
 
 #include "crowd/block_filler.h"
 #include "crowd/carried_impulses.h"
+#include "crowd/disc_split.h"
 #include "crowd/disc_strips.h"
 
 namespace motley {
@@ -35,6 +36,15 @@ class DiscFinder {
     /// Between searches of all discs: gives the discs in these rows of planar bodies new anchors and skins, and adds
     /// the contacts that they may have now to band 0. The rows may be in any order; they are sorted.
     void find_late(SceneCore& scene, std::span<std::uint32_t> rows, float dt);
+    /// Makes space for so many workers.
+    void make_room_for_workers(int workers)
+    {
+        if (workers_.size() < static_cast<std::size_t>(workers))
+            workers_.resize(static_cast<std::size_t>(workers));
+    }
+    /// When bodies have fallen asleep or woken: sorts the contacts of a band into those that are solved and those that
+    /// rest.
+    void divide(SceneCore& scene, std::size_t band, int worker);
 
   private:
     struct Pair {
@@ -42,7 +52,13 @@ class DiscFinder {
     };
     struct Worker {
         std::vector<Pair> pairs;
-        std::array<BlockFiller, disc_class_count> fillers;
+        std::array<BlockFiller, disc_class_count> fillers, resting_fillers;
+        DiscSplit split;
+        void finish()
+        {
+            for (BlockFiller& filler : fillers) filler.finish();
+            for (BlockFiller& filler : resting_fillers) filler.finish();
+        }
     };
     std::shared_ptr<const char> self_ =
         std::make_shared<const char>('\0');  ///< its address names this finder
@@ -80,8 +96,10 @@ class DiscFinder {
     [[nodiscard]] CarriedImpulses::Impulse carried_of(const PlacedDisc& a, const PlacedDisc& b) const;
 };
 
-/// When a step begins: the rows of walls.
+/// When a step begins: the rows of walls that are solved.
 void place_walls(const SceneCore& scene, std::span<const Vec2<double>> ends, float warm_start_scale,
                  DiscBand& band);
+/// When contacts have come to rest: their rows, from where their bodies lie.
+void place_resting(const SceneCore& scene, std::span<const Vec2<double>> ends, DiscBand& band);
 
 }  // namespace motley

@@ -45,6 +45,13 @@ float DiscStrips::skin_at(double speed, float dt)
     return skin_at_rest + static_cast<float>(std::min(goes, 1e9));
 }
 
+float DiscStrips::inverse_mass_of(const SceneCore& scene, std::uint32_t row)
+{
+    const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
+    const float own = rows.velocity[std::size_t{4} * row + 3];
+    return own > 0 ? own : scene.bodies.inverse_masses[rows.slot[row]];
+}
+
 void DiscStrips::begin(SceneCore& scene, float dt)
 {
     const std::uint32_t rows = scene.bodies.rows(BodyKind::planar).size();
@@ -189,8 +196,8 @@ void DiscStrips::place(const SceneCore& scene, std::int64_t chunk)
         const DiscAnchor& anchor = discs.found_at[row];
         const Vec2<double> at = to_strips(anchor);
         const float radius = discs.shapes[rows.slot[row]].radius, reach = radius + anchor.skin;
-        placed_[places[group_of(at.y, reach)]++] = {
-            at.x, at.y, reach, radius, rows.velocity[std::size_t{4} * row + 3], row};
+        placed_[places[group_of(at.y, reach)]++] = {at.x, at.y, reach, radius, inverse_mass_of(scene, row),
+                                                    row};
     });
 }
 

@@ -20,7 +20,7 @@
 namespace motley {
 
 /// Rows of planar bodies are measured and sorted in chunks, which do not depend on the number of threads.
-inline constexpr std::uint32_t disc_rows_per_chunk = 1024;
+inline constexpr std::uint32_t disc_rows_per_chunk = BodyRows::rows_per_chunk;
 constexpr std::int64_t disc_chunks(std::uint32_t rows)
 {
     return (std::int64_t{rows} + disc_rows_per_chunk - 1) / disc_rows_per_chunk;
@@ -57,6 +57,8 @@ class DiscStrips {
     void restore(const SceneCore& scene);
     /// How far something that moves at `speed`, m/s, may go before it is searched for again, m, in steps of dt.
     static float skin_at(double speed, float dt);
+    /// 1/kg, of the body in a row; also of one that sleeps.
+    static float inverse_mass_of(const SceneCore& scene, std::uint32_t row);
     [[nodiscard]] std::int64_t chunk_count() const { return chunks_; }
     /// How far each disc of a chunk of rows may reach before the next search; writes the skins of the anchors.
     void measure(const SceneCore& scene, DiscStore& discs, std::int64_t chunk);

@@ -66,7 +66,7 @@ void DiscFinder::find_late(SceneCore& scene, std::span<std::uint32_t> rows, floa
     fresh_.clear();
     begin_fillers(discs.bands[0], workers_[0], scene.bodies.rows(BodyKind::planar).size(), true);
     for (const std::uint32_t row : rows) find_late_of(scene, row, dt);
-    for (BlockFiller& filler : workers_[0].fillers) filler.finish();
+    workers_[0].finish();
     for (const std::uint32_t row : rows) is_new_[row] = 0;
     std::sort(fresh_.begin(), fresh_.end());
     merge_into(discs.late, fresh_);
@@ -82,7 +82,8 @@ void DiscFinder::find_late_of(SceneCore& scene, std::uint32_t row, float dt)
     is_new_[row] = 1;
     const float radius = discs.shapes[rows.slot[row]].radius;
     const Vec2<double> at = strips.to_strips(discs.anchors[row]);
-    const PlacedDisc me{at.x, at.y, radius + discs.anchors[row].skin, radius, v[3], row};
+    const PlacedDisc me{
+        at.x, at.y, radius + discs.anchors[row].skin, radius, DiscStrips::inverse_mass_of(scene, row), row};
     const Vec2<double> drift = at - strips.to_strips(discs.found_at[row]);
     discs.late_drift = std::max(discs.late_drift, static_cast<float>(1.001 * std::sqrt(dot(drift, drift))));
     discs.late_reach = std::max(discs.late_reach, me.reach);

@@ -1,4 +1,5 @@
-// The rows of contacts with walls, one at a time: they are few beside those of people.
+// The rows of contacts with walls, one at a time: they are few beside those of people. And those of bodies that fall
+// asleep, which is seldom.
 #include <cmath>
 
 #include "crowd/disc_finder.h"
@@ -59,9 +60,9 @@ Placed place(const Meeting& meeting, float side)
     return {distance > 1e-9 ? (1 / distance) * meeting.away : across, meeting.end()};
 }
 
+/// The rows of contacts with walls.
 template <DiscClass c>
-void place_class(const SceneCore& scene, std::span<const Vec2<double>> ends, float warm_start_scale,
-                 DiscBlocks& blocks)
+void place_class(const SceneCore& scene, std::span<const Vec2<double>> ends, DiscBlocks& blocks)
 {
     using Fields = DiscFieldsOf<c>;
     const BodyRows& planar = scene.bodies.rows(BodyKind::planar);
@@ -102,11 +103,42 @@ void place_class(const SceneCore& scene, std::span<const Vec2<double>> ends, flo
             const Vec2<double> arm = placed.point - in_plane(fixed.pose[a].position);
             sweep.arm_a = {static_cast<float>(arm.x), static_cast<float>(arm.y)};
             store_lane(row, blocks.rows.data(), block, lane);
-            auto impulse = load_lane<typename Fields::Impulse>(blocks.impulses.data(), block, lane);
+        }
+    }
+}
+
+/// The impulses to start from, and sums of zero.
+template <DiscClass c>
+void begin_impulses(float warm_start_scale, DiscBlocks& blocks)
+{
+    using Impulse = typename DiscFieldsOf<c>::Impulse;
+    for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
+        for (std::size_t lane = 0; lane < blocks.lanes[block]; ++lane) {
+            auto impulse = load_lane<Impulse>(blocks.impulses.data(), block, lane);
             impulse.normal *= warm_start_scale;
             if constexpr (is_rough(c)) impulse.tangent *= warm_start_scale;
             store_lane(impulse, blocks.impulses.data(), block, lane);
-            store_lane(typename Fields::Impulse{}, blocks.sums.data(), block, lane);
+            store_lane(Impulse{}, blocks.sums.data(), block, lane);
+        }
+    }
+}
+
+/// The rows of contacts of two discs, as the kernels make them.
+template <DiscClass c>
+void place_pairs(const SceneCore& scene, DiscBlocks& blocks)
+{
+    using Fields = DiscFieldsOf<c>;
+    constexpr std::int32_t a_row = offsets_a_row(BodyKind::planar);
+    const AlignedVector<BodyPose>& poses = scene.bodies.rows(BodyKind::planar).pose;
+    for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
+        for (std::size_t lane = 0; lane < blocks.lanes[block]; ++lane) {
+            const BlockBodies& bodies = blocks.bodies[block];
+            const Vec3<PoseReal>& a = poses[static_cast<std::size_t>(bodies.a[lane] / a_row)].position;
+            const Vec3<PoseReal>& b = poses[static_cast<std::size_t>(bodies.b[lane] / a_row)].position;
+            auto row = load_lane<typename Fields::Row>(blocks.rows.data(), block, lane);
+            Fields::Kind::template place_pair<float>(
+                {static_cast<float>(b.x - a.x), static_cast<float>(b.y - a.y)}, row);
+            store_lane(row, blocks.rows.data(), block, lane);
         }
     }
 }
@@ -117,9 +149,23 @@ void place_walls(const SceneCore& scene, std::span<const Vec2<double>> ends, flo
                  DiscBand& band)
 {
     for_each_disc_class([&](auto c) {
-        if constexpr (is_wall(c.value))
-            place_class<c.value>(scene, ends, warm_start_scale,
-                                 band.blocks[static_cast<std::size_t>(c.value)]);
+        if constexpr (is_wall(c.value)) {
+            DiscBlocks& blocks = band.blocks[static_cast<std::size_t>(c.value)];
+            place_class<c.value>(scene, ends, blocks);
+            begin_impulses<c.value>(warm_start_scale, blocks);
+        }
+    });
+}
+
+void place_resting(const SceneCore& scene, std::span<const Vec2<double>> ends, DiscBand& band)
+{
+    for_each_disc_class([&](auto c) {
+        DiscBlocks& blocks = band.resting[static_cast<std::size_t>(c.value)];
+        if constexpr (is_wall(c.value)) {
+            place_class<c.value>(scene, ends, blocks);
+        } else {
+            place_pairs<c.value>(scene, blocks);
+        }
     });
 }
 

@@ -40,6 +40,18 @@ std::int64_t swept_bytes(BodyKind kind)
     return kind == BodyKind::rigid ? 96 : 32;
 }
 
+/// The slot of a body that sleeps, if none that is awake has a part in a contact; else 0.
+std::uint32_t sleeper_of(const BodyStore& bodies, const Placement& placement)
+{
+    std::uint32_t sleeper = 0;
+    for (const BodyRow body : {placement.a, placement.b}) {
+        if (body.kind() == BodyKind::fixed) continue;
+        if (!bodies.is_asleep(body)) return 0;
+        sleeper = bodies.rows(body.kind()).slot[body.row()];
+    }
+    return sleeper;
+}
+
 }  // namespace
 
 void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse& use)
@@ -87,6 +99,7 @@ void Layout::place_joints(SceneCore& scene)
                 store.forget_impulse(i);
                 continue;
             }
+            if (bodies.is_asleep(a) || bodies.is_asleep(b)) continue;  // it keeps what it bore
             if (store.colours[i] == no_colour) store.colours[i] = joint_masks_.take_first(a, b);
             const int equalities = Type::is_equality(store.definitions[i]) ? Type::equality_count : 0;
             candidates_.push_back({{a, b, static_cast<std::int32_t>(i),
@@ -117,8 +130,10 @@ void Layout::find_groups(const BodyStore& bodies)
     }
 }
 
-void Layout::colour_contacts(const BodyStore& bodies, ContactList& list)
+void Layout::colour_contacts(const BodyStore& bodies, ContactCache& cache)
 {
+    ContactList& list = cache.staged();
+    list.has_sleepers = bodies.sleepers > 0;
     const std::span<Placement> placements(intake.placements.data(), list.count);
     std::size_t uncoloured = 0;
     for (std::uint32_t i = 0; i < placements.size(); ++i) {
@@ -127,7 +142,15 @@ void Layout::colour_contacts(const BodyStore& bodies, ContactList& list)
             placement.colour = left_out_colour;
             list.colours[i] = no_colour;
             list.impulses[i + 1] = list.step_impulses[i] = {};
+            if (list.has_sleepers) list.sleepers[i] = 0;
             continue;
+        }
+        if (list.has_sleepers) {
+            list.sleepers[i] = sleeper_of(bodies, placement);
+            if (list.sleepers[i] != 0) {
+                keep_impulses(cache, i);
+                continue;
+            }
         }
         // A joint added since may have taken the colour; then the contact gets another one below. So does one in the
         // overflow: its hub may have fewer constraints by now.
@@ -140,6 +163,20 @@ void Layout::colour_contacts(const BodyStore& bodies, ContactList& list)
         const std::uint32_t i = uncoloured_[k];
         list.colours[i] = placements[i].colour = masks_.take_first(placements[i].a, placements[i].b);
     }
+}
+
+/// A contact that rests keeps its colour for when it wakes, and the force that it bore.
+void Layout::keep_impulses(ContactCache& cache, std::uint32_t i)
+{
+    ContactList& list = cache.staged();
+    list.colours[i] = std::exchange(intake.placements[i].colour, left_out_colour);
+    const auto before = static_cast<std::size_t>(intake.memory_index[i]);
+    const auto scaled = [](float by, const ContactImpulse& impulse) {
+        return ContactImpulse{by * impulse.normal, by * impulse.friction};
+    };
+    list.impulses[i + 1] = scaled(kept.substep, cache.current().impulses[before]);
+    list.step_impulses[i] =
+        before == 0 ? ContactImpulse{} : scaled(kept.step, cache.current().step_impulses[before - 1]);
 }
 
 void Layout::count_contacts(std::int64_t chunk)
@@ -155,7 +192,8 @@ void Layout::cut(SceneCore& scene, std::span<const Contact> list, bool tells_apa
     Cut wanted{{}, use_.in_lockstep, tells_apart};
     for (int kind = 0; kind < body_kind_count; ++kind)
         wanted.rows[static_cast<std::size_t>(kind)] = scene.bodies.rows(static_cast<BodyKind>(kind)).size();
-    if (contacts.is_empty() && cut_ == wanted) return;
+    const bool same_awake = note_awake(scene.bodies);
+    if (contacts.is_empty() && cut_ == wanted && same_awake) return;
     cut_.reset();
     sweeps_.clear();
     transfers_.parts.clear();
@@ -165,6 +203,25 @@ void Layout::cut(SceneCore& scene, std::span<const Contact> list, bool tells_apa
     joints_.cut(kernels_, tells_apart, sweeps_, transfers_);
     contacts.cut(kernels_, tells_apart, sweeps_, transfers_);
     if (contacts.is_empty()) cut_ = wanted;
+}
+
+/// Notes which chunks of rows have a body that is awake. Returns whether they are those of the last call.
+bool Layout::note_awake(const BodyStore& bodies)
+{
+    bool same = true;
+    for (std::size_t kind = 0; kind < body_kind_count; ++kind) {
+        const BodyRows& rows = bodies.rows(static_cast<BodyKind>(kind));
+        const bool may_skip = bodies.sleepers > 0 && static_cast<BodyKind>(kind) != BodyKind::fixed;
+        std::vector<std::uint8_t>& noted = awake_[kind];
+        same = same && noted.size() == rows.awake.size();
+        noted.resize(rows.awake.size());
+        for (std::size_t chunk = 0; chunk < noted.size(); ++chunk) {
+            const std::uint8_t now = !may_skip || rows.awake[chunk] > 0 ? 1 : 0;
+            same = same && noted[chunk] == now;
+            noted[chunk] = now;
+        }
+    }
+    return same;
 }
 
 void Layout::list_rows(const SceneCore& scene)
@@ -183,13 +240,20 @@ void Layout::list_rows(const SceneCore& scene)
                                                  ranges.push_back({begin, end});
                                              });
         };
-        if (has_lone) {
+        const auto add_unless_alone = [&](std::int32_t first, std::int32_t last) {
+            if (!has_lone) return add(first, last);
             for_each_run(
-                0, size, [&](std::int32_t row) { return !figures.is_alone(static_cast<std::size_t>(row)); },
-                add);
-        } else {
-            add(0, size);
-        }
+                first, last,
+                [&](std::int32_t row) { return !figures.is_alone(static_cast<std::size_t>(row)); }, add);
+        };
+        const std::vector<std::uint8_t>& awake = awake_[static_cast<std::size_t>(kind)];
+        constexpr auto a_chunk = static_cast<std::int32_t>(BodyRows::rows_per_chunk);
+        for_each_run(
+            0, static_cast<std::int32_t>(awake.size()),
+            [&](std::int32_t chunk) { return awake[static_cast<std::size_t>(chunk)] != 0; },
+            [&](std::int32_t first, std::int32_t last) {
+                add_unless_alone(first * a_chunk, std::min(last * a_chunk, size));
+            });
     }
 }
 

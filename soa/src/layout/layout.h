@@ -36,12 +36,18 @@ class Layout {
   public:
     explicit Layout(const KernelTable& kernels) : kernels_(kernels) {}
 
+    /// What the impulses of sleepers are multiplied with, so that they stay the same forces: the length of this step and
+    /// of its substeps over those of the last one.
+    struct Kept {
+        float step = 1, substep = 1;
+    } kept;
+
     /// First the host's contacts are taken in...
     ContactIntake intake;
     /// ...then space is made, and the joints are coloured and placed if they have changed...
     void begin(SceneCore& scene, std::size_t contact_count, const FigureUse& use);
     /// ...then every contact gets a colour, in order, by one thread, without allocating...
-    void colour_contacts(const BodyStore& bodies, ContactList& list);
+    void colour_contacts(const BodyStore& bodies, ContactCache& cache);
     /// ...then the contacts are sorted into blocks (count_contacts, and its own open and fill)...
     void count_contacts(std::int64_t chunk);
     BatchSet contacts{0, contact_type_count};
@@ -113,6 +119,8 @@ class Layout {
     std::array<std::vector<std::uint8_t>, body_kind_count> is_jointed_;  ///< by kind and row
     std::array<AlignedVector<float>, body_kind_count> start_along_;      ///< see Flight
     std::atomic<bool> overloaded_ = false;
+    std::array<std::vector<std::uint8_t>, body_kind_count>
+        awake_;  ///< by chunk of rows: whether a step visits it
     std::array<std::vector<RowRange>, body_kind_count> rows_;
     std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< in no patch; at the range's first row
     ColourMasks joint_masks_, masks_;
@@ -123,7 +131,9 @@ class Layout {
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(SceneCore& scene);
+    void keep_impulses(ContactCache& cache, std::uint32_t i);
     void find_groups(const BodyStore& bodies);
+    bool note_awake(const BodyStore& bodies);
     void list_rows(const SceneCore& scene);
     void point_at_data(SceneCore& scene, std::span<const Contact> contacts);
 };

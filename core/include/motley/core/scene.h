@@ -113,6 +113,15 @@ class Scene {
     /// Lets a contained body move again, from `position` (m, world) with the velocity `linear` (m/s, world) and no
     /// angular velocity; its orientation stays. Refuses a body that is not contained.
     void revive(BodyId body, const Vec3<double>& position, const Vec3<float>& linear);
+    /// Whether the body sleeps: see SolverSettings::sleep_speed. A sleeper stays where it is, to the bit, with no speed;
+    /// it bears and reports its loads as of when it fell asleep. Its island wakes as a whole: at once by wake() and every
+    /// call that changes one of its bodies, their joints, or a wall that touches them; when the next step begins by a
+    /// velocity other than zero, and by a force that differs from that of when it fell asleep by enough to bring a free
+    /// body to sleep_speed within a second, so that a host may write the same forces in every step; and in the step in
+    /// which a body that moves is about to touch it, or in which a contact that pushed is no longer in the host's list.
+    [[nodiscard]] bool is_asleep(BodyId body) const;
+    /// Wakes the island of a body. Without effect on a body that is awake, kinematic or static.
+    void wake(BodyId body);
     /// Whether a step has contained the body: frozen it at its last finite pose because its state became infinite or
     /// NaN.
     [[nodiscard]] bool is_contained(BodyId body) const;

@@ -92,6 +92,13 @@ struct SolverSettings {
     int projections = 2;     ///< 0 to 10000: position sweeps a substep with DriftCorrection::projection
     float penetration_slop = 0.0005F;  ///< m, 0 to 1e9: penetration that baumgarte and projection leave
 
+    /// m/s, 0 to 1e9; 0: nobody sleeps. Above 0 an island falls asleep once all of its bodies have been slower than this
+    /// for `sleep_after`: it stays where it is and costs nearly nothing, until something wakes it (Scene::is_asleep). The
+    /// speed of a body is the root mean square over its mass, sqrt(v^2 + w . I w / m) with velocity v, angular velocity
+    /// w, inertia I and mass m. 0.01 suits a crowd. Refused with Method::direct.
+    float sleep_speed = 0;
+    float sleep_after = 0.5F;  ///< s, 0 to 1e9; to a step, and up to 7 steps more where islands move beside
+
     /// Throws InvalidInput naming the first field out of its range.
     void validate() const;
     /// The same settings with the method's choices filled in: `iterations` above 0, and no `by_method`.

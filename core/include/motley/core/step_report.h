@@ -64,13 +64,13 @@ struct StepReport {
     std::string
         error;  ///< why the step was refused; if it is done, what the executor threw afterwards, if anything
 
-    std::int64_t contacts = 0;
+    std::int64_t contacts = 0;  ///< that are solved; those of sleepers rest
     std::int64_t disc_contacts =
         0;  ///< of these, those of discs near each other or near walls that the library found
-    std::int64_t shape_contacts = 0;    ///< of these, those of capsules that the library found
-    std::int64_t contacts_skipped = 0;  ///< invalid contacts that BadContacts::skip left out
-    std::string skipped_error;          ///< of the first of them: field, value and valid range
-    std::int64_t joints = 0;
+    std::int64_t shape_contacts = 0;      ///< of these, those of capsules that the library found
+    std::int64_t contacts_skipped = 0;    ///< invalid contacts that BadContacts::skip left out
+    std::string skipped_error;            ///< of the first of them: field, value and valid range
+    std::int64_t joints = 0;              ///< likewise
     std::int64_t joints_in_lockstep = 0;  ///< joints of copies of a figure that nothing else touched
     /// With SolverSettings::exact_joints: number of locks that sweeps solve nevertheless. They belong to figures
     /// without a fixed body in which a body with two or more locks has less than 1/2,000 of the mass of another: solved
@@ -94,6 +94,7 @@ struct StepReport {
     /// Method::direct: islands with a larger residual than 1e-9 m/s or rad/s, summed over the substeps. 0: all are
     /// solved. Contradictory joints have no solution; they are solved in the least squares sense, and counted here.
     std::int64_t direct_unsolved = 0;
+    std::int64_t bodies_asleep = 0;     ///< when the step has ended: see SolverSettings::sleep_speed
     std::int64_t bodies_contained = 0;  ///< bodies frozen in this step because their state was not finite
     BodyId first_contained{};           ///< one of them
 
