@@ -34,6 +34,12 @@ class BlockFiller {
         open_ = 0;
         if (masks_.size() < bodies) masks_.resize(with_room_to_grow(bodies), 0);
     }
+    /// How many bodies there may be before a list grows.
+    [[nodiscard]] std::size_t most_bodies() const { return masks_.size(); }
+    void make_room_for(std::size_t bodies)
+    {
+        if (masks_.size() < bodies) masks_.resize(bodies, 0);
+    }
     /// Makes room for so many blocks.
     static void make_room(DiscBlocks& blocks, std::size_t row_floats, std::size_t impulse_floats,
                           std::size_t room)

@@ -72,6 +72,21 @@ void DiscFinder::open(SceneCore& scene, int workers)
     grow_to(discs.sorted_rows, scene.bodies.rows(BodyKind::planar).size());
 }
 
+void DiscFinder::make_room_for_workers(int workers)
+{
+    if (workers_.size() < static_cast<std::size_t>(workers))
+        workers_.resize(static_cast<std::size_t>(workers));
+    std::size_t pairs = 0, bodies = 0;
+    for (const Worker& worker : workers_) {
+        pairs = std::max(pairs, worker.pairs.capacity());
+        for (const BlockFiller& filler : worker.fillers) bodies = std::max(bodies, filler.most_bodies());
+    }
+    for (Worker& worker : workers_) {
+        worker.pairs.reserve(pairs);
+        for (BlockFiller& filler : worker.fillers) filler.make_room_for(bodies);
+    }
+}
+
 /// Lists rows in the order of the strips, for places `first` to `last` - 1.
 void DiscFinder::list_rows(DiscStore& discs, std::uint32_t first, std::uint32_t last) const
 {

@@ -37,11 +37,8 @@ class DiscFinder {
     /// the contacts that they may have now to band 0. The rows may be in any order; they are sorted.
     void find_late(SceneCore& scene, std::span<std::uint32_t> rows, float dt);
     /// Makes space for so many workers.
-    void make_room_for_workers(int workers)
-    {
-        if (workers_.size() < static_cast<std::size_t>(workers))
-            workers_.resize(static_cast<std::size_t>(workers));
-    }
+    /// Each worker gets the room of the one that has most: which bands a worker gets is not the same in every search.
+    void make_room_for_workers(int workers);
     /// When bodies have fallen asleep or woken: sorts the contacts of a band into those that are solved and those that
     /// rest.
     void divide(SceneCore& scene, std::size_t band, int worker);
