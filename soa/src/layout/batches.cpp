@@ -357,7 +357,7 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
     if (has_patches_) cut_patches(table, tells_apart, sweeps, transfers);
 }
 
-/// No block of a patch is skipped: patches hold contacts, and figures solve joints only.
+/// No block of a patch is skipped: only joints are in blocks that figures may solve, and patches hold contacts.
 void BatchSet::cut_patches(const KernelTable& table, bool tells_apart, SweepLists& sweeps,
                            TransferList& transfers)
 {

@@ -27,7 +27,7 @@ struct RowRange {
 
 /// How joints may be solved in this step.
 struct FigureUse {
-    bool in_lockstep = false;  ///< figures that nothing else touches are solved on their own
+    bool in_lockstep = false;  ///< figures that touch no other moving body are solved on their own
     bool exactly = false;      ///< all locks of a figure are solved at once, by its tree
 };
 
