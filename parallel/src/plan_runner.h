@@ -30,7 +30,7 @@ class PlanRunner {
         bool picks_islands;  ///< some islands want more sweeps than others: see Convergence
         StepReport& report;
     };
-    /// Runs the stages of `plan`. Figures that nothing else touches run `figure_plan`, in which no stages are fused.
+    /// Runs the stages of `plan`. Figures that touch no other moving body run `figure_plan`, in which no stages are fused.
     void run(const Plan& plan, const Plan& figure_plan, const Step& step, StepClock& clock);
 
     /// Whether there are so many sweeps that velocities are computed anew from impulses between them; see Renewal.

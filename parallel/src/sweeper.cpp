@@ -21,7 +21,8 @@ Sweeper::Sweeper(StageRunner& runner, Layout& layout)
 
 void Sweeper::make_room()
 {
-    for (FigureWorkspace& workspace : workspaces_) workspace.make_room(layout_.figures.blocks());
+    for (FigureWorkspace& workspace : workspaces_)
+        workspace.make_room(layout_.figures, layout_.contact_tables());
 }
 
 void Sweeper::transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel)
@@ -273,9 +274,10 @@ void Sweeper::step_lone_figures(const Plan& plan)
     const std::span<const std::int32_t> lone = layout_.figures.lone();
     runner_.run(static_cast<std::int64_t>(lone.size()), [&](std::int64_t i, int worker) {
         const auto block = static_cast<std::size_t>(lone[static_cast<std::size_t>(i)]);
+        FigureWorkspace& workspace = workspaces_[static_cast<std::size_t>(worker)];
         step_figure(layout_.context, layout_.kernels().figures,
-                    workspaces_[static_cast<std::size_t>(worker)].take_in(layout_.figures.blocks()[block]),
-                    layout_.data(), plan);
+                    workspace.take_in(layout_.figures, block, layout_.contact_tables()), layout_.data(),
+                    plan);
     });
 }
 

@@ -38,9 +38,9 @@ class Sweeper {
     /// Lists all bodies that are in no patch, once a step. move_beside_patches() then does x += h v for them.
     void list_beside_patches();
     void move_beside_patches();
-    /// Runs the whole plan over the figures that nothing else touches.
+    /// Runs the whole plan over the figures that touch no other moving body.
     void step_lone_figures(const Plan& plan);
-    /// For the trees of figures that something else touches: prepare_tree(), begin_tree() and solve_tree() of each.
+    /// For the trees of figures that touch another moving body: prepare_tree(), begin_tree() and solve_tree() of each.
     void prepare_touched_trees();
     void begin_touched_trees();
     void solve_touched_trees(float rate);

@@ -7,6 +7,7 @@
 
 #include "allocator.h"
 #include "disc_crowd.h"
+#include "fallen_figures.h"
 #include "lattice_crowd.h"
 #include "mixed_scene.h"
 #include "shape_crowd.h"
@@ -175,7 +176,7 @@ long allocations_of_new_contacts()
     return allocations - before;
 }
 
-/// The same for forty chains of three in lockstep, one of which a contact touches in every fourth step.
+/// The same for forty chains of three in lockstep, one of which touches the ground, or another one, in every fourth step.
 long allocations_of_figures(bool exact, int threads)
 {
     Scene scene;
@@ -197,11 +198,11 @@ long allocations_of_figures(bool exact, int threads)
     settings.exact_joints = exact;
     Solver solver(settings, {.threads = threads, .alone_below = 0});
     Contact contact;
-    contact.body_a = scene.ground();
     contact.body_b = links[7];
     contact.normal = {0, 0, 1};
     const auto step = [&](int number) {
-        const bool touches = number % 4 == 0;
+        contact.body_a = number % 4 == 0 ? scene.ground() : links[20];
+        const bool touches = number % 2 == 0;
         solver.step(scene, 1.0F / 60, std::span<const Contact>(&contact, touches ? 1 : 0));
     };
     for (int number = 0; number < 40; ++number) step(number);
@@ -239,6 +240,24 @@ long allocations_after_changes(int threads)
     return of_changes + allocations - before;
 }
 
+/// The same for people who fall on a floor, lie down and then come to rest.
+long allocations_of_fallen_figures(bool exact, int threads)
+{
+    testing::FallenFigures fallen({.copies = 40, .all_touches = true, .turntable = true});
+    SolverSettings settings = testing::with_gravity({0, -9.81F, 0});
+    settings.exact_joints = exact;
+    Solver solver(settings, {.threads = threads, .alone_below = 0});
+    long warm = 0;
+    for (int step = 0; step < 260; ++step) {
+        fallen.turn();
+        const std::vector<Contact> contacts = fallen.contacts();
+        const long before = allocations;
+        solver.step(fallen.scene, testing::frame_time, contacts);
+        if (step >= 200) warm += allocations - before;
+    }
+    return warm;
+}
+
 TEST(Allocation, TheCounterCounts)
 {
     const long before = allocations;
@@ -261,6 +280,8 @@ TEST(Allocation, WarmFiguresAllocateNothing)
 {
     EXPECT_EQ(allocations_of_figures(false, 1), 0);
     EXPECT_EQ(allocations_of_figures(true, 2), 0);
+    EXPECT_EQ(allocations_of_fallen_figures(false, 2), 0);
+    EXPECT_EQ(allocations_of_fallen_figures(true, 1), 0);
 }
 TEST(Allocation, AWarmStepThatMeasuresAndStopsIslandsAllocatesNothing)
 {

@@ -10,6 +10,7 @@
 
 #include "allocator.h"
 #include "disc_crowd.h"
+#include "fallen_figures.h"
 #include "lattice_crowd.h"
 #include "mixed_scene.h"
 #include "shape_crowd.h"
@@ -108,6 +109,48 @@ TEST(FailedAllocation, AStepWithoutMemoryIsRefusedAndTheNextOneIsAsIfNothingHadB
             }
             EXPECT_GT(successes, 10) << way.name;
         }
+    }
+}
+
+/// A step with three contacts; then one with all of them, in which memory runs out; then two more.
+TEST(FailedAllocation, FiguresOnAFloorWithoutMemoryAreRefusedAndTheNextStepIsAsIfNothingHadBeen)
+{
+    testing::FallenFigures fallen({.copies = 20, .all_touches = true});
+    {
+        Solver solver(testing::with_gravity({0, -9.81F, 0}));
+        for (int step = 0; step < 70; ++step) solver.step(fallen.scene, dt, fallen.contacts());
+    }
+    const std::vector<Contact> contacts = fallen.contacts();
+    for (const Way& way : {ways()[1], ways()[2]}) {
+        const auto hash_after_steps = [&](long successes, bool& ran_out) {
+            Scene scene = fallen.scene;
+            Solver solver(way.settings, {.threads = way.threads, .alone_below = 0});
+            EXPECT_EQ(solver.step(scene, dt, first_of(contacts, 3)).status, StepStatus::done);
+            const std::uint64_t before = scene.state_hash();
+            StepReport report;
+            {
+                const FailingAllocator failing(successes, false);
+                report = solver.step(scene, dt, contacts);
+                ran_out = FailingAllocator::has_failed();
+            }
+            if (report.status == StepStatus::refused) {
+                EXPECT_EQ(scene.state_hash(), before) << way.name << ", allocation " << successes;
+                report = solver.step(scene, dt, contacts);
+            }
+            EXPECT_EQ(report.status, StepStatus::done) << report.error;
+            for (int step = 0; step < 2; ++step) {
+                report = solver.step(scene, dt, contacts);
+                EXPECT_EQ(report.joints_in_lockstep,
+                          testing::Ragdoll::joints * (way.settings.exact_joints ? 20 : 16));
+            }
+            return scene.state_hash();
+        };
+        bool ran_out = false;
+        const std::uint64_t expected = hash_after_steps(testing::never, ran_out);
+        long successes = 0;
+        for (ran_out = true; ran_out; ++successes)
+            ASSERT_EQ(hash_after_steps(successes, ran_out), expected) << way.name << ", " << successes;
+        EXPECT_GT(successes, 10) << way.name;
     }
 }
 

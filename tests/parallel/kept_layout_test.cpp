@@ -40,10 +40,10 @@ struct Chains {
         const auto i = static_cast<double>(loose.size());
         loose.push_back(scene.add_body({.position = {1.5 * i, -0.9, 3}, .angular_velocity = {1, 2, 3}}));
     }
-    [[nodiscard]] Contact push() const
+    [[nodiscard]] Contact push(BodyId by) const
     {
         Contact contact;
-        contact.body_a = loose.front();
+        contact.body_a = by;
         contact.body_b = links.back();
         contact.key = 7;
         contact.normal = {0, 1, 0};
@@ -57,7 +57,7 @@ TEST(KeptLayout, GoesOnAsASolverThatHasNeverSeenTheScene)
     struct Turn {
         const char* what;
         std::function<void(Chains&, SolverSettings&)> change;
-        bool touches = false;
+        enum { nobody, somebody, the_ground } touches = nobody;
     };
     const auto nothing = [](Chains&, SolverSettings&) {};
     const std::vector<Turn> turns = {
@@ -68,8 +68,11 @@ TEST(KeptLayout, GoesOnAsASolverThatHasNeverSeenTheScene)
              for (int i = 0; i < 700; ++i) c.add_loose();
          }},
         {"as it was", nothing},
-        {"a contact comes", nothing, true},
-        {"and stays", nothing, true},
+        {"a contact comes", nothing, Turn::somebody},
+        {"and stays", nothing, Turn::somebody},
+        {"and becomes one with the ground", nothing, Turn::the_ground},
+        {"and moves again", nothing, Turn::somebody},
+        {"and is with the ground", nothing, Turn::the_ground},
         {"and goes", nothing},
         {"blocks are told apart", [](Chains&, SolverSettings& s) { s.measures = true; }},
         {"and no more", [](Chains&, SolverSettings& s) { s.measures = false; }},
@@ -93,7 +96,8 @@ TEST(KeptLayout, GoesOnAsASolverThatHasNeverSeenTheScene)
                  DistanceDefinition{.body_a = c.links[0], .body_b = c.loose[0], .max_length = 9});
          }},
         {"locks at once", [](Chains&, SolverSettings& s) { s.exact_joints = true; }},
-        {"with a contact", nothing, true},
+        {"with a contact", nothing, Turn::somebody},
+        {"with one with the ground", nothing, Turn::the_ground},
         {"and without", nothing},
         {"locks in turn", [](Chains&, SolverSettings& s) { s.exact_joints = false; }},
         {"a link is thrown out of the world",
@@ -115,7 +119,8 @@ TEST(KeptLayout, GoesOnAsASolverThatHasNeverSeenTheScene)
         solver.set_settings(settings);
         for (int step = 0; step < 3; ++step) {
             std::vector<Contact> contacts;
-            if (turn.touches) contacts.push_back(kept.push());
+            if (turn.touches == Turn::somebody) contacts.push_back(kept.push(kept.loose.front()));
+            if (turn.touches == Turn::the_ground) contacts.push_back(kept.push(kept.scene.ground()));
             // One solver may serve several scenes.
             if (step == 2) solver.step(other, dt);
             Solver new_solver(settings);

@@ -4,6 +4,7 @@
 
 #include <cfenv>
 
+#include "fallen_figures.h"
 #include "joint_scene.h"
 
 namespace motley {
@@ -111,6 +112,20 @@ TEST_P(Trapping, NothingIsRaisedByFiguresInLockstep)
         Solver solver(way.settings, {.isa = GetParam()});
         for (int step = 0; step < 60; ++step) {
             const int flags = flags_of([&] { solver.step(scene, dt); });
+            ASSERT_EQ(flags, 0) << names_of(flags) << " in step " << step << ", " << way.name;
+        }
+    }
+}
+
+TEST_P(Trapping, NothingIsRaisedByFallenFiguresInLockstep)
+{
+    for (const Way& way : ways()) {
+        testing::FallenFigures fallen({.copies = 21, .all_touches = true, .turntable = true});
+        Solver solver(way.settings, {.isa = GetParam()});
+        for (int step = 0; step < 120; ++step) {
+            fallen.turn();
+            const std::vector<Contact> contacts = fallen.contacts();
+            const int flags = flags_of([&] { solver.step(fallen.scene, dt, contacts); });
             ASSERT_EQ(flags, 0) << names_of(flags) << " in step " << step << ", " << way.name;
         }
     }

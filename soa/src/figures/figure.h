@@ -4,10 +4,14 @@
 // and colour may, so a figure's block is only a list of ordinary blocks. In addition, its bodies are loaded into
 // lanes once a step, where every joint reads them with plain loads, and all substeps run in cache. Constraints touch
 // a body in the order of their colours, so the bits are those of ordinary sweeps.
+//
+// Contacts with bodies that cannot move, such as a floor, are solved in the same step: a block of contacts is of one
+// body of the figure and one colour, again one copy per lane. Lanes of copies without such a contact are masked.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "layout/block.h"
@@ -110,6 +114,14 @@ struct FigureBlock {
         std::int32_t block;
     };
     const Joint* joints = nullptr;  ///< in the order of those of the shape
+    struct Contact {
+        Joint lanes;
+        std::uint8_t type, colour;
+        int a, b;  ///< bodies; the fixed one is counted on from those of the shape
+    };
+    std::span<const Contact> contacts;            ///< by colour
+    const std::int32_t* fixed_offsets = nullptr;  ///< of the bodies that contacts touch, like `offsets`
+    int fixed_count = 0;
 
     [[nodiscard]] float* body(int index) const
     {

@@ -1,43 +1,58 @@
 // Runs a plan over a block of copies.
 #include "figures/figure_step.h"
 
+#include "layout/colouring.h"
+
 namespace motley {
 namespace {
 
-/// Runs a kernel over the joints that the tree does not solve, in the order of their colours.
+/// Runs a kernel over the contacts and the joints that the tree does not solve, in the order of their colours.
 void sweep(const KernelContext& context, const FigureBlock& block,
            ConstraintKernels::CopiesSweep ConstraintKernels::*kernel)
 {
+    const auto run = [&](const FigureBlock::Joint& lanes, int a, int b) {
+        if (lanes.kernels->*kernel != nullptr)
+            (lanes.kernels->*kernel)(context, lanes.streams, lanes.block, block.body(a), block.body(b));
+    };
+    auto contact = block.contacts.begin();
+    const auto run_contacts_before = [&](int colour) {
+        for (; contact != block.contacts.end() && contact->colour < colour; ++contact)
+            run(contact->lanes, contact->a, contact->b);
+    };
     const auto& joints = block.shape->joints;
     for (std::size_t i = 0; i < joints.size(); ++i) {
         if (joints[i].in_tree) continue;
-        const FigureBlock::Joint& joint = block.joints[i];
-        if (joint.kernels->*kernel == nullptr) continue;
-        (joint.kernels->*kernel)(context, joint.streams, joint.block, block.body(joints[i].a),
-                                 block.body(joints[i].b));
+        run_contacts_before(joints[i].colour);
+        run(block.joints[i], joints[i].a, joints[i].b);
     }
+    run_contacts_before(overflow_colour);
 }
 
 /// Moves data between the stores of the scene and the rows of the block: kernel prepare or store.
 void transfer(const KernelContext& context, const FigureBlock& block, std::span<const ConstraintData> data,
               ConstraintKernels::Transfer ConstraintKernels::*kernel)
 {
-    for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
-        const FigureBlock::Joint& joint = block.joints[i];
-        (joint.kernels->*kernel)(context, joint.streams,
-                                 data[static_cast<std::size_t>(block.shape->joints[i].type)], joint.block,
-                                 joint.block + 1);
-    }
+    const auto run = [&](const FigureBlock::Joint& lanes, int type) {
+        (lanes.kernels->*kernel)(context, lanes.streams, data[static_cast<std::size_t>(type)], lanes.block,
+                                 lanes.block + 1);
+    };
+    for (std::size_t i = 0; i < block.shape->joints.size(); ++i)
+        run(block.joints[i], block.shape->joints[i].type);
+    for (const FigureBlock::Contact& contact : block.contacts) run(contact.lanes, contact.type);
 }
 
-/// Adds the impulses of a finished substep to the sums, for joints outside the tree; the tree adds its own as it
-/// solves.
+/// Adds the impulses of a finished substep to the sums, for contacts and joints outside the tree; the tree adds its own
+/// as it solves.
 void add_up(const KernelContext& context, const FigureBlock& block)
 {
     for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
         if (block.shape->joints[i].in_tree) continue;
         const FigureBlock::Joint& joint = block.joints[i];
         joint.kernels->add_up(context, joint.streams, joint.block, joint.block + 1);
+    }
+    for (const auto& [lanes, type, colour, a, b] : block.contacts) {
+        if (lanes.streams.sums != nullptr)
+            lanes.kernels->add_up(context, lanes.streams, lanes.block, lanes.block + 1);
     }
 }
 
@@ -81,7 +96,7 @@ class CopiesRunner {
           block_(block),
           data_(data),
           has_tree_(block.shape->has_tree()),
-          has_others_(block.shape->has_joints_beside_tree())
+          has_others_(block.shape->has_joints_beside_tree() || !block.contacts.empty())
     {
     }
     void run(const PlanStage& stage) const
@@ -122,6 +137,9 @@ class CopiesRunner {
             case Operation::relax:
                 iterate(&ConstraintKernels::relax_copies, stage.times, 0);
                 break;
+            case Operation::restitute:
+                sweep(context_, block_, &ConstraintKernels::restitute_copies);
+                break;
             case Operation::store:
                 kernels_.store(context_, block_);
                 transfer(context_, block_, data_, &ConstraintKernels::store);
@@ -140,7 +158,7 @@ class CopiesRunner {
 
     void iterate(ConstraintKernels::CopiesSweep ConstraintKernels::*kernel, int times, float rate) const
     {
-        // Without joints outside the tree, the first sweep solves all.
+        // Without joints and contacts outside the tree, the first sweep solves all.
         const int sweeps = has_others_ ? times : 1;
         for (int i = 0; i < sweeps; ++i) {
             sweep(context_, block_, kernel);

@@ -8,8 +8,8 @@
 
 namespace motley {
 
-/// Runs the whole step, in cache, for a block whose bodies are touched by its own joints only. `data` has an entry
-/// for each type. Stages of the plan that concern the whole scene are skipped: the caller runs them.
+/// Runs the whole step, in cache, for a block whose bodies are touched by its own joints and contacts only. `data` has
+/// an entry for each type. Stages of the plan that concern the whole scene are skipped: the caller runs them.
 void step_figure(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
                  std::span<const ConstraintData> data, const Plan& plan);
 

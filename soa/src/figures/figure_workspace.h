@@ -6,20 +6,31 @@
 #include <span>
 #include <vector>
 
-#include "figures/figure.h"
+#include "figures/copy_contacts.h"
+#include "figures/figures.h"
 
 namespace motley {
 
+/// The contacts of a step, as a workspace reads them.
+struct ContactTables {
+    std::span<const Placement> placements;
+    std::span<const ConstraintKernels> kernels;  ///< by class_of
+    bool adds_up = false;                        ///< several substeps
+};
+
 class FigureWorkspace {
   public:
-    /// Makes space for the largest of these blocks. Allocates only when one is larger than all before.
-    void make_room(std::span<const FigureBlock> blocks);
-    /// The block with its pointers into this memory; valid until the next take_in().
-    [[nodiscard]] FigureBlock take_in(const FigureBlock& block);
+    /// Makes space for the largest of the blocks and the most contacts of one. Allocates only when these are larger than
+    /// all before.
+    void make_room(const Figures& figures, const ContactTables& tables);
+    /// The block with its pointers into this memory, and with its contacts; valid until the next take_in().
+    [[nodiscard]] FigureBlock take_in(const Figures& figures, std::size_t block, const ContactTables& tables);
 
   private:
     AlignedVector<float> floats_;
     std::vector<FigureBlock::Joint> joints_;
+    CopyContacts sorted_;
+    std::vector<FigureBlock::Contact> contacts_;
 };
 
 }  // namespace motley

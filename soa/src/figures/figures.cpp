@@ -152,7 +152,7 @@ bool can_be_in_lanes(const Placement& joint, const KernelTable& kernels)
 }
 
 /// The root of a joint that cannot be in a figure.
-constexpr std::int32_t none = -1;
+constexpr std::int32_t no_root = -1;
 
 /// A joint of the component whose first rigid row is `root`. No two joints of a colour share a moving body, so
 /// sorting by `order` gives the same sequence in every copy, whatever was added and removed before: the slots of a
@@ -189,20 +189,20 @@ std::vector<JointOfComponent> joints_by_component(std::span<const Figures::Candi
     // Joints are counted by component, stored one component after another, and sorted in each of them.
     std::vector<std::uint32_t> end(rigid_rows + 1, 0);
     const auto root_of = [&](const Figures::Candidate& joint) {
-        if (!can_be_in_lanes(joint.placement, kernels)) return none;
+        if (!can_be_in_lanes(joint.placement, kernels)) return no_root;
         const std::int32_t root = components.root(rigid_row_of(joint.placement));
         const auto i = static_cast<std::size_t>(root);
-        return excluded[i] != 0 || size[i] > largest ? none : root;
+        return excluded[i] != 0 || size[i] > largest ? no_root : root;
     };
     for (const Figures::Candidate& joint : joints) {
         const std::int32_t root = root_of(joint);
-        if (root != none) ++end[static_cast<std::size_t>(root)];
+        if (root != no_root) ++end[static_cast<std::size_t>(root)];
     }
     std::exclusive_scan(end.begin(), end.end(), end.begin(), 0U);
     std::vector<JointOfComponent> found(end.back());
     for (const Figures::Candidate& joint : joints) {
         const std::int32_t root = root_of(joint);
-        if (root == none) continue;
+        if (root == no_root) continue;
         const Placement& p = joint.placement;
         found[end[static_cast<std::size_t>(root)]++] = {
             root, std::uint64_t{p.colour} << 40 | std::uint64_t{p.type} << 32 | rigid.slot[rigid_row_of(p)],
@@ -288,7 +288,8 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
     const std::vector<std::size_t> order = sorted_by_signature(members);
 
     placed.clear();
-    block_of_row_.assign(rigid_rows, -1);
+    block_of_row_.assign(rigid_rows, none);
+    place_of_row_.assign(rigid_rows, 0);
     std::vector<std::int32_t> offsets;
     std::int64_t memory = 0;
     std::vector<std::int64_t> first_float;
@@ -306,7 +307,9 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
             const std::size_t count = std::min<std::size_t>(block_lanes, copies.size() - first);
             if (!has_tree && count < fewest_copies) break;
             const auto block = static_cast<std::int32_t>(blocks_.size());
-            blocks_.push_back({.shape = shape.get(), .count = static_cast<int>(count)});
+            FigureBlock& added = blocks_.emplace_back();
+            added.shape = shape.get();
+            added.count = static_cast<int>(count);
             first_float.push_back(memory);
             if (has_tree)
                 memory +=
@@ -316,7 +319,9 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
                     const bool pads = lane >= count;
                     const BodyRow row = pads ? BodyRow{} : members.bodies_of(copies[first + lane])[body];
                     offsets.push_back(offset_of(row));
-                    if (!pads && is_rigid(row)) block_of_row_[row.row()] = block;
+                    if (pads || !is_rigid(row)) continue;
+                    block_of_row_[row.row()] = block;
+                    place_of_row_[row.row()] = static_cast<std::int32_t>(body * block_lanes + lane);
                 }
             }
             for (std::size_t joint = 0; joint < shape->joints.size(); ++joint) {
@@ -365,37 +370,11 @@ void Figures::bind(BatchSet& batches, const KernelTable& kernels)
     for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i].joints = joints_[i].data();
     // Which blocks are alone changes from step to step, and finding them must not allocate.
     alone_.reserve(blocks_.size());
+    was_alone_.reserve(blocks_.size());
     lone_.reserve(blocks_.size());
     touched_trees_.reserve(blocks_.size());
-}
-
-void Figures::find_lone_blocks(std::span<const Placement> contacts, bool may_be_alone)
-{
-    alone_.assign(blocks_.size(), may_be_alone ? 1 : 0);
-    for (const Placement& contact : contacts) {
-        for (const BodyRow body : {contact.a, contact.b}) {
-            if (!is_rigid(body)) continue;
-            const std::int32_t block = block_of(body.row());
-            if (block >= 0) alone_[static_cast<std::size_t>(block)] = 0;
-        }
-    }
-    lone_.clear();
-    touched_trees_.clear();
-    lone_joints_ = 0;
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-        const FigureShape& shape = *blocks_[i].shape;
-        const bool alone = alone_[i] != 0;
-        if (alone) {
-            lone_.push_back(static_cast<std::int32_t>(i));
-            lone_joints_ += blocks_[i].count * static_cast<std::int64_t>(shape.joints.size());
-        } else if (shape.has_tree()) {
-            touched_trees_.push_back(static_cast<std::int32_t>(i));
-        }
-        for (std::size_t joint = 0; joint < shape.joints.size(); ++joint)
-            *skipped_[i][joint] = alone                         ? BatchSet::skip_altogether
-                                  : shape.joints[joint].in_tree ? BatchSet::skip_sweeps
-                                                                : BatchSet::skip_nothing;
-    }
+    end_of_contacts_.resize(blocks_.size());
+    alone_.clear();  // none is known yet
 }
 
 }  // namespace motley

@@ -1,6 +1,6 @@
 // Finds the figures of a scene: sets of rigid bodies that joints connect, and all copies of the same shape. The host
 // declares nothing: sets that it builds alike are recognised as copies. A copy that loses a joint is a shape of its
-// own from then on, and one that touches something is swept by colour like everything else.
+// own from then on, and one that touches something that moves is swept by colour like everything else.
 #pragma once
 
 #include <memory>
@@ -36,8 +36,35 @@ class Figures {
     /// After `placed` has been filled into its blocks: looks up the blocks of the joints.
     void bind(BatchSet& batches, const KernelTable& kernels);
 
-    /// Finds the blocks that are alone in a step: no contact touches their bodies, so they are solved on their own.
-    void find_lone_blocks(std::span<const Placement> contacts, bool may_be_alone);
+    /// Makes room for as many contacts in a step.
+    void make_room(std::size_t contacts);
+    /// Finds the blocks that are alone in a step, so that they are solved on their own: their bodies touch nothing but
+    /// fixed bodies. Takes these contacts (Placement::in_figure). Returns whether other blocks are alone than in the
+    /// last step. Does not allocate.
+    bool take_contacts(std::span<Placement> contacts, bool may_be_alone);
+    static constexpr std::int32_t none = -1;
+    /// The block of the figure that touches a fixed body in this contact; else none.
+    [[nodiscard]] std::int32_t stands_on(const Placement& contact) const
+    {
+        const bool a_is_fixed = contact.a.kind() == BodyKind::fixed;
+        const BodyRow body = a_is_fixed ? contact.b : contact.a;
+        const bool one_is_fixed = a_is_fixed || contact.b.kind() == BodyKind::fixed;
+        return one_is_fixed && body.kind() == BodyKind::rigid ? block_of(body.row()) : none;
+    }
+    /// The indices of the contacts that a block has taken.
+    [[nodiscard]] std::span<const std::uint32_t> contacts_of(std::size_t block) const
+    {
+        const std::uint32_t begin = block == 0 ? 0 : end_of_contacts_[block - 1];
+        return std::span(contacts_).subspan(begin, end_of_contacts_[block] - begin);
+    }
+    /// How many contacts are taken in this step, and the most by one block.
+    [[nodiscard]] std::size_t contacts_in_lockstep() const
+    {
+        return is_empty() ? 0 : end_of_contacts_.back();
+    }
+    [[nodiscard]] std::size_t most_contacts() const { return is_empty() ? 0 : most_contacts_; }
+    /// Where a rigid row is in its block of copies: its body of the figure times block_lanes, plus its lane.
+    [[nodiscard]] std::span<const std::int32_t> places() const { return place_of_row_; }
 
     [[nodiscard]] bool is_empty() const { return blocks_.empty(); }
     [[nodiscard]] std::span<const FigureBlock> blocks() const { return blocks_; }
@@ -62,14 +89,20 @@ class Figures {
     AlignedVector<std::int32_t> offsets_;              ///< of all blocks, one after another
     AlignedVector<float> memory_;                      ///< likewise
     std::vector<std::int32_t> block_of_row_;           ///< one entry per rigid row that existed at find()
-    /// Negative for a body of no figure. Bodies added since find() have no joints.
+    std::vector<std::int32_t> place_of_row_;           ///< likewise; see places()
+    /// none for a body of no figure. Bodies added since find() have no joints.
     [[nodiscard]] std::int32_t block_of(std::size_t row) const
     {
-        return row < block_of_row_.size() ? block_of_row_[row] : -1;
+        return row < block_of_row_.size() ? block_of_row_[row] : none;
     }
-    std::vector<std::uint8_t> alone_;
+    std::vector<std::uint8_t> alone_, was_alone_;  ///< by block, in this step and in the last
+    std::vector<std::uint32_t> contacts_;          ///< block after block
+    std::vector<std::uint32_t> end_of_contacts_;   ///< by block
+    std::size_t most_contacts_ = 0;
     std::vector<std::int32_t> lone_, touched_trees_;
     std::int64_t lone_joints_ = 0;
+
+    void list_lone_blocks();
 };
 
 }  // namespace motley

@@ -147,6 +147,32 @@ template <BodyKind kind>
 {
 }
 
+/// Calls change(component of `body`, component of `other`) for each component of velocity.
+template <class Body, class Change>
+void for_each_component(Body& body, const Body& other, const Change& change)
+{
+    change(body.linear.x, other.linear.x);
+    change(body.linear.y, other.linear.y);
+    if constexpr (Body::kind != BodyKind::planar) change(body.linear.z, other.linear.z);
+    if constexpr (Body::kind == BodyKind::planar) change(body.yaw_rate, other.yaw_rate);
+    if constexpr (Body::kind == BodyKind::rigid) {
+        change(body.angular.x, other.angular.x);
+        change(body.angular.y, other.angular.y);
+        change(body.angular.z, other.angular.z);
+    }
+}
+
+/// Loads a body that is kept in lanes. A fixed one is kept with the fields of a rigid one.
+template <BodyKind kind>
+[[gnu::always_inline]] inline Body<kind> load_copy(const float* lanes)
+{
+    if constexpr (kind == BodyKind::fixed) {
+        const auto body = load_row<Body<BodyKind::rigid>>(lanes);
+        return {body.linear, body.angular, body.delta, body.delta_rotation};
+    } else {
+        return load_row<Body<kind>>(lanes);
+    }
+}
 /// Stores the velocity of a body that is kept in lanes, as fields of sixteen consecutive floats.
 [[gnu::always_inline]] inline void store_copy_velocity(const Body<BodyKind::rigid>& body, float* lanes)
 {

@@ -67,9 +67,10 @@ struct ConstraintBundle {
     }
 }
 /// The reverse. Impulses that are not finite are stored as 0: a contained body must not spoil the step that revives
-/// it.
+/// it. Given `present`, only lanes in which it is above 0 are stored.
 [[gnu::noinline]] inline void scatter_finite_quads(const float* fields, int quads, float* table,
-                                                   std::int64_t stride, const std::int32_t* index, int count)
+                                                   std::int64_t stride, const std::int32_t* index, int count,
+                                                   const float* present)
 {
     for (int q = 0; q < quads; ++q) {
         Lanes quad[4];
@@ -77,7 +78,16 @@ struct ConstraintBundle {
             const Lanes value = load_lanes(fields + (4 * q + i) * Lanes_width);
             quad[i] = select(absolute(value) < Lanes(1e30F), value, Lanes(0));
         }
-        store_quads(table + 4 * q, stride, index, quad, count);
+        if (present == nullptr) {
+            store_quads(table + 4 * q, stride, index, quad, count);
+            continue;
+        }
+        alignas(64) float lanes[4][Lanes_width];
+        for (int i = 0; i < 4; ++i) store_lanes(quad[i], lanes[i]);
+        for (int lane = 0; lane < std::min(count, Lanes_width); ++lane) {
+            if (!(present[lane] > 0)) continue;
+            for (int i = 0; i < 4; ++i) table[4 * q + stride * index[lane] + i] = lanes[i][lane];
+        }
     }
 }
 
@@ -100,14 +110,14 @@ Struct gather_struct(const float* table, std::int64_t stride, const std::int32_t
 }
 template <class Struct>
 void scatter_finite(const Struct& value, float* table, std::int64_t stride, const std::int32_t* index,
-                    int count)
+                    int count, const float* present = nullptr)
 {
     QuadBuffer<Struct> buffer;
     const Lanes* fields = reinterpret_cast<const Lanes*>(&value);
     for (int i = 0; i < 4 * buffer.quads; ++i) {
         store_lanes(i < fields_of<Struct> ? fields[i] : Lanes(0), buffer.fields + i * Lanes_width);
     }
-    scatter_finite_quads(buffer.fields, buffer.quads, table, stride, index, count);
+    scatter_finite_quads(buffer.fields, buffer.quads, table, stride, index, count, present);
 }
 
 // ---- positions when a step begins: subtracted in the precision of poses, then narrowed, one body at a time -------

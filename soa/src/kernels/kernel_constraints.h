@@ -310,12 +310,20 @@ struct Kernels {
                 const auto impulse = load_row<Impulse>(bundle.impulse);
                 const End bodies{bundle};
                 Memory memory = Type::template remember<Lanes>(row, impulse, bodies);
-                scatter_finite(memory, data.memory_out, data.memory_stride, bundle.constraint, bundle.count);
                 if constexpr (Type::is_contact) {
+                    const float* present = streams.present == nullptr
+                                               ? nullptr
+                                               : streams.present + block * block_lanes + bundle.lane;
+                    const auto put = [&](float* table, std::int64_t stride) {
+                        scatter_finite(memory, table, stride, bundle.constraint, bundle.count, present);
+                    };
+                    put(data.memory_out, data.memory_stride);
                     if (bundle.sum != nullptr)
                         memory = Type::template remember<Lanes>(row, load_row<Sum>(bundle.sum), bodies);
-                    scatter_finite(memory, data.step_out, data.step_stride, bundle.constraint, bundle.count);
+                    put(data.step_out, data.step_stride);
                 } else {
+                    scatter_finite(memory, data.memory_out, data.memory_stride, bundle.constraint,
+                                   bundle.count);
                     scatter_finite(load_row<Sum>(bundle.sum), data.step_out, data.step_stride,
                                    bundle.constraint, bundle.count);
                 }
@@ -325,7 +333,26 @@ struct Kernels {
 
     // ---- the same for blocks of copies ----
     static constexpr bool has_copies =
-        !Type::has_restitution && kind_a == BodyKind::rigid && kind_b == BodyKind::rigid;
+        Type::is_contact ? (kind_a == BodyKind::rigid && kind_b == BodyKind::fixed) ||
+                               (kind_a == BodyKind::fixed && kind_b == BodyKind::rigid)
+                         : !Type::has_restitution && kind_a == BodyKind::rigid && kind_b == BodyKind::rigid;
+
+    /// Stores the velocity of a body; of a contact only in lanes that have one.
+    template <BodyKind kind>
+    [[gnu::always_inline]] static void store_copy(const BlockStreams& streams, std::int64_t block,
+                                                  const Bundle& bundle, Body<kind> body, float* lanes)
+    {
+        if constexpr (kind == BodyKind::rigid) {
+            if constexpr (Type::is_contact) {
+                const auto present =
+                    load_lanes(streams.present + block * block_lanes + bundle.lane) > Lanes(0);
+                for_each_component(body, load_row<Body<kind>>(lanes), [&](Lanes& now, const Lanes& before) {
+                    now = select(present, now, before);
+                });
+            }
+            store_copy_velocity(body, lanes);
+        }
+    }
 
     static void stiffen_copies(const KernelContext& context, const BlockStreams& streams, std::int32_t block,
                                float* body_a, float* body_b)
@@ -347,11 +374,11 @@ struct Kernels {
                                   std::int32_t block, float* body_a, float* body_b)
     {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
-            A a = load_row<A>(body_a + bundle.lane);
-            B b = load_row<B>(body_b + bundle.lane);
+            A a = load_copy<kind_a>(body_a + bundle.lane);
+            B b = load_copy<kind_b>(body_b + bundle.lane);
             begin_substep(bundle, a, b);
-            store_copy_velocity(a, body_a + bundle.lane);
-            store_copy_velocity(b, body_b + bundle.lane);
+            store_copy(streams, block, bundle, a, body_a + bundle.lane);
+            store_copy(streams, block, bundle, b, body_b + bundle.lane);
         });
     }
 
@@ -370,15 +397,29 @@ struct Kernels {
                                                float* body_b)
     {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
-            A a = load_row<A>(body_a + bundle.lane);
-            B b = load_row<B>(body_b + bundle.lane);
+            A a = load_copy<kind_a>(body_a + bundle.lane);
+            B b = load_copy<kind_b>(body_b + bundle.lane);
             auto impulse = load_row<Impulse>(bundle.impulse);
             const auto row = load_row<Row>(bundle.row);
             Type::template solve<Lanes>(step, swept<has_substep_row>(row), load_row<Substep>(bundle.substep),
                                         impulse, a, b);
             store_row(impulse, bundle.impulse);
-            store_copy_velocity(a, body_a + bundle.lane);
-            store_copy_velocity(b, body_b + bundle.lane);
+            store_copy(streams, block, bundle, a, body_a + bundle.lane);
+            store_copy(streams, block, bundle, b, body_b + bundle.lane);
+        });
+    }
+
+    static void restitute_copies(const KernelContext& context, const BlockStreams& streams,
+                                 std::int32_t block, float* body_a, float* body_b)
+    {
+        for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+            A a = load_copy<kind_a>(body_a + bundle.lane);
+            B b = load_copy<kind_b>(body_b + bundle.lane);
+            auto impulse = load_row<Impulse>(bundle.impulse);
+            Type::template restitute<Lanes>(context.step, load_row<Row>(bundle.row), impulse, a, b);
+            store_row(impulse, bundle.impulse);
+            store_copy(streams, block, bundle, a, body_a + bundle.lane);
+            store_copy(streams, block, bundle, b, body_b + bundle.lane);
         });
     }
 
@@ -430,7 +471,10 @@ struct Kernels {
     /// Enters what only some settings or definitions need.
     static void enter_rare(ConstraintKernels& kernels)
     {
-        if constexpr (Type::has_restitution) kernels.restitute = restitute;
+        if constexpr (Type::has_restitution) {
+            kernels.restitute = restitute;
+            if constexpr (has_copies) kernels.restitute_copies = restitute_copies;
+        }
         // Few bodies are under such loads, so one scalar copy of this serves every instruction set.
         if constexpr (Type::pulls_at_arms && Lanes_width == 1) {
             kernels.stiffen = stiffen;

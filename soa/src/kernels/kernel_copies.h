@@ -8,12 +8,15 @@ using Mover = Body<BodyKind::rigid>;
 template <class Work>
 void for_each_copy(const FigureBlock& figure, const Work& work)
 {
-    for (std::size_t i = 0; i < figure.shape->bodies.size(); ++i) {
-        float* body = figure.body(static_cast<int>(i));
-        const std::int32_t* offsets = figure.offsets + i * block_lanes;
+    const auto visit = [&](BodyKind kind, int index, const std::int32_t* offsets) {
         for (int lane = 0; lane < figure.count; lane += Lanes_width)
-            work(figure.shape->bodies[i], body + lane, offsets + lane, figure.count - lane);
-    }
+            work(kind, figure.body(index) + lane, offsets + lane, figure.count - lane);
+    };
+    const auto of_shape = static_cast<int>(figure.shape->bodies.size());
+    for (int i = 0; i < of_shape; ++i)
+        visit(figure.shape->bodies[static_cast<std::size_t>(i)], i, figure.offsets + i * block_lanes);
+    for (int i = 0; i < figure.fixed_count; ++i)
+        visit(BodyKind::fixed, of_shape + i, figure.fixed_offsets + i * block_lanes);
 }
 template <class Work>
 void for_each_moving_copy(const FigureBlock& figure, const Work& work)

@@ -80,21 +80,6 @@ template <BodyKind kind, class Work>
     if (first < count) work(RowIndex<kind>(rows + first, count - first));
 }
 
-/// Calls change(component of `body`, component of `other`) for each component of velocity.
-template <class Body, class Change>
-void for_each_component(Body& body, const Body& other, const Change& change)
-{
-    change(body.linear.x, other.linear.x);
-    change(body.linear.y, other.linear.y);
-    if constexpr (Body::kind != BodyKind::planar) change(body.linear.z, other.linear.z);
-    if constexpr (Body::kind == BodyKind::planar) change(body.yaw_rate, other.yaw_rate);
-    if constexpr (Body::kind == BodyKind::rigid) {
-        change(body.angular.x, other.angular.x);
-        change(body.angular.y, other.angular.y);
-        change(body.angular.z, other.angular.z);
-    }
-}
-
 /// Applies forces and gravity and, where Replay says so, the velocity change by constraints in the last substep.
 template <BodyKind kind>
 void change_velocity(const KernelContext& context, const BodyArrays& arrays, const RowIndex<kind>& index,

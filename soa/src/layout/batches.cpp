@@ -109,7 +109,8 @@ void BatchSet::count(std::int64_t chunk)
         std::fill(inside.begin(), inside.end(), 0);
     }
     for (const Placement& placement : placements_of(chunk)) {
-        if (!placement.is_left_out()) ++(placement.in_patch ? inside : across)[key_of(placement)];
+        if (placement.is_left_out() || placement.in_figure) continue;
+        ++(placement.in_patch ? inside : across)[key_of(placement)];
     }
     const auto counts = [](std::span<const std::int32_t> table, std::size_t pool) {
         const auto of_pool = table.subspan(pool * colours, colours);
@@ -215,7 +216,8 @@ void BatchSet::fill(std::int64_t chunk)
     std::span<std::int32_t> patch_places;
     if (has_patches_) patch_places = of_chunk(patch_places_, chunk);
     for (const Placement& placement : placements_of(chunk)) {
-        if (placement.colour >= overflow_colour) continue;  // placed already, or left out
+        if (placement.colour >= overflow_colour || placement.in_figure)
+            continue;  // placed already, or left out
         const std::size_t key = key_of(placement);
         Pool& pool = pools_[key / colours];
         if (placement.in_patch) {
@@ -355,7 +357,7 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
     if (has_patches_) cut_patches(table, tells_apart, sweeps, transfers);
 }
 
-/// No block of a patch is skipped: patches hold contacts, and figures solve joints only.
+/// No block of a patch is skipped: only joints are in blocks that figures may solve, and patches hold contacts.
 void BatchSet::cut_patches(const KernelTable& table, bool tells_apart, SweepLists& sweeps,
                            TransferList& transfers)
 {

@@ -25,8 +25,9 @@ struct Placement {
     std::int32_t constraint = 0;  ///< index in the list or store of its type
     std::uint8_t type = 0;
     std::uint8_t colour = no_colour;
-    bool in_patch = false;  ///< the constraint is inside a patch: see Patches
-    bool is_bad = false;    ///< a contact that failed the checks: it is left out
+    bool in_patch : 1 = false;   ///< the constraint is inside a patch: see Patches
+    bool in_figure : 1 = false;  ///< a contact that a figure in lockstep solves: see Figures
+    bool is_bad : 1 = false;     ///< a contact that failed the checks: it is left out
     /// A padding lane: `constraint` holds the bitwise complement of the index of a valid constraint, whose parameters
     /// the lane copies.
     [[nodiscard]] bool is_gap() const { return constraint < 0; }
@@ -200,7 +201,8 @@ class BatchSet {
         double streamed_bytes = 0;  ///< by one sweep of solve
     };
     [[nodiscard]] Count count(const KernelTable& kernels) const;
-    [[nodiscard]] bool is_empty() const { return placements_.empty(); }
+    [[nodiscard]] bool has_blocks() const { return !used_.empty(); }
+    [[nodiscard]] bool adds_up() const { return adds_up_; }
     [[nodiscard]] std::span<const Placement> placements() const { return placements_; }
 
   private:

@@ -37,6 +37,8 @@ struct BlockStreams {
     float* impulses = nullptr;
     float* sums = nullptr;       ///< over the substeps so far; null for contacts of a single substep
     float* residuals = nullptr;  ///< energies and speeds of LaneResidual; null unless they are measured
+    /// Of contacts of copies: above 0 in lanes that have one, else 0; sixteen floats a block. Else null.
+    const float* present = nullptr;
 };
 
 /// Where definitions and remembered impulses of a type lie, one entry per constraint.
@@ -119,13 +121,15 @@ struct ConstraintKernels {
     Transfer store = nullptr;  ///< impulses and sums -> memory
 
     /// The same over one block whose lanes are copies of a figure, with body a and body b already in lanes (see
-    /// CopyBody). Null for pairs with a particle or planar body, and for types that bounce.
+    /// CopyBody). Null for pairs with a particle or planar body, for joints that bounce, and for contacts of two
+    /// moving bodies. Contacts change nothing in lanes that have none (see BlockStreams::present).
     using CopiesSweep = void (*)(const KernelContext&, const BlockStreams&, std::int32_t block, float* body_a,
                                  float* body_b);
     CopiesSweep stiffen_copies = nullptr;
     CopiesSweep warm_start_copies = nullptr;
     CopiesSweep solve_copies = nullptr;
     CopiesSweep relax_copies = nullptr;
+    CopiesSweep restitute_copies = nullptr;
     /// Writes EqualityRows, `equality_count` of them, sixteen floats a field. Null for types that lock nothing.
     using CopiesRows = void (*)(const BlockStreams&, std::int32_t block, const float* body_a,
                                 const float* body_b, float* rows);

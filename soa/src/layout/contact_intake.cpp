@@ -86,7 +86,7 @@ bool ContactIntake::place(const BodyStore& bodies, const Contact& contact, Place
     // Field by field: copying a struct that was just made would wait for its stores.
     placement.a = a;
     placement.b = b;
-    placement.in_patch = false;
+    placement.in_patch = placement.in_figure = false;
     placement.type = static_cast<std::uint8_t>(contact.restitution != 0 ? Touch::bouncing
                                                : contact.friction != 0  ? Touch::rough
                                                                         : Touch::smooth);
@@ -127,7 +127,7 @@ void ContactIntake::check_and_match(SceneCore& scene, std::span<const Contact> c
             // If it is skipped, it gets fixed bodies, and keeps its place in the list and its key.
             placements[i].a = placements[i].b = BodyRow(BodyKind::fixed, 0);
             placements[i].type = 0;
-            placements[i].in_patch = false;
+            placements[i].in_patch = placements[i].in_figure = false;
         } else {
             if (patches.are_wanted()) {
                 patches.claim(placements[i].a, i);
@@ -156,13 +156,14 @@ void ContactIntake::look_up(ContactCache& cache, std::int64_t part)
     }
 }
 
-void ContactIntake::fill_patch(std::int64_t patch)
+void ContactIntake::fill_patch(std::int64_t patch, const Figures& figures)
 {
     const auto begin = static_cast<std::size_t>(patch) * Patches::contacts_a_patch;
     const std::size_t end = std::min(begin + Patches::contacts_a_patch, count_);
     Patches::Roll roll(patches, static_cast<std::size_t>(patch));
     for (std::size_t i = begin; i < end; ++i) {
         Placement& placement = placements[i];
+        if (figures.stands_on(placement) != Figures::none) continue;
         const bool holds_a = roll.holds(placement.a), holds_b = roll.holds(placement.b);
         placement.in_patch = placement.colour < overflow_colour && holds_a && holds_b;
     }

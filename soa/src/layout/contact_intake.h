@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "figures/figures.h"
 #include "layout/batches.h"
 #include "layout/patches.h"
 #include "scene/scene_core.h"
@@ -26,8 +27,9 @@ class ContactIntake {
     [[nodiscard]] std::string first_error(const SceneCore& scene, std::span<const Contact> contacts) const;
 
     /// After all contacts are coloured: marks those of a patch's stretch of the list that are inside the patch, and
-    /// lists its bodies.
-    void fill_patch(std::int64_t patch);
+    /// lists its bodies. Contacts of figures with bodies that cannot move are in no patch, because figures in lockstep
+    /// solve them in the order of the colours.
+    void fill_patch(std::int64_t patch, const Figures& figures);
 
     /// The number of contacts that failed the checks.
     [[nodiscard]] std::int64_t bad_contacts() const { return bad_contacts_.load(std::memory_order_relaxed); }

@@ -72,6 +72,7 @@ void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse&
         grow_to(is_jointed_[kind], rows);
         grow_to(start_along_[kind], rows);
     }
+    figures.make_room(contact_count);
     if (contact_count > 0) masks_.copy(joint_masks_, scene.bodies);
     grow_to(uncoloured_, contact_count);
     contacts.begin({intake.placements.data(), contact_count}, intake.patches.are_wanted());
@@ -163,6 +164,7 @@ void Layout::colour_contacts(const BodyStore& bodies, ContactCache& cache)
         const std::uint32_t i = uncoloured_[k];
         list.colours[i] = placements[i].colour = masks_.take_first(placements[i].a, placements[i].b);
     }
+    if (figures.take_contacts(placements, use_.in_lockstep)) cut_.reset();
 }
 
 /// A contact that rests keeps its colour for when it wakes, and the force that it bore.
@@ -181,28 +183,28 @@ void Layout::keep_impulses(ContactCache& cache, std::uint32_t i)
 
 void Layout::count_contacts(std::int64_t chunk)
 {
-    if (intake.patches.are_wanted()) intake.fill_patch(chunk);
+    if (intake.patches.are_wanted()) intake.fill_patch(chunk, figures);
     contacts.count(chunk);
 }
 
 void Layout::cut(SceneCore& scene, std::span<const Contact> list, bool tells_apart)
 {
     point_at_data(scene, list);
-    // Without contacts, and with the joints of the step before, the chunks are still valid.
+    // Without blocks of contacts, and with the joints and lone figures of the step before, the chunks are still valid.
     Cut wanted{{}, use_.in_lockstep, tells_apart};
     for (int kind = 0; kind < body_kind_count; ++kind)
         wanted.rows[static_cast<std::size_t>(kind)] = scene.bodies.rows(static_cast<BodyKind>(kind)).size();
     const bool same_awake = note_awake(scene.bodies);
-    if (contacts.is_empty() && cut_ == wanted && same_awake) return;
+    const bool may_keep = !contacts.has_blocks() && !intake.patches.are_wanted();
+    if (may_keep && cut_ == wanted && same_awake) return;
     cut_.reset();
     sweeps_.clear();
     transfers_.parts.clear();
     transfers_.tiles.clear();
-    if (!figures.is_empty()) figures.find_lone_blocks(contacts.placements(), use_.in_lockstep);
     list_rows(scene);
     joints_.cut(kernels_, tells_apart, sweeps_, transfers_);
     contacts.cut(kernels_, tells_apart, sweeps_, transfers_);
-    if (contacts.is_empty()) cut_ = wanted;
+    if (may_keep) cut_ = wanted;
 }
 
 /// Notes which chunks of rows have a body that is awake. Returns whether they are those of the last call.
@@ -375,7 +377,7 @@ void Layout::report(StepReport& report) const
         report.disc_contacts += lanes;
     }
     report.joints = joints.constraints;
-    report.contacts = touches.constraints;
+    report.contacts = touches.constraints + static_cast<std::int64_t>(figures.contacts_in_lockstep());
     report.blocks = joints.blocks + touches.blocks;
     report.overflow = joints.overflow + touches.overflow;
     report.joints_in_lockstep = figures.lone_joints();

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "figures/figure_workspace.h"
 #include "figures/figures.h"
 #include "layout/batches.h"
 #include "layout/contact_intake.h"
@@ -26,7 +27,7 @@ struct RowRange {
 
 /// How joints may be solved in this step.
 struct FigureUse {
-    bool in_lockstep = false;  ///< figures that nothing else touches are solved on their own
+    bool in_lockstep = false;  ///< figures that touch no other moving body are solved on their own
     bool exactly = false;      ///< all locks of a figure are solved at once, by its tree
 };
 
@@ -94,8 +95,13 @@ class Layout {
     /// contacts only, and no rigid bodies, whose inertia rotates with them.
     [[nodiscard]] bool has_constant_responses() const
     {
-        return joints_.is_empty() &&
+        return !joints_.has_blocks() &&
                context.bodies[static_cast<int>(BodyKind::rigid)].size == 1;  // the null row
+    }
+    /// What figures read of the contacts that they solve.
+    [[nodiscard]] ContactTables contact_tables() const
+    {
+        return {contact_placements(), kernels_.constraints, contacts.adds_up()};
     }
     /// Fills the counts of a report.
     void report(StepReport& report) const;
@@ -107,7 +113,7 @@ class Layout {
     std::vector<std::uint32_t> uncoloured_;
     std::shared_ptr<const char> joint_version_;
     FigureUse use_;
-    /// What the chunks of a step without contacts depend on in addition to the joints.
+    /// What the chunks of a step without blocks of contacts depend on in addition to the joints and lone figures.
     struct Cut {
         std::array<std::uint32_t, body_kind_count> rows;
         bool in_lockstep, tells_apart;

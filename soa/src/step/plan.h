@@ -22,7 +22,7 @@ enum class Operation : std::uint8_t {
     prepare,       ///< definitions and last impulses -> rows and impulses
     stiffen,       ///< increases inertias of bodies under more load than a substep can follow: see tension.h
     list_bodies_beside_patches,  ///< bodies in no patch, for `integrate_positions`
-    step_figures,                ///< runs this plan over the copies of figures that nothing else touches
+    step_figures,                ///< runs this plan over figures that touch no other moving body
     solve_directly,              ///< Method::direct: the whole step by core/reference
     add_up_impulses,             ///< adds the impulses of the last substep to the sums
     integrate_velocities,        ///< v += h a

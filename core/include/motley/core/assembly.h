@@ -1,6 +1,6 @@
 // An assembly: many copies of one articulated figure. The copies are ordinary bodies, joints and capsules, which the host may
 // join, push, break and remove like any others. The solver itself finds out that they are alike, and solves sixteen of
-// them together, one copy in each lane, as long as nothing else touches them.
+// them together, one copy in each lane, as long as they touch no other body that moves.
 #pragma once
 
 #include <span>
