@@ -165,6 +165,19 @@ Fallen fall(Scene& scene, BodyId body, const FallenShape& shape, std::uint32_t n
     return fallen;
 }
 
+void add_drifts(const Scene& scene, const Fallen& fallen, std::vector<double>& drifts)
+{
+    for (const RigJoint& joint : fallen.shape->rig.joints) {
+        const auto a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+        const auto on = [&](std::size_t body) {
+            return convert<float>(joint.anchor - fallen.shape->rig.bodies[body].position);
+        };
+        const Vec3<double> apart =
+            anchor_separation(scene.state(fallen.bodies[a]), scene.state(fallen.bodies[b]), on(a), on(b));
+        drifts.push_back(std::sqrt(dot(apart, apart)));
+    }
+}
+
 void tip_over(Scene& scene, const Fallen& fallen, float rate)
 {
     const Vec3<double> first = scene.state(fallen.bodies.front()).position, foot{first.x, first.y, 0};

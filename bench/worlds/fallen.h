@@ -54,6 +54,8 @@ struct Momenta {
 /// The person's body becomes the first of the shape and the others are added, all moving as one rigid body with the momenta
 /// that the person had. The person is planar without a disc, or a particle, its centre about as high as that of the first box.
 Fallen fall(Scene& scene, BodyId body, const FallenShape& shape, std::uint32_t number);
+/// Appends how far each joint has come apart, m.
+void add_drifts(const Scene& scene, const Fallen& fallen, std::vector<double>& drifts);
 /// Pushes those who have just fallen: adds `rate`, rad/s, about a level axis through where they stand on the floor.
 void tip_over(Scene& scene, const Fallen& fallen, float rate);
 /// All bodies but the person's are removed. That one becomes planar, upright where the centre of mass is, `height` m above

@@ -34,6 +34,16 @@ std::unique_ptr<BenchScene> make_push(const RunOptions& options)
     return std::make_unique<Push>(options, newtons);
 }
 
+template <const auto& plan>
+std::unique_ptr<BenchScene> make_levels(const RunOptions& options)
+{
+    return std::make_unique<LevelOfDetail>(options, plan);
+}
+constexpr LevelsPlan level_of_detail{};
+/// Five in a hundred lie, twenty fall and twenty rise in each second.
+constexpr LevelsPlan mixed{
+    .density = 4, .has_particles = false, .lying = 0.05, .falls = 20, .falls_as_one = 0, .lies_for = 50};
+
 std::vector<SceneEntry> all_scenes()
 {
     constexpr SceneTakes both{.listed = true, .found = true};
@@ -73,7 +83,13 @@ std::vector<SceneEntry> all_scenes()
          "price of each",
          2000,
          30,
-         make<LevelOfDetail>,
+         make_levels<level_of_detail>,
+         {.density = true, .found = true}},
+        {"mixed",
+         "a dense crowd in which 1 of 20 lies as a figure, and 20 fall and 20 rise each second",
+         20000,
+         20,
+         make_levels<mixed>,
          {.density = true, .found = true}},
         {"door-closes",
          "walls close on people at 0.5, 2 and 20 m/s",

@@ -26,13 +26,24 @@ enum class Level { particle, smooth, rough, single, figure };
 inline constexpr std::array<const char*, 5> level_names{"particle", "disc, smooth", "disc, rough",
                                                         "rigid body", "figure of 11 bodies"};
 
+/// What a crowd of several models is like.
+struct LevelsPlan {
+    double density = 2;            ///< people per m2
+    bool has_particles = true;     ///< the two fifths that are farthest are particles; else smooth discs
+    double lying = 0;              ///< share of the people who lie from the start
+    std::size_t falls = 1;         ///< a second, as figures, of those who are near
+    std::size_t falls_as_one = 1;  ///< a second, as one body, of those who are farthest
+    double lies_for = 8;           ///< s
+};
+
 class LevelOfDetail final : public BenchScene {
   public:
     /// At the start a fifth are rough discs and two fifths smooth ones, unless everybody is to be of one level for good.
-    explicit LevelOfDetail(const RunOptions& options, const Level* everybody = nullptr)
-        : options_(options), everybody_(everybody != nullptr), random_(options.seed)
+    explicit LevelOfDetail(const RunOptions& options, const LevelsPlan& plan,
+                           const Level* everybody = nullptr)
+        : options_(options), plan_(plan), everybody_(everybody != nullptr), random_(options.seed)
     {
-        const double density = options.density > 0 ? options.density : 2;  // people per m2
+        const double density = options.density > 0 ? options.density : plan.density;
         const auto count = static_cast<std::size_t>(options.agents);
         side_ = std::sqrt(static_cast<double>(count) / density);
         const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
@@ -64,6 +75,7 @@ class LevelOfDetail final : public BenchScene {
             rank(0);
             for (std::size_t place = 0; place < count; ++place)
                 bring_to(by_distance_[place], wanted_at(place));
+            lay_down();
         }
         promoted_ = demoted_ = 0;
         seconds_of_changes_.clear();
@@ -84,11 +96,22 @@ class LevelOfDetail final : public BenchScene {
     }
 
     std::span<const Contact> find_contacts(Executor&) override { return {}; }
-    void observe(double, const Solver&) override {}
+    void observe(double time, const Solver&) override
+    {
+        if (time < settling || fallen_.empty()) return;
+        const BodyId ground = scene.ground();
+        BodyLoad load;
+        scene.read_loads({&ground, 1}, {}, StridedSpan<BodyLoad>(&load, 1));
+        floor_force_ -= static_cast<double>(load.net_force.z);
+        weight_ -= static_cast<double>(fallen_.size()) * static_cast<double>(standing.mass * gravity.z);
+        if (++observed_ % 30 != 0) return;
+        for (const Lying& lying : fallen_) add_drifts(scene, lying.fallen, drifts_);
+    }
 
     [[nodiscard]] std::vector<Figure> figures() const override
     {
         std::vector<Figure> all;
+        all.emplace_back("people who lie", static_cast<double>(fallen_.size()));
         all.emplace_back("people promoted", promoted_);
         all.emplace_back("people demoted", demoted_);
         all.emplace_back("people who fell", fell_);
@@ -102,9 +125,19 @@ class LevelOfDetail final : public BenchScene {
     }
     [[nodiscard]] std::vector<Mark> marks() const override
     {
-        return {{"momentum: largest jump at a change (share of a walker's)", momentum_jump_, 1e-6},
-                {"angular momentum: likewise (share of a walker's momentum at an arm of 1 m)", angular_jump_,
-                 1e-6}};
+        std::vector<Mark> all{
+            {"momentum: largest jump at a change (share of a walker's)", momentum_jump_, 1e-6},
+            {"angular momentum: likewise (share of a walker's momentum at an arm of 1 m)", angular_jump_,
+             1e-6}};
+        if (plan_.lying > 0 && weight_ > 0 && !drifts_.empty()) {
+            std::vector<double> drifts = drifts_;
+            const auto p99 = drifts.begin() + static_cast<std::ptrdiff_t>(drifts.size() * 99 / 100);
+            std::nth_element(drifts.begin(), p99, drifts.end());
+            all.push_back({"joints of the fallen part by, p99 (m)", *p99, 0.005});
+            all.push_back({"force of the floor against the weight of the fallen, mean (%)",
+                           100 * std::abs(floor_force_ / weight_ - 1), 1});
+        }
+        return all;
     }
 
   private:
@@ -121,10 +154,11 @@ class LevelOfDetail final : public BenchScene {
     static constexpr double height = 0.96;  ///< m, of the pelvis
     static constexpr Standing standing{};
     static constexpr double walking_speed = 1.34;        ///< m/s
-    static constexpr double lies_for = 8;                ///< s
+    static constexpr double settling = 3;                ///< s before the floor and the joints are watched
     static constexpr std::size_t changes_a_second = 20;  ///< of each direction
 
     RunOptions options_;
+    LevelsPlan plan_;
     bool everybody_;
     Random random_;
     double side_ = 0, next_changes_ = 1;
@@ -137,6 +171,9 @@ class LevelOfDetail final : public BenchScene {
                       single_ = FallenShape::single(standing.mass);
     std::deque<Lying> fallen_;
     double promoted_ = 0, demoted_ = 0, fell_ = 0, risen_ = 0;
+    double floor_force_ = 0, weight_ = 0;  ///< N, summed over the steps that were observed
+    std::size_t observed_ = 0;
+    std::vector<double> drifts_;  ///< m
     double momentum_jump_ = 0, angular_jump_ = 0;
     std::vector<double> seconds_of_changes_;
 
@@ -193,7 +230,8 @@ class LevelOfDetail final : public BenchScene {
     [[nodiscard]] Level wanted_at(std::size_t place) const
     {
         const std::size_t fifth = people_.size() / 5;
-        return place < fifth ? Level::rough : place < 3 * fifth ? Level::smooth : Level::particle;
+        if (place < fifth) return Level::rough;
+        return place < 3 * fifth || !plan_.has_particles ? Level::smooth : Level::particle;
     }
     /// The nearest of those who are modelled too simply, and the farthest of those who are modelled too well.
     void promote_and_demote()
@@ -213,7 +251,18 @@ class LevelOfDetail final : public BenchScene {
             --left;
         }
     }
-    /// Somebody near falls as a figure, and somebody far as one body; who has lain for long rises.
+    /// Those who lie from the start are spread over all places; each has lain for another while.
+    void lay_down()
+    {
+        const auto count = static_cast<std::size_t>(plan_.lying * static_cast<double>(people_.size()));
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t who = i * people_.size() / count;
+            const double since = plan_.lies_for * (static_cast<double>(i) / static_cast<double>(count) - 1);
+            bring_to(who, Level::figure);
+            push_over(who, since);
+        }
+    }
+    /// Some who are near fall as figures, and some who are far as one body; who has lain for long rises.
     void fall_and_rise(double time)
     {
         const std::size_t fifth = people_.size() / 5;
@@ -221,13 +270,15 @@ class LevelOfDetail final : public BenchScene {
             return by_distance_[first +
                                 static_cast<std::size_t>(random_.uniform() * static_cast<double>(count))];
         };
-        for (const auto& [who, level] : {std::pair{somebody(0, fifth), Level::figure},
-                                         std::pair{somebody(3 * fifth, fifth), Level::single}}) {
-            if (has_fallen(people_[who].level)) continue;
+        const auto topple = [&](std::size_t who, Level level) {
+            if (has_fallen(people_[who].level)) return;
             bring_to(who, level);
             push_over(who, time);
-        }
-        while (!fallen_.empty() && fallen_.front().since + lies_for <= time)
+        };
+        for (std::size_t i = 0; i < plan_.falls; ++i) topple(somebody(0, fifth), Level::figure);
+        for (std::size_t i = 0; i < plan_.falls_as_one; ++i)
+            topple(somebody(3 * fifth, fifth), Level::single);
+        while (!fallen_.empty() && fallen_.front().since + plan_.lies_for <= time)
             bring_to(fallen_.front().fallen.number, Level::rough);
     }
 
@@ -319,7 +370,7 @@ class LevelOfDetail final : public BenchScene {
         const std::int64_t most = level == Level::figure ? 200 : 2000;
         options.agents = std::min(options.agents, most);
         options.settings.gravity = gravity;
-        LevelOfDetail all(options, &level);
+        LevelOfDetail all(options, plan_, &level);
         Solver solver(options.settings, options.solver);
         std::vector<double> seconds;
         for (int step = 0; step < 240; ++step) {
