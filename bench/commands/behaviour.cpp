@@ -14,10 +14,12 @@ namespace {
 
 constexpr struct {
     SteeringModel model;
+    bool torsos;
     const char* name;
-} steerings[] = {{SteeringModel::plain, "plain"},
-                 {SteeringModel::social_force, "social-force"},
-                 {SteeringModel::orca, "orca"}};
+} steerings[] = {{SteeringModel::plain, false, "plain"},
+                 {SteeringModel::plain, true, "plain, torsos"},
+                 {SteeringModel::social_force, false, "social-force"},
+                 {SteeringModel::orca, false, "orca"}};
 
 RunResult run(const char* scene, const RunOptions& options)
 {
@@ -107,9 +109,10 @@ void print_drift(const RunOptions& base)
 void print_steerings(const RunOptions& base)
 {
     fmt::print("\nsteering models, evacuation by a door of 1.2 m\n{:<14}{}", "", evacuated_head());
-    for (const auto& [model, name] : steerings) {
+    for (const auto& [model, torsos, name] : steerings) {
         RunOptions options = base;
         options.steering = model;
+        options.torsos = torsos;
         fmt::print("{:<14}{}", name, evacuated(run("evacuation", options)));
     }
 }
@@ -119,12 +122,13 @@ void print_counterflow(std::span<const std::int64_t> sizes, double seconds)
     fmt::print(
         "\ncounterflow in 50 x 5 m; lanes from 0, mixed, to 1, parted\n{:<14}{:>8}{:>12}{:>14}{:>12}{:>12}\n",
         "", "people", "m/s, mean", "lanes, start", "at the end", "overlap %");
-    for (const auto& [model, name] : steerings) {
+    for (const auto& [model, torsos, name] : steerings) {
         for (const std::int64_t people : sizes) {
             RunOptions options;
             options.agents = people;
             options.seconds = seconds;
             options.steering = model;
+            options.torsos = torsos;
             const RunResult r = run("counterflow", options);
             fmt::print("{:<14}{:>8}{:>12.3f}{:>14.2f}{:>12.2f}{:>12.2f}\n", name, people,
                        figure(r, "speed along"), figure(r, "lanes, 0 mixed"), figure(r, "lanes at the end"),

@@ -116,6 +116,33 @@ TEST(LevelOfDetail, ChangesKeepMomentaAndHaveTheSameBitsOnTwoThreads)
     EXPECT_EQ(run("level-of-detail", options).state_hash, one.state_hash);
 }
 
+/// A dense crowd in which people fall on each other and rise: joints hold, and the floor bears those who lie.
+TEST(MixedCrowd, KeepsItsMarksAndHasTheSameBitsOnTwoThreads)
+{
+    RunOptions options{.agents = 600, .seconds = 8};
+    const RunResult one = run("mixed", options);
+    expect_all_marks(one);
+    EXPECT_EQ(one.marks.size(), 4U);
+    EXPECT_GT(figure(one, "people who fell"), 100);
+    EXPECT_GT(figure(one, "people who lie"), 30);
+    options.solver = {.threads = 2, .alone_below = 0};
+    EXPECT_EQ(run("mixed", options).state_hash, one.state_hash);
+}
+
+/// Torsos walk through doors and past each other as discs do: nobody through a wall, and the same bits on two threads.
+TEST(Torsos, KeepTheMarksOfTheScenesThatHaveThem)
+{
+    for (const char* scene : {"counterflow", "evacuation", "bottleneck"}) {
+        RunOptions options{.seconds = 6, .torsos = true};
+        const RunResult one = run(scene, options);
+        expect_all_marks(one);
+        options.solver = {.threads = 2, .alone_below = 0};
+        EXPECT_EQ(run(scene, options).state_hash, one.state_hash) << scene;
+    }
+    EXPECT_THROW(run("push", {.seconds = 1, .torsos = true}), InvalidInput);
+    EXPECT_THROW(run("counterflow", {.seconds = 1, .lists_contacts = true, .torsos = true}), InvalidInput);
+}
+
 /// A slab is the same whoever finds its contacts: the same forces, to what float distances resolve.
 TEST(CrowdScenes, TouchesAreTheSameFoundAndListed)
 {
