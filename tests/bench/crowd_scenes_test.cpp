@@ -119,12 +119,12 @@ TEST(LevelOfDetail, ChangesKeepMomentaAndHaveTheSameBitsOnTwoThreads)
 /// A dense crowd in which people fall on each other and rise: joints hold, and the floor bears those who lie.
 TEST(MixedCrowd, KeepsItsMarksAndHasTheSameBitsOnTwoThreads)
 {
-    RunOptions options{.agents = 600, .seconds = 8};
+    RunOptions options{.agents = 3000, .seconds = 6};
     const RunResult one = run("mixed", options);
     expect_all_marks(one);
     EXPECT_EQ(one.marks.size(), 4U);
-    EXPECT_GT(figure(one, "people who fell"), 100);
-    EXPECT_GT(figure(one, "people who lie"), 30);
+    EXPECT_GT(figure(one, "people who fell"), 200);
+    EXPECT_GT(figure(one, "people who lie"), 150);
     options.solver = {.threads = 2, .alone_below = 0};
     EXPECT_EQ(run("mixed", options).state_hash, one.state_hash);
 }

@@ -30,6 +30,7 @@ inline constexpr std::array<const char*, 5> level_names{"particle", "disc, smoot
 struct LevelsPlan {
     double density = 2;            ///< people per m2
     bool has_particles = true;     ///< the two fifths that are farthest are particles; else smooth discs
+    bool is_rough = true;          ///< the fifth that is nearest are discs with friction; else nobody is
     double lying = 0;              ///< share of the people who lie from the start
     std::size_t falls = 1;         ///< a second, as figures, of those who are near
     std::size_t falls_as_one = 1;  ///< a second, as one body, of those who are farthest
@@ -81,7 +82,12 @@ class LevelOfDetail final : public BenchScene {
         seconds_of_changes_.clear();
     }
 
-    void adjust(SolverSettings& settings) const override { settings.gravity = gravity; }
+    void adjust(SolverSettings& settings) const override
+    {
+        settings.gravity = gravity;
+        // Between walkers who push from all sides sweeps let figures part by centimetres.
+        if (plan_.lying > 0) settings.exact_joints = true;
+    }
 
     void steer(double time, Executor&) override
     {
@@ -230,7 +236,7 @@ class LevelOfDetail final : public BenchScene {
     [[nodiscard]] Level wanted_at(std::size_t place) const
     {
         const std::size_t fifth = people_.size() / 5;
-        if (place < fifth) return Level::rough;
+        if (place < fifth && plan_.is_rough) return Level::rough;
         return place < 3 * fifth || !plan_.has_particles ? Level::smooth : Level::particle;
     }
     /// The nearest of those who are modelled too simply, and the farthest of those who are modelled too well.
@@ -279,7 +285,7 @@ class LevelOfDetail final : public BenchScene {
         for (std::size_t i = 0; i < plan_.falls_as_one; ++i)
             topple(somebody(3 * fifth, fifth), Level::single);
         while (!fallen_.empty() && fallen_.front().since + plan_.lies_for <= time)
-            bring_to(fallen_.front().fallen.number, Level::rough);
+            bring_to(fallen_.front().fallen.number, plan_.is_rough ? Level::rough : Level::smooth);
     }
 
     /// Changes the model of a person, and notes what the momenta do.
