@@ -130,11 +130,30 @@ bool ShapePairs::are_current(const SceneCore& scene) const
 Box ShapePairs::box_of(std::uint32_t capsule) const
 {
     const PlacedCapsule& placed = placed_[capsule];
-    const Vec3<double> from = placed.axis.from, to = placed.axis.at(1);
+    const Vec2<double> from = in_tree(placed.axis.from), to = in_tree(placed.axis.at(1));
     const double reach = placed.radius + anchors_[capsule].skin;
     return {{std::min(from.x, to.x) - reach, std::min(from.y, to.y) - reach},
             {std::max(from.x, to.x) + reach, std::max(from.y, to.y) + reach},
             0};
+}
+
+void ShapePairs::choose_plane()
+{
+    plane_ = {Vec3<double>{1, 0, 0}, Vec3<double>{0, 1, 0}};
+    if (!wall_ends_.empty() || disc_rows_ > 0) return;
+    Vec3<double> low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    for (const PlacedCapsule& placed : placed_) {
+        if (placed.is_flat) return;
+        const Vec3<double>& at = placed.axis.from;
+        low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+        high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+    }
+    const Vec3<double> spread = high - low;
+    if (spread.x <= spread.y && spread.x < spread.z) {
+        plane_[0] = {0, 0, 1};
+    } else if (spread.y < spread.z) {
+        plane_[1] = {0, 0, 1};
+    }
 }
 
 void ShapePairs::begin(const SceneCore& scene)
@@ -145,9 +164,9 @@ void ShapePairs::begin(const SceneCore& scene)
     for (std::size_t i = 0; i < count_; ++i) {
         const Axis& axis = placed_[i].axis;
         anchors_[i] = {axis.from, axis.at(1), skin_of(placed_[i].goes)};
-        const Vec3<double> centre = axis.at(0.5);
-        centres_[i] = {centre.x, centre.y};
     }
+    choose_plane();
+    for (std::size_t i = 0; i < count_; ++i) centres_[i] = in_tree(placed_[i].axis.at(0.5));
     order_.make_room(centres_.capacity());
     tree_.make_room(centres_.capacity());
     order_.find({centres_.data(), count_, sizeof centres_[0]});
@@ -197,13 +216,17 @@ void ShapePairs::for_each_near(const Box& box, const Work& work) const
     });
 }
 
-bool ShapePairs::may_touch(const SceneCore& scene, std::uint32_t a, std::uint32_t b) const
+bool ShapePairs::are_joined(BodyId a, BodyId b) const
+{
+    return std::binary_search(joined_.begin(), joined_.end(), joined_key(a.slot, b.slot));
+}
+
+bool ShapePairs::may_meet(const SceneCore& scene, std::uint32_t a, std::uint32_t b) const
 {
     const Capsule &one = scene.shapes.capsules[a], &other = scene.shapes.capsules[b];
     if (one.body == other.body || (one.group != 0 && one.group == other.group)) return false;
     if (!placed_[a].can_move && !placed_[b].can_move) return false;
-    if (!one.surface.meets(other.surface.category, other.surface.mask)) return false;
-    return !std::binary_search(joined_.begin(), joined_.end(), joined_key(one.body.slot, other.body.slot));
+    return one.surface.meets(other.surface.category, other.surface.mask);
 }
 
 void ShapePairs::find_capsules(const SceneCore& scene, std::uint32_t capsule, Found& found) const
@@ -212,12 +235,14 @@ void ShapePairs::find_capsules(const SceneCore& scene, std::uint32_t capsule, Fo
     const double reach = own.radius + anchors_[capsule].skin;
     for_each_near(box_of(capsule), [&](std::uint32_t other) {
         if (other <= capsule) return;  // the other one finds it
+        if (!may_meet(scene, capsule, other)) return;
         const PlacedCapsule& near = placed_[other];
         const bool is_flat = own.is_flat || near.is_flat;
         const double apart =
             is_flat ? distance(flattened(own.axis), flattened(near.axis)) : distance(own.axis, near.axis);
         if (apart > reach + near.radius + anchors_[other].skin) return;
-        if (may_touch(scene, capsule, other)) found.capsules.push_back({capsule, other});
+        if (!are_joined(scene.shapes.capsules[capsule].body, scene.shapes.capsules[other].body))
+            found.capsules.push_back({capsule, other});
     });
 }
 
@@ -237,7 +262,7 @@ void ShapePairs::find_discs(const SceneCore& scene, std::int64_t chunk, Found& f
                 reach + placed_[capsule].radius + anchors_[capsule].skin)
                 return;
             if (other.body.slot == slot || !disc.meets(other.surface.category, other.surface.mask)) return;
-            if (std::binary_search(joined_.begin(), joined_.end(), joined_key(slot, other.body.slot))) return;
+            if (are_joined(scene.bodies.id_of_slot(slot), other.body)) return;
             found.discs.push_back({capsule, slot});
         });
     });

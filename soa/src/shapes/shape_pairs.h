@@ -10,6 +10,7 @@
 //   3. find(chunk), then collect()
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -80,6 +81,9 @@ class ShapePairs {
     double walls_go_ = 0, wall_skin_ = -1;
     std::vector<std::uint64_t> joined_;  ///< pairs of bodies that joints connect, by slots, sorted
     std::shared_ptr<const char> shape_version_, joint_version_;
+    /// The plane of the tree, by two of the coordinates: x and y where anything is met as seen from above, else those along
+    /// which the capsules are spread furthest.
+    std::array<Vec3<double>, 2> plane_{};
     std::vector<Vec2<double>> centres_;
     CurveOrder order_;
     BoxTree tree_;  ///< over capsules with their skins, in that order
@@ -87,11 +91,18 @@ class ShapePairs {
     std::vector<ShapePair> capsules_, walls_, discs_, spare_;
 
     static bool leaves(const PlacedCapsule& placed, const Anchor& anchor);
+    void choose_plane();
+    [[nodiscard]] Vec2<double> in_tree(const Vec3<double>& at) const
+    {
+        return {dot(plane_[0], at), dot(plane_[1], at)};
+    }
     [[nodiscard]] Box box_of(std::uint32_t capsule) const;
     template <class Work>
     void for_each_near(const Box& box, const Work& work) const;
     void list_joined(const SceneCore& scene);
-    [[nodiscard]] bool may_touch(const SceneCore& scene, std::uint32_t a, std::uint32_t b) const;
+    /// Whether two capsules meet each other, but for joints between their bodies.
+    [[nodiscard]] bool may_meet(const SceneCore& scene, std::uint32_t a, std::uint32_t b) const;
+    [[nodiscard]] bool are_joined(BodyId a, BodyId b) const;
     void find_capsules(const SceneCore& scene, std::uint32_t capsule, Found& found) const;
     void find_discs(const SceneCore& scene, std::int64_t chunk, Found& found) const;
     void find_walls(const SceneCore& scene, std::int64_t chunk, Found& found) const;
