@@ -34,9 +34,11 @@ struct HalfSpace {
     Vec3<float> normal{};  ///< unit, likewise
     ShapeSurface surface;
     BodyId body{};
-    std::uint32_t slot = 0;    ///< of its handle
-    std::uint32_t unused = 0;  ///< so that files have no undefined bytes
+    std::uint32_t slot = 0;  ///< of its handle
 };
+
+// Files have them as they lie in memory, so that no byte may be undefined.
+static_assert(sizeof(Capsule) == 60 && sizeof(HalfSpace) == 64);
 
 struct ShapeStore {
     enum class Kind : std::uint8_t { none, capsule, half_space };
