@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 #include <vector>
 
 #include "disc_crowd.h"
 #include "rig.h"
+#include "shape_crowd.h"
 
 namespace motley {
 namespace {
@@ -19,15 +21,15 @@ using testing::Random;
 
 constexpr float dt = 1.0F / 60;
 
-std::vector<DiscPair> list_of(std::span<const DiscPair> pairs)
+std::vector<ContactPair> list_of(std::span<const ContactPair> pairs)
 {
     return {pairs.begin(), pairs.end()};
 }
-using Pairs = std::vector<DiscPair>;
+using Pairs = std::vector<ContactPair>;
 
 /// What distinguishes pairs, in the order in which events are listed.
 using Name = std::tuple<bool, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
-Name name_of(const DiscPair& pair)
+Name name_of(const ContactPair& pair)
 {
     const bool wall = pair.wall.slot != 0;
     return {wall, wall ? pair.wall.slot : pair.a.slot, pair.b.slot,
@@ -35,11 +37,11 @@ Name name_of(const DiscPair& pair)
 }
 
 /// The pairs that disc_contacts() lists.
-std::map<Name, DiscPair> pushing_pairs(const Scene& scene)
+std::map<Name, ContactPair> pushing_pairs(const Scene& scene)
 {
-    std::map<Name, DiscPair> pairs;
+    std::map<Name, ContactPair> pairs;
     for (const DiscContact& contact : scene.disc_contacts()) {
-        DiscPair pair{contact.a, contact.b, contact.wall};
+        ContactPair pair{contact.a, contact.b, contact.wall};
         if (contact.wall.slot != 0) {
             pair.a = {};
         } else if (pair.b.slot < pair.a.slot) {
@@ -50,7 +52,7 @@ std::map<Name, DiscPair> pushing_pairs(const Scene& scene)
     return pairs;
 }
 
-Pairs missing(const std::map<Name, DiscPair>& these, const std::map<Name, DiscPair>& those)
+Pairs missing(const std::map<Name, ContactPair>& these, const std::map<Name, ContactPair>& those)
 {
     Pairs pairs;
     for (const auto& [name, pair] : these) {
@@ -76,14 +78,14 @@ TEST(ContactEvents, TellWhenADiscTouchesAWallAndAnotherDiscAndLeavesThem)
         scene.set_velocity(person, {step % 120 < 60 ? 2.0F : -2.0F, 0, 0}, {});
         ASSERT_EQ(solver.step(scene, dt).status, StepStatus::done);
         events.update(scene);
-        for (const DiscPair& pair : events.began()) {
+        for (const ContactPair& pair : events.began()) {
             EXPECT_EQ(pair.b, pair.wall == wall ? person : other);
             EXPECT_EQ(pair.a, pair.wall == wall ? BodyId{} : person);
             ++(pair.wall == wall ? walls_began : discs_began);
             touched_at = scene.state(person).position.x;
             EXPECT_NEAR(touched_at, pair.wall == wall ? 0.8 : -0.6, 0.02);
         }
-        for (const DiscPair& pair : events.ended()) ++(pair.wall == wall ? walls_ended : discs_ended);
+        for (const ContactPair& pair : events.ended()) ++(pair.wall == wall ? walls_ended : discs_ended);
         EXPECT_EQ(events.pushing(), scene.disc_contacts().size());
     }
     EXPECT_EQ(walls_began, 5);
@@ -112,7 +114,7 @@ TEST(ContactEvents, OfWhatIsRemovedEndUnderItsOldHandle)
     for (int i = 0; i < 60; ++i) step();
     ASSERT_EQ(events.pushing(), std::size_t{3});
     EXPECT_TRUE(events.began().empty() && events.ended().empty());
-    const DiscPair at_wall{{}, people[0], wall}, front{people[0], people[1], {}},
+    const ContactPair at_wall{{}, people[0], wall}, front{people[0], people[1], {}},
         back{people[1], people[2], {}};
 
     // The middle one leaves, and another takes the slot, the row and the place.
@@ -181,10 +183,10 @@ void run_crowd(const SolverOptions& options, const Look& look)
 TEST(ContactEvents, AreTheDifferenceOfWhatPushedInTwoSteps)
 {
     ContactEvents events;
-    std::map<Name, DiscPair> before;
+    std::map<Name, ContactPair> before;
     std::size_t began = 0, ended = 0;
     run_crowd({.threads = 2, .alone_below = 0}, [&](const Scene& scene) {
-        const std::map<Name, DiscPair> now = pushing_pairs(scene);
+        const std::map<Name, ContactPair> now = pushing_pairs(scene);
         events.update(scene);
         EXPECT_EQ(list_of(events.began()), missing(now, before));
         EXPECT_EQ(list_of(events.ended()), missing(before, now));
@@ -215,6 +217,36 @@ TEST(ContactEvents, AreTheSameForEveryInstructionSetAndNumberOfThreads)
             EXPECT_EQ(events_of({.threads = threads, .alone_below = 0, .isa = isa}), scalar)
                 << isa_name(isa) << " x " << threads;
     }
+}
+
+/// Capsules, half-spaces and walls: the pairs are those of shape_contacts() with a force.
+TEST(ContactEvents, AreThoseOfCapsulesToo)
+{
+    testing::ShapeCrowd crowd;
+    Solver solver({.gravity = {0, 0, -9.81F}});
+    ContactEvents events;
+    using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
+    const auto key_of = [](BodyId a, BodyId b, WallId wall) {
+        if (wall != WallId{}) return Key{0, b.slot, wall.slot};
+        return Key{std::min(a.slot, b.slot), std::max(a.slot, b.slot), 0};
+    };
+    std::set<Key> pushing;
+    for (int step = 0; step < 120; ++step) {
+        ASSERT_EQ(solver.step(crowd.scene, 1.0F / 60).status, StepStatus::done);
+        events.update(crowd.scene);
+        std::set<Key> now, began, ended;
+        for (const ShapeContact& c : crowd.scene.shape_contacts())
+            if (c.normal_force > 0) now.insert(key_of(c.a, c.b, c.wall));
+        for (const DiscContact& c : crowd.scene.disc_contacts()) now.insert(key_of(c.a, c.b, c.wall));
+        for (const ContactPair& pair : events.began()) began.insert(key_of(pair.a, pair.b, pair.wall));
+        for (const ContactPair& pair : events.ended()) ended.insert(key_of(pair.a, pair.b, pair.wall));
+        for (const Key& key : now) EXPECT_EQ(began.count(key), 1 - pushing.count(key)) << "step " << step;
+        for (const Key& key : pushing) EXPECT_EQ(ended.count(key), 1 - now.count(key)) << "step " << step;
+        EXPECT_EQ(events.pushing(), now.size());
+        EXPECT_EQ(began.size() + pushing.size(), ended.size() + now.size());
+        pushing = now;
+    }
+    EXPECT_GT(pushing.size(), 50U);
 }
 
 }  // namespace

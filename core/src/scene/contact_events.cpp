@@ -31,7 +31,7 @@ bool is_before(const Pair& one, const Pair& other)
     return one.generation_b < other.generation_b;
 }
 
-DiscPair pair_of(const Pair& pair)
+ContactPair pair_of(const Pair& pair)
 {
     const auto first = static_cast<std::uint32_t>((pair.key & ~wall_bit) >> 32);
     const BodyId b{static_cast<std::uint32_t>(pair.key), pair.generation_b};
@@ -39,20 +39,34 @@ DiscPair pair_of(const Pair& pair)
     return {{first, pair.generation_a}, b, {}};
 }
 
-Pair pair_of(const SceneCore& scene, const DiscImpulse& impulse)
+/// Of bodies a and b, or of a wall and body b.
+Pair pair_of(BodyId a, BodyId b, WallId wall)
 {
-    const BodyId a = scene.bodies.id_of_slot(impulse.slot_a), b = scene.bodies.id_of_slot(impulse.slot_b);
-    if (impulse.segment != UINT32_MAX) {
-        const std::uint32_t wall = scene.discs.segments[impulse.segment].wall;
-        return {wall_bit | key_of(wall, b.slot), scene.discs.walls[wall].generation, b.generation};
-    }
+    if (wall != WallId{}) return {wall_bit | key_of(wall.slot, b.slot), wall.generation, b.generation};
     if (a.slot < b.slot) return {key_of(a.slot, b.slot), a.generation, b.generation};
     return {key_of(b.slot, a.slot), b.generation, a.generation};
 }
 
+/// Appends the pairs that pushed in the last step.
+void list_pushing(const SceneCore& scene, std::vector<Pair>& pairs)
+{
+    scene.for_each_disc_impulse([&](const DiscImpulse& impulse) {
+        WallId wall;
+        if (impulse.segment != UINT32_MAX) {
+            const std::uint32_t slot = scene.discs.segments[impulse.segment].wall;
+            wall = {slot, scene.discs.walls[slot].generation};
+        }
+        pairs.push_back(
+            pair_of(scene.bodies.id_of_slot(impulse.slot_a), scene.bodies.id_of_slot(impulse.slot_b), wall));
+    });
+    scene.for_each_shape_impulse([&](const Contact& contact, const ContactImpulse& impulse, WallId wall) {
+        if (impulse.normal > 0) pairs.push_back(pair_of(contact.body_a, contact.body_b, wall));
+    });
+}
+
 /// Appends what is in `these` and not in `those`; both are sorted.
 void list_missing(const std::vector<Pair>& these, const std::vector<Pair>& those,
-                  std::vector<DiscPair>& missing)
+                  std::vector<ContactPair>& missing)
 {
     auto other = those.begin();
     for (const Pair& pair : these) {
@@ -64,7 +78,7 @@ void list_missing(const std::vector<Pair>& these, const std::vector<Pair>& those
 /// What an update finds.
 struct Found {
     std::vector<Pair> pairs;  ///< sorted
-    std::vector<DiscPair> began, ended;
+    std::vector<ContactPair> began, ended;
 };
 
 }  // namespace
@@ -85,8 +99,7 @@ void ContactEvents::update(const Scene& scene)
     next.pairs.clear();
     next.began.clear();
     next.ended.clear();
-    core.for_each_disc_impulse(
-        [&](const DiscImpulse& impulse) { next.pairs.push_back(pair_of(core, impulse)); });
+    list_pushing(core, next.pairs);
     grow_to(core_->spare, next.pairs.size());
     radix_sort(std::span(next.pairs), std::span(core_->spare), [](const Pair& pair) { return pair.key; });
     const auto same = [](const Pair& one, const Pair& other) { return one.key == other.key; };
@@ -96,12 +109,12 @@ void ContactEvents::update(const Scene& scene)
     std::swap(core_->last, core_->next);
 }
 
-std::span<const DiscPair> ContactEvents::began() const
+std::span<const ContactPair> ContactEvents::began() const
 {
     return core_->last.began;
 }
 
-std::span<const DiscPair> ContactEvents::ended() const
+std::span<const ContactPair> ContactEvents::ended() const
 {
     return core_->last.ended;
 }

@@ -101,6 +101,18 @@ struct SceneCore {
     ShapeId put_capsule(const CapsuleDefinition& capsule);
     /// The impulses of the contacts that were found in the last step; they are of shapes.contacts.
     [[nodiscard]] std::span<const ContactImpulse> shape_impulses() const;
+    /// Calls work(contact, impulse, wall) for each of them whose bodies, and whose wall if there is one, are still there.
+    template <class Work>
+    void for_each_shape_impulse(const Work& work) const
+    {
+        const std::span<const ContactImpulse> impulses = shape_impulses();
+        for (std::size_t i = 0; i < impulses.size(); ++i) {
+            const Contact& contact = shapes.contacts[i];
+            const WallId wall = shapes.walls[i];
+            if (!bodies.is_alive(contact.body_a) || !bodies.is_alive(contact.body_b)) continue;
+            if (wall == WallId{} || discs.is_alive(wall)) work(contact, impulses[i], wall);
+        }
+    }
     /// How many of the contacts of the last step were of the host's list.
     [[nodiscard]] std::size_t listed_contacts() const
     {

@@ -136,19 +136,12 @@ template <class Wanted>
 std::vector<ShapeContact> contacts_of(const SceneCore& scene, const Wanted& wanted)
 {
     std::vector<ShapeContact> found;
-    const std::span<const ContactImpulse> impulses = scene.shape_impulses();
-    for (std::size_t i = 0; i < impulses.size(); ++i) {
-        const Contact& contact = scene.shapes.contacts[i];
-        const WallId wall = scene.shapes.walls[i];
-        // Bodies and walls may have been removed since.
-        if (!scene.bodies.is_alive(contact.body_a) || !scene.bodies.is_alive(contact.body_b)) continue;
-        if (wall != WallId{} && !scene.discs.is_alive(wall)) continue;
-        if (!wanted(contact)) continue;
-        const Vec3<float> push = scene.force_of(impulses[i].normal * contact.normal);
+    scene.for_each_shape_impulse([&](const Contact& contact, const ContactImpulse& impulse, WallId wall) {
+        if (!wanted(contact)) return;
+        const Vec3<float> push = scene.force_of(impulse.normal * contact.normal);
         found.push_back({contact.body_a, contact.body_b, wall, contact.normal, contact.arm_b,
-                         contact.separation, dot(push, contact.normal),
-                         scene.force_of(impulses[i].friction)});
-    }
+                         contact.separation, dot(push, contact.normal), scene.force_of(impulse.friction)});
+    });
     return found;
 }
 
