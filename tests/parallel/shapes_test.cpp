@@ -383,6 +383,40 @@ TEST(Shapes, StayOnABodyThatGetsAnotherModel)
         << "its capsule has ends";
 }
 
+/// What lies on a floor falls asleep, still bears its weight, and wakes when a ball rolls into it.
+TEST(Shapes, SleepAndWakeByTheirContacts)
+{
+    Scene scene;
+    scene.add_half_space({.friction = 0.5F});
+    const BodyId lying = scene.add_body(rod_at({0, 0, 0.1}, 5, 0.5F, 0.1F));
+    scene.add_capsule(
+        {.body = lying, .from = {-0.5F, 0, 0}, .to = {0.5F, 0, 0}, .radius = 0.1F, .friction = 0.5F});
+    SolverSettings settings;
+    settings.gravity = {0, 0, -g};
+    settings.sleep_speed = 0.01F;
+    Solver solver(settings);
+    run(solver, scene, 120);
+    ASSERT_TRUE(scene.is_asleep(lying));
+    BodyLoad load;
+    scene.read_loads({&lying, 1}, {}, StridedSpan<BodyLoad>(&load, 1));
+    EXPECT_NEAR(load.net_force.z, 5 * g, 0.01F * 5 * g);
+    BodyDefinition thrown = sphere_at({0, -2, 0.1}, 2, 0.1F);
+    thrown.linear_velocity = {0, 2, 0};
+    const BodyId ball = scene.add_body(thrown);
+    scene.add_capsule({.body = ball, .radius = 0.1F});
+    const auto momentum = [&] {
+        return 5 * scene.state(lying).linear_velocity.y + 2 * scene.state(ball).linear_velocity.y;
+    };
+    for (int step = 0; step < 70 && scene.is_asleep(lying); ++step) {
+        EXPECT_NEAR(momentum(), 4, 1e-5F);
+        run(solver, scene, 1);
+    }
+    EXPECT_FALSE(scene.is_asleep(lying));
+    EXPECT_GT(scene.state(ball).position.y, -0.25) << "it woke long before the ball came";
+    run(solver, scene, 4);
+    EXPECT_GT(scene.state(lying).linear_velocity.y, 0.05F);
+}
+
 TEST(Shapes, LeaveWithTheirBodies)
 {
     Scene scene;

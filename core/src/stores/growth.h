@@ -18,6 +18,13 @@ void grow_to(Vector& values, std::size_t size)
 {
     if (values.size() < size) values.resize(with_room_to_grow(size));
 }
+/// values.resize(size), with room for twice as much: for what may grow much from one step to the next.
+template <class Vector>
+void resize_with_room(Vector& values, std::size_t size)
+{
+    if (values.capacity() < size) values.reserve(2 * size);
+    values.resize(size);
+}
 /// values.assign(size, value), with room to grow.
 template <class Vector>
 void assign_with_room(Vector& values, std::size_t size, const typename Vector::value_type& value)

@@ -17,14 +17,6 @@ constexpr double steps_ahead = 6;
 /// People of a band: few enough for a core's first cache, and enough that blocks are full.
 constexpr std::uint32_t discs_per_band = 512;
 
-/// Resizes a vector, with room for twice as much: the number of strips grows as a crowd slows down.
-template <class Vector>
-void resize_with_room(Vector& values, std::size_t size)
-{
-    if (values.capacity() < size) values.reserve(2 * size);
-    values.resize(size);
-}
-
 }  // namespace
 
 int DiscStrips::bucket_of(float reach)

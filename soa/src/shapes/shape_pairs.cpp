@@ -38,14 +38,6 @@ double skin_of(double goes)
     return least + steps_ahead * goes;
 }
 
-/// Makes a list as long as `size`, with room to grow.
-template <class List>
-void resize(List& list, std::size_t size)
-{
-    if (list.capacity() < size) list.reserve(with_room_to_grow(size));
-    list.resize(size);
-}
-
 constexpr std::uint64_t joined_key(std::uint32_t slot_a, std::uint32_t slot_b)
 {
     return std::uint64_t{std::min(slot_a, slot_b)} << 32 | std::max(slot_a, slot_b);
@@ -58,8 +50,8 @@ void ShapePairs::open(const SceneCore& scene, double dt)
     dt_ = dt;
     count_ = scene.shapes.capsules.size();
     disc_rows_ = scene.discs.is_in_use() ? scene.bodies.rows(BodyKind::planar).size() : 0;
-    resize(placed_, count_);
-    resize(found_, static_cast<std::size_t>(std::max(chunk_count(), disc_chunk_count())));
+    resize_with_room(placed_, count_);
+    resize_with_room(found_, static_cast<std::size_t>(std::max(chunk_count(), disc_chunk_count())));
     find_wall_ends(scene, wall_ends_);
     walls_go_ = dt * fastest_wall_end(scene);
 }
@@ -159,8 +151,8 @@ void ShapePairs::choose_plane()
 void ShapePairs::begin(const SceneCore& scene)
 {
     shape_version_.reset();  // should memory run out on the way, the next step finds pairs again
-    resize(anchors_, count_);
-    resize(centres_, count_);
+    resize_with_room(anchors_, count_);
+    resize_with_room(centres_, count_);
     for (std::size_t i = 0; i < count_; ++i) {
         const Axis& axis = placed_[i].axis;
         anchors_[i] = {axis.from, axis.at(1), skin_of(placed_[i].goes)};
@@ -171,8 +163,8 @@ void ShapePairs::begin(const SceneCore& scene)
     tree_.make_room(centres_.capacity());
     order_.find({centres_.data(), count_, sizeof centres_[0]});
     tree_.build(static_cast<std::uint32_t>(count_), [&](std::uint32_t i) { return box_of(order_[i]); });
-    resize(disc_anchors_, disc_rows_);
-    resize(disc_slots_, disc_rows_);
+    resize_with_room(disc_anchors_, disc_rows_);
+    resize_with_room(disc_slots_, disc_rows_);
     wall_anchors_ = wall_ends_;
     wall_skin_ = skin_of(walls_go_);
     list_joined(scene);
