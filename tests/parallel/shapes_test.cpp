@@ -55,6 +55,31 @@ TEST(Shapes, ABallRestsOnAFloorWithItsWeight)
     EXPECT_NEAR(load.net_force.z, 7 * g, 1e-3F * 7 * g);
 }
 
+/// The contacts join the host's list, so that every method, a tolerance and measures serve them.
+TEST(Shapes, EveryMethodServesThem)
+{
+    SolverSettings impulses, direct, tolerance, exact;
+    impulses.method = Method::sequential_impulse;
+    direct.method = Method::direct;
+    tolerance.tolerance = 1e-4F;
+    tolerance.measures = true;
+    exact.exact_joints = true;
+    for (SolverSettings settings : {impulses, direct, tolerance, exact}) {
+        settings.gravity = {0, 0, -g};
+        Scene scene;
+        scene.add_half_space({.friction = 0.5F});
+        const BodyId lying = scene.add_body(rod_at({0, 0, 0.11}, 3, 0.5F, 0.1F));
+        scene.add_capsule(
+            {.body = lying, .from = {-0.5F, 0, 0}, .to = {0.5F, 0, 0}, .radius = 0.1F, .friction = 0.5F});
+        Solver solver(settings);
+        run(solver, scene, 240);
+        const std::vector<ShapeContact> contacts = scene.shape_contacts();
+        ASSERT_EQ(contacts.size(), 2U);
+        for (const ShapeContact& contact : contacts) EXPECT_NEAR(contact.normal_force, 1.5F * g, 0.01F * g);
+        EXPECT_NEAR(scene.state(lying).position.z, 0.1, 6e-3);
+    }
+}
+
 /// A solid ball that rolls down a slope of angle t goes s = 5/14 g sin(t) t^2.
 TEST(Shapes, ABallRollsDownASlopeWithFiveSeventhsOfItsAcceleration)
 {
