@@ -41,9 +41,13 @@ std::unique_ptr<BenchScene> make_levels(const RunOptions& options)
 }
 constexpr LevelsPlan level_of_detail{};
 /// Five in a hundred lie, twenty fall and twenty rise in each second.
-constexpr LevelsPlan mixed{
-    .density = 4, .has_particles = false,
-                           .is_rough = false, .lying = 0.05, .falls = 20, .falls_as_one = 0, .lies_for = 50};
+constexpr LevelsPlan mixed{.density = 4,
+                           .has_particles = false,
+                           .is_rough = false,
+                           .lying = 0.05,
+                           .falls = 20,
+                           .falls_as_one = 0,
+                           .lies_for = 50};
 
 std::vector<SceneEntry> all_scenes()
 {

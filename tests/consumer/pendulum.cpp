@@ -5,7 +5,7 @@
 int main()
 {
     const motley::MjcfModel model = motley::read_mjcf(
-        "<mujoco><worldbody><body><joint axis='0 1 0'/><geom pos='1 0 0' "
+        "<mujoco><worldbody><body><joint type='ball'/><geom pos='1 0 0' "
         "size='.1'/></body></worldbody></mujoco>");
     motley::Scene scene;
     const motley::Placing origin;

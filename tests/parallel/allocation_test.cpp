@@ -123,6 +123,26 @@ long allocations_of_capsules(int threads)
     return allocations - before;
 }
 
+/// The same for a crowd that sleeps, has woken, and sleeps again.
+long allocations_of_sleepers(int threads)
+{
+    testing::DiscCrowd crowd({.people = 3000, .speed = 0, .spacing = 0.45});
+    SolverSettings settings;
+    settings.sleep_speed = 0.01F;
+    Solver solver(settings, {.threads = threads, .alone_below = 0});
+    const auto step = [&](int steps) {
+        for (int i = 0; i < steps; ++i) solver.step(crowd.scene, 1.0F / 60);
+    };
+    step(60);
+    EXPECT_TRUE(crowd.scene.is_asleep(crowd.people[17]));
+    crowd.scene.wake(crowd.people[17]);
+    step(60);
+    EXPECT_TRUE(crowd.scene.is_asleep(crowd.people[17]));
+    const long before = allocations;
+    step(20);
+    return allocations - before;
+}
+
 /// The same for what a host asks after each of such steps: events, indices and their queries.
 long allocations_of_questions()
 {
@@ -302,6 +322,11 @@ TEST(Allocation, ChangesOfModelsAndTheStepsAfterThemAllocateNothingOnceWarm)
 {
     for (const int threads : {1, 2})
         EXPECT_EQ(allocations_after_changes(threads), 0) << threads << " threads";
+}
+
+TEST(Allocation, SleepersAllocateNothing)
+{
+    for (const int threads : {1, 2}) EXPECT_EQ(allocations_of_sleepers(threads), 0) << threads << " threads";
 }
 
 TEST(Allocation, WarmQuestionsOfAHostAllocateNothing)

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "allocator.h"
 #include "disc_crowd.h"
 #include "motley/core/snapshot.h"
 #include "rig.h"
@@ -654,22 +653,6 @@ TEST(Sleep, WhoWakesGoesOnAsIfNothingHadBeen)
     step(solver, row.scene);
     for (const DiscContact& contact : row.scene.disc_contacts()) EXPECT_NEAR(contact.normal_force, 400, 4);
     for (const BodyId body : row.people) EXPECT_LT(std::abs(row.scene.state(body).linear_velocity.x), 0.01F);
-}
-
-TEST(Sleep, AWarmStepOfSleepersAllocatesNothing)
-{
-    for (const int threads : {1, 2}) {
-        DiscCrowd crowd({.people = 3000, .speed = 0, .spacing = 0.45});
-        Solver solver(sleepy(), {.threads = threads, .alone_below = 0});
-        for (int i = 0; i < 2; ++i) {
-            step(solver, crowd.scene, 60);
-            ASSERT_TRUE(crowd.scene.is_asleep(crowd.people[17]));
-            if (i == 0) crowd.scene.wake(crowd.people[17]);
-        }
-        const long before = testing::allocations;
-        step(solver, crowd.scene, 20);
-        EXPECT_EQ(testing::allocations - before, 0) << threads << " threads";
-    }
 }
 
 TEST(Sleep, FiguresSleepInLockstepAndWithExactJoints)
