@@ -40,7 +40,7 @@ std::vector<SolverSettings> every_way()
 
 bool have_equal_bits(std::span<const ContactImpulse> x, std::span<const ContactImpulse> y)
 {
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size_bytes()) == 0;
+    return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size_bytes()) == 0);
 }
 
 constexpr FallenFigures::Options everything{.copies = 16 + 13, .all_touches = true, .turntable = true};
