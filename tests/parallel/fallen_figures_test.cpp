@@ -76,7 +76,7 @@ TEST(FallenFigures, EveryInstructionSetAndThreadCountHasTheSameBits)
             FallenFigures fallen({.copies = 48 + 11, .all_touches = true, .turntable = true});
             Solver solver(settings, options);
             std::vector<std::uint64_t> hashes;
-            for (int step = 0; step < 90; ++step) {
+            for (int step = 0; step < testing::long_run(90); ++step) {
                 fallen.turn();
                 solver.step(fallen.scene, frame_time, fallen.contacts());
                 hashes.push_back(fallen.scene.state_hash());
@@ -93,6 +93,7 @@ TEST(FallenFigures, EveryInstructionSetAndThreadCountHasTheSameBits)
 /// A list so long that other contacts are solved in patches.
 TEST(FallenFigures, ManyHaveTheBitsOfOrdinarySweeps)
 {
+    if (testing::long_run(10) < 10) GTEST_SKIP() << "the tests of fewer figures access the same memory";
     const FallenFigures::Options many{.copies = 3500};
     FallenFigures fallen(many), ordinary(many);
     const SolverSettings settings = every_way().front();
@@ -183,6 +184,7 @@ TEST(FallenFigures, ACopyThatComesToGriefIsFrozenAndTheOthersKeepTheirBits)
 
 TEST(FallenFigures, AThousandAtRestWeighWhatTheyWeighAndHoldTogether)
 {
+    if (testing::long_run(10) < 10) GTEST_SKIP() << "the tests of fewer figures access the same memory";
     SolverSettings exact = testing::with_gravity({0, -9.81F, 0});
     exact.exact_joints = true;
     exact.substeps = 1;
