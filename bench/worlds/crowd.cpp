@@ -27,23 +27,31 @@ void Crowd::add(Scene& scene, Agent agent, Vec2<double> position)
     bodies_.push_back(agent.body);
     radii_.push_back(agent.radius);
     serial_.push_back(next_serial_++);
-    if (is_handed_over_) give_shape(scene, agent);
+    if (is_handed_over_) give_shapes(scene, agents.size() - 1);
 }
 
-void Crowd::give_shape(Scene& scene, const Agent& agent) const
+/// Shapes for the agents from this one on.
+void Crowd::give_shapes(Scene& scene, std::size_t from) const
 {
-    if (!are_torsos) return scene.set_disc(agent.body, {.radius = agent.radius, .friction = friction});
-    const Vec2<float> end = shoulder(agent);
-    scene.add_capsule({.body = agent.body,
-                       .from = {-end.x, -end.y, 0},
-                       .to = {end.x, end.y, 0},
-                       .radius = depth_radius(agent),
-                       .friction = friction});
+    const std::span<const Agent> some = std::span(agents).subspan(from);
+    if (!are_torsos) {
+        std::vector<DiscDefinition> discs;
+        for (const Agent& agent : some) discs.push_back({.radius = agent.radius, .friction = friction});
+        return scene.set_discs(bodies().subspan(from), std::span<const DiscDefinition>(discs));
+    }
+    for (const Agent& agent : some) {
+        const Vec2<float> end = shoulder(agent);
+        scene.add_capsule({.body = agent.body,
+                           .from = {-end.x, -end.y, 0},
+                           .to = {end.x, end.y, 0},
+                           .radius = depth_radius(agent),
+                           .friction = friction});
+    }
 }
 
 void Crowd::hand_over(Scene& scene)
 {
-    for (const Agent& agent : agents) give_shape(scene, agent);
+    give_shapes(scene, 0);
     for (const Wall& wall : walls) {
         const Vec2<double> ends[] = {wall.from, wall.to};
         wall_ids_.push_back(scene.add_wall({.points = ends, .friction = friction}));

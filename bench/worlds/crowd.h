@@ -130,7 +130,7 @@ class Crowd {
     };
     std::vector<Findings> findings_;
 
-    void give_shape(Scene& scene, const Agent& agent) const;
+    void give_shapes(Scene& scene, std::size_t from) const;
     void turn_torsos(const Scene& scene);
     [[nodiscard]] std::int32_t index_of(WallId wall) const;
     /// The radius of a person in a list of contacts, m.

@@ -20,7 +20,8 @@ std::span<const Contact> ShapePipeline::join(SceneCore& scene, std::span<const C
     contacts_.append_to(all_);
     keep_room(all_);
     if (scene.shapes.contacts.capacity() < found()) scene.shapes.contacts.reserve(with_room_to_grow(found()));
-    if (scene.shapes.walls.capacity() < found()) scene.shapes.walls.reserve(with_room_to_grow(found()));
+    if (scene.shapes.walls_met.capacity() < found())
+        scene.shapes.walls_met.reserve(with_room_to_grow(found()));
     return all_;
 }
 
@@ -51,13 +52,11 @@ std::string ShapePipeline::wrong_key(const SceneCore& scene, std::span<const Con
 void ShapePipeline::remember(SceneCore& scene) const
 {
     scene.shapes.contacts.assign(all_.begin() + static_cast<std::ptrdiff_t>(hosts_), all_.end());
-    scene.shapes.walls.clear();
+    scene.shapes.walls_met.clear();
     for (const Contact& contact : scene.shapes.contacts) {
         const std::int64_t segment = segment_of(contact.key);
-        WallId wall;
-        if (segment >= 0) wall.slot = scene.discs.segments[static_cast<std::size_t>(segment)].wall;
-        if (segment >= 0) wall.generation = scene.discs.walls[wall.slot].generation;
-        scene.shapes.walls.push_back(wall);
+        scene.shapes.walls_met.push_back(
+            segment < 0 ? WallId{} : scene.discs.wall_of(static_cast<std::size_t>(segment)));
     }
 }
 

@@ -78,19 +78,14 @@ double reach_of(const SleepPipeline::Step& step, BodyRow where, const Vec3<float
     return dt * (speed + (moves ? dt * length(acceleration) : 0));
 }
 
-BodyRow planar_row(std::int32_t offset)
-{
-    return {BodyKind::planar, static_cast<std::uint32_t>(offset / offsets_a_row(BodyKind::planar))};
-}
-
 /// The gap between the two discs of a lane as they are now, m.
 template <DiscClass c>
 double gap_of(const SceneCore& scene, const DiscBlocks& blocks, std::size_t block, std::size_t lane)
 {
     const AlignedVector<BodyPose>& poses = scene.bodies.rows(BodyKind::planar).pose;
     const BlockBodies& bodies = blocks.bodies[block];
-    const Vec2<double> between = in_plane(poses[planar_row(bodies.b[lane]).row()].position) -
-                                 in_plane(poses[planar_row(bodies.a[lane]).row()].position);
+    const Vec2<double> between = in_plane(poses[row_at(bodies.b[lane], BodyKind::planar).row()].position) -
+                                 in_plane(poses[row_at(bodies.a[lane], BodyKind::planar).row()].position);
     const auto row = load_lane<typename DiscFieldsOf<c>::Row>(blocks.rows.data(), block, lane);
     double radii = 0;
     if constexpr (is_rough(c)) {
@@ -99,14 +94,6 @@ double gap_of(const SceneCore& scene, const DiscBlocks& blocks, std::size_t bloc
         radii = static_cast<double>(row.reach);
     }
     return std::sqrt(dot(between, between)) - radii;
-}
-
-template <class Work>
-void for_each_lane(const DiscBlocks& blocks, const Work& work)
-{
-    for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
-        for (std::size_t lane = 0; lane < blocks.lanes[block]; ++lane) work(block, lane);
-    }
 }
 
 /// Calls work(where, slot) for each dynamic body of a chunk of rows that can move and is awake.
@@ -264,8 +251,8 @@ void SleepPipeline::wake_for_discs(const Step& step)
             if constexpr (!is_wall(c.value)) {
                 const DiscBlocks& blocks = own.blocks[static_cast<std::size_t>(c.value)];
                 for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
-                    const BodyRow a = planar_row(blocks.bodies[block].a[lane]),
-                                  b = planar_row(blocks.bodies[block].b[lane]);
+                    const BodyRow a = row_at(blocks.bodies[block].a[lane], BodyKind::planar),
+                                  b = row_at(blocks.bodies[block].b[lane], BodyKind::planar);
                     const bool a_sleeps = scene.bodies.is_asleep(a), b_sleeps = scene.bodies.is_asleep(b);
                     if (a_sleeps == b_sleeps) return;
                     // A removed body may have left its row to another one.
@@ -387,7 +374,7 @@ void SleepPipeline::tie_discs(const Step& step)
             const DiscBlocks& blocks = scene.discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
             if (is_wall(c.value) && !walls_move) return;
             for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
-                const BodyRow b = planar_row(blocks.bodies[block].b[lane]);
+                const BodyRow b = row_at(blocks.bodies[block].b[lane], BodyKind::planar);
                 const auto pushes = [&] {
                     return load_lane<typename Fields::Impulse>(blocks.sums.data(), block, lane).normal > 0;
                 };
@@ -400,7 +387,7 @@ void SleepPipeline::tie_discs(const Step& step)
                     if (goes > 0 && (pushes() || gap <= 2 * touching_distance + goes + reach_of(step, b, {})))
                         tie(step, scene.bodies.row_of(segment.body), b);
                 } else {
-                    const BodyRow a = planar_row(blocks.bodies[block].a[lane]);
+                    const BodyRow a = row_at(blocks.bodies[block].a[lane], BodyKind::planar);
                     if (!candidate(a) && !candidate(b)) return;
                     if (pushes() || gap_of<c.value>(scene, blocks, block, lane) <=
                                         2 * touching_distance + reach_of(step, a, {}) + reach_of(step, b, {}))

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "disc_crowd.h"
+#include "every_way.h"
 #include "motley/motley.h"
 #include "scene/scene_core.h"
 
@@ -264,22 +265,9 @@ struct Bodies {
     }
 };
 
-/// Every way to solve a step that treats bodies in its own way.
-std::vector<SolverSettings> every_way()
-{
-    std::vector<SolverSettings> ways(6);
-    for (SolverSettings& settings : ways) settings.gravity = {0, -9.81F, 0};
-    ways[1].exact_joints = true;
-    ways[2].method = Method::sequential_impulse;
-    ways[3].method = Method::direct;
-    ways[4].measures = true;
-    ways[5].tolerance = 1e-4F;
-    return ways;
-}
-
 TEST(ChangeBody, GivesTheBitsOfABodyThatWasAddedWithThisModel)
 {
-    for (const SolverSettings& settings : every_way()) {
+    for (const SolverSettings& settings : testing::every_way()) {
         for (const BodyModel from : models) {
             for (const BodyModel to : models) {
                 // Rods that rigid bodies had would be balls on sockets here.
@@ -299,7 +287,7 @@ TEST(ChangeBody, GivesTheBitsOfABodyThatWasAddedWithThisModel)
 
 TEST(ChangeBody, LeavesNothingOfTheOldModelInASolverThatKnowsTheScene)
 {
-    for (const SolverSettings& settings : every_way()) {
+    for (const SolverSettings& settings : testing::every_way()) {
         for (const BodyModel to : {BodyModel::rigid, BodyModel::planar}) {
             Bodies bodies(to == BodyModel::rigid ? BodyModel::planar : BodyModel::rigid,
                           to == BodyModel::rigid ? BodyModel::planar : BodyModel::rigid);

@@ -1,6 +1,7 @@
 // Figures on a floor stay in lockstep. Independent evidence: weights, momenta, the joints themselves, and a step that
 // measures itself, which sweeps everything by colour and must end in the same bits.
 #include "fallen_figures.h"
+#include "every_way.h"
 
 #include <gtest/gtest.h>
 
@@ -13,12 +14,6 @@ namespace {
 using testing::FallenFigures;
 using testing::frame_time;
 using testing::Ragdoll;
-
-SolverSettings swept(SolverSettings settings)
-{
-    settings.measures = true;
-    return settings;
-}
 
 std::vector<SolverSettings> every_way()
 {
@@ -49,7 +44,7 @@ TEST(FallenFigures, HaveTheBitsOfOrdinarySweepsAfterEveryStep)
 {
     for (const SolverSettings& settings : every_way()) {
         FallenFigures fallen(everything), ordinary(everything);
-        Solver solver(settings), reference(swept(settings));
+        Solver solver(settings), reference(testing::swept(settings));
         std::size_t most = 0;
         for (int step = 0; step < 240; ++step) {
             fallen.turn();
@@ -97,7 +92,7 @@ TEST(FallenFigures, ManyHaveTheBitsOfOrdinarySweeps)
     const FallenFigures::Options many{.copies = 3500};
     FallenFigures fallen(many), ordinary(many);
     const SolverSettings settings = every_way().front();
-    Solver solver(settings, {.threads = 2}), reference(swept(settings), {.threads = 2});
+    Solver solver(settings, {.threads = 2}), reference(testing::swept(settings), {.threads = 2});
     std::size_t most = 0;
     for (int step = 0; step < 66; ++step) {
         const std::vector<Contact> contacts = fallen.contacts();
@@ -118,7 +113,7 @@ TEST(FallenFigures, ACopyThatTouchesWhatMovesOrHasTooManyContactsKeepsTheBitsOfO
         FallenFigures fallen({.copies = 40}), ordinary({.copies = 40});
         const BodyId stone = fallen.scene.add_body(testing::box({0, 9, 0}, 5));
         ordinary.scene.add_body(testing::box({0, 9, 0}, 5));
-        Solver solver(settings), reference(swept(settings));
+        Solver solver(settings), reference(testing::swept(settings));
         std::vector<std::int64_t> in_lockstep;
         for (int step = 0; step < 150; ++step) {
             std::vector<Contact> contacts = fallen.contacts();
@@ -160,7 +155,7 @@ TEST(FallenFigures, ACopyThatComesToGriefIsFrozenAndTheOthersKeepTheirBits)
     for (const SolverSettings& settings : every_way()) {
         FallenFigures fallen({.copies = 16, .all_touches = true}),
             ordinary({.copies = 16, .all_touches = true});
-        Solver solver(settings), reference(swept(settings));
+        Solver solver(settings), reference(testing::swept(settings));
         std::int64_t contained = 0;
         for (int step = 0; step < 120; ++step) {
             if (step == 60) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "every_way.h"
 #include "rig.h"
 
 namespace motley {
@@ -76,12 +77,6 @@ std::vector<BodyId> add_puppets(Scene& scene, int copies)
     return ids;
 }
 
-SolverSettings swept(SolverSettings settings)
-{
-    settings.measures = true;
-    return settings;
-}
-
 std::vector<SolverSettings> every_way()
 {
     const SolverSettings soft = testing::with_gravity({0, -9.81F, 0});
@@ -105,7 +100,7 @@ TEST(Figures, CopiesInLockstepHaveTheBitsOfOrdinarySweepsAfterEveryStep)
         Scene lockstep;
         add_puppets(lockstep, copies);
         Scene ordinary = lockstep;
-        Solver solver(settings), reference(swept(settings));
+        Solver solver(settings), reference(testing::swept(settings));
         for (int step = 0; step < 300; ++step) {
             const StepReport report = solver.step(lockstep, frame_time);
             ASSERT_EQ(report.status, StepStatus::done) << report.error;
@@ -146,7 +141,7 @@ TEST(Figures, ACopyThatTouchesBreaksOrLeavesKeepsTheBitsOfOrdinarySweeps)
         std::vector<BodyId> ids = add_puppets(lockstep, 40);
         const BodyId stone = lockstep.add_body(box({-3, -1, 0}, 5));
         Scene ordinary = lockstep;
-        Solver solver(settings), reference(swept(settings));
+        Solver solver(settings), reference(testing::swept(settings));
         const auto in_both = [&](auto&& change) {
             change(lockstep);
             change(ordinary);
@@ -253,7 +248,7 @@ TEST(Figures, CopiesWithGearsKeepTheBitsOfOrdinarySweeps)
             lockstep.add_joint(gear);
         }
         Scene ordinary = lockstep;
-        Solver solver(settings), reference(swept(settings));
+        Solver solver(settings), reference(testing::swept(settings));
         for (int step = 0; step < 120; ++step) {
             const StepReport report = solver.step(lockstep, frame_time);
             ASSERT_EQ(report.joints_in_lockstep, (puppet_joints + 1) * 16) << report.error;
@@ -269,7 +264,7 @@ TEST(Figures, ACopyThatComesToGriefIsFrozenAndTheOthersKeepTheirBits)
         Scene lockstep;
         const std::vector<BodyId> ids = add_puppets(lockstep, 16);
         Scene ordinary = lockstep;
-        Solver solver(settings), reference(swept(settings));
+        Solver solver(settings), reference(testing::swept(settings));
         std::int64_t contained = 0;
         for (int step = 0; step < 60; ++step) {
             if (step == 20) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "every_way.h"
 #include "motley/motley.h"
 
 namespace motley {
@@ -88,22 +89,9 @@ struct Bodies {
     }
 };
 
-/// Every way to solve a step that treats masses in its own way.
-std::vector<SolverSettings> every_way()
-{
-    std::vector<SolverSettings> ways(6);
-    for (SolverSettings& settings : ways) settings.gravity = {0, -9.81F, 0};
-    ways[1].exact_joints = true;
-    ways[2].method = Method::sequential_impulse;
-    ways[3].method = Method::direct;
-    ways[4].measures = true;
-    ways[5].tolerance = 1e-4F;
-    return ways;
-}
-
 TEST(SetMass, GivesTheBitsOfABodyThatWasAddedWithThisMass)
 {
-    for (const SolverSettings& settings : every_way()) {
+    for (const SolverSettings& settings : testing::every_way()) {
         Bodies born(true), changed(false);
         changed.set_masses(true);
         EXPECT_EQ(changed.scene.state_hash(), born.scene.state_hash());
@@ -123,7 +111,7 @@ TEST(SetMass, GivesTheBitsOfABodyThatWasAddedWithThisMass)
 
 TEST(SetMass, LeavesNothingOfTheOldMassInASolverThatKnowsTheScene)
 {
-    for (const SolverSettings& settings : every_way()) {
+    for (const SolverSettings& settings : testing::every_way()) {
         Bodies bodies(false);
         Solver solver(settings);
         for (int step = 0; step < 20; ++step) solver.step(bodies.scene, dt, bodies.contacts);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "maths/across.h"
 #include "motley/core/invalid_input.h"
 
 namespace motley::mjcf {
@@ -179,11 +180,7 @@ Quat<double> turn_about(const Vec3<double>& axis, double angle)
 
 Vec3<double> perpendicular_to(const Vec3<double>& axis)
 {
-    const Vec3<double> size{std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)};
-    const Vec3<double> least = size.x <= size.y && size.x <= size.z ? Vec3<double>{1, 0, 0}
-                               : size.y <= size.z                   ? Vec3<double>{0, 1, 0}
-                                                                    : Vec3<double>{0, 0, 1};
-    const Vec3<double> across = cross(axis, least);
+    const Vec3<double> across = some_across(axis);
     return (1 / length_of(across)) * across;
 }
 

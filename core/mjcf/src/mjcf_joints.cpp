@@ -75,10 +75,12 @@ TwistDriveDefinition reversed(TwistDriveDefinition drive)
     return drive;
 }
 
-void add_euler_drive(Figure& figure, const TwistDriveDefinition& like, const JointFrame& frame_a,
-                     const JointFrame& frame_b, const Placed& a, const Placed& b, EulerAngle angle)
+/// Adds a drive along one axis with what was read of a hinge.
+template <class Drive>
+void add_drive(Figure& figure, const TwistDriveDefinition& like, const JointFrame& frame_a,
+               const JointFrame& frame_b, const Placed& a, const Placed& b, EulerAngle angle)
 {
-    EulerDriveDefinition drive;
+    Drive drive;
     drive.body_a = a.body;
     drive.body_b = b.body;
     drive.frame_a = frame_a;
@@ -99,13 +101,8 @@ void join_by_hinge(Figure& figure, const Joint& joint, const Placed& a, const Pl
     const Quat<double> turn = turn_to(joint.axis, perpendicular_to(joint.axis));
     const JointFrame frame_a = frame_on(a, joint.anchor, turn), frame_b = frame_on(b, joint.anchor, turn);
     figure.add_joint(HingeDefinition{a.body, b.body, frame_a, frame_b, {}});
-    if (!joint.drives()) return;
-    TwistDriveDefinition drive = joint.drive;
-    drive.body_a = a.body;
-    drive.body_b = b.body;
-    drive.frame_a = frame_a;
-    drive.frame_b = frame_b;
-    figure.add_joint(drive);
+    if (joint.drives())
+        add_drive<TwistDriveDefinition>(figure, joint.drive, frame_a, frame_b, a, b, EulerAngle::x);
 }
 
 /// Hinges one after another about x, then y', then z'': a ball-socket with Euler angles.
@@ -122,8 +119,8 @@ void join_by_angles(Figure& figure, const JointGroup& joints, const Placed& a, c
     for (std::size_t i = 0; i < joints.size(); ++i) {
         if (!joints[i].drives()) continue;
         const bool is_against_z = i == 2 && dot(joints[2].axis, cross(x, y)) < 0;
-        add_euler_drive(figure, is_against_z ? reversed(joints[i].drive) : joints[i].drive, frame_a, frame_b,
-                        a, b, angles[i]);
+        add_drive<EulerDriveDefinition>(figure, is_against_z ? reversed(joints[i].drive) : joints[i].drive,
+                                        frame_a, frame_b, a, b, angles[i]);
     }
 }
 

@@ -7,6 +7,9 @@ namespace motley::mjcf {
 namespace {
 
 constexpr double pi = 3.141592653589793;
+/// Attributes of geoms that only look or belong to MuJoCo's solver.
+constexpr std::initializer_list<const char*> passed_over = {
+    "group", "material", "rgba", "condim", "solref", "solimp", "solmix", "margin", "gap", "priority"};
 
 /// m (|r|^2 1 - r r^T): the inertia of a mass at r.
 Sym3<double> inertia_of_point(double mass, const Vec3<double>& r)
@@ -60,10 +63,9 @@ void MassProperties::add(const MassProperties& other)
 
 Solid read_solid(const Element& geom, const Frame& around, double per_unit)
 {
-    geom.allow_only(
-        {"name", "class", "type", "size", "fromto", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis",
-         "mass", "density", "friction", "contype", "conaffinity"},
-        {"group", "material", "rgba", "condim", "solref", "solimp", "solmix", "margin", "gap", "priority"});
+    geom.allow_only({"name", "class", "type", "size", "fromto", "pos", "quat", "axisangle", "euler", "xyaxes",
+                     "zaxis", "mass", "density", "friction", "contype", "conaffinity"},
+                    passed_over);
     demand_usual_contacts(geom);
     const std::string type = geom.text("type", "sphere");
     if (type != "sphere" && type != "capsule")
@@ -103,10 +105,9 @@ Solid read_solid(const Element& geom, const Frame& around, double per_unit)
 
 HalfSpaceDefinition read_plane(const Element& geom, double per_unit)
 {
-    geom.allow_only(
-        {"name", "class", "type", "size", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "friction",
-         "contype", "conaffinity"},
-        {"group", "material", "rgba", "condim", "solref", "solimp", "solmix", "margin", "gap", "priority"});
+    geom.allow_only({"name", "class", "type", "size", "pos", "quat", "axisangle", "euler", "xyaxes", "zaxis",
+                     "friction", "contype", "conaffinity"},
+                    passed_over);
     demand_usual_contacts(geom);
     const Frame own{geom.vector("pos", {}), geom.orientation(per_unit)};
     HalfSpaceDefinition plane;

@@ -51,11 +51,7 @@ Pair pair_of(BodyId a, BodyId b, WallId wall)
 void list_pushing(const SceneCore& scene, std::vector<Pair>& pairs)
 {
     scene.for_each_disc_impulse([&](const DiscImpulse& impulse) {
-        WallId wall;
-        if (impulse.segment != UINT32_MAX) {
-            const std::uint32_t slot = scene.discs.segments[impulse.segment].wall;
-            wall = {slot, scene.discs.walls[slot].generation};
-        }
+        const WallId wall = impulse.segment != UINT32_MAX ? scene.discs.wall_of(impulse.segment) : WallId{};
         pairs.push_back(
             pair_of(scene.bodies.id_of_slot(impulse.slot_a), scene.bodies.id_of_slot(impulse.slot_b), wall));
     });

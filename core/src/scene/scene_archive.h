@@ -214,7 +214,7 @@ struct SceneArchive {
         archive(shapes.half_spaces);
         archive(shapes.next_group);
         archive(shapes.contacts);
-        archive(shapes.walls);
+        archive(shapes.walls_met);
     }
     /// The first `count` elements of a vector that may have more; read back, it has no more.
     template <class Archive, class Vector>

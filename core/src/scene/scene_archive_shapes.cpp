@@ -53,7 +53,7 @@ void SceneArchive::check_capsules(const SceneCore& scene)
         demand(std::abs(dot(own.normal, own.normal) - 1) < 1e-4F, "a normal that is none");
     }
     demand(shapes.next_group >= ShapeStore::first_given_group, "a group that was not given out");
-    demand(shapes.walls.size() == shapes.contacts.size() &&
+    demand(shapes.walls_met.size() == shapes.contacts.size() &&
                shapes.contacts.size() <= scene.contacts.current().count,
            "contacts of capsules that were not solved");
     for (const Contact& contact : shapes.contacts) demand(is_finite(contact), "a contact that is nowhere");

@@ -82,7 +82,8 @@ void Scene::change_body(BodyId body, const BodyChange& change)
     if (from.kind() == BodyKind::planar && change.model != BodyModel::planar)
         core_->discs.forget_removed_row(from.row());
     if (core_->has_disc(body)) core_->discs.is_stale = true;  // as in set_mass
-    core_->shapes.version.reset();  // what is met as seen from above may be met in space now
+    // What is met as seen from above may be met in space now.
+    if (core_->shapes.has_capsule(body)) core_->shapes.version.reset();
     // Blocks of joints refer to rows and are for pairs of kinds.
     if (core_->bodies.first_ends[body.slot] != 0) core_->joints->version.reset();
 }

@@ -142,10 +142,12 @@ bool Scene::is_alive(WallId wall) const
 
 void SceneCore::remove_discs_of(std::span<const BodyId> removed)
 {
-    shapes.version.reset();
     for (const BodyId body : removed) {
         wake_near_walls_of(body);
-        if (has_disc(body)) discs.set_shape(body.slot, {});
+        if (has_disc(body)) {
+            discs.set_shape(body.slot, {});
+            shapes.version.reset();
+        }
         forget_discs_of(body);
         const BodyRow where = bodies.row_of(body);
         if (where.kind() == BodyKind::planar) discs.forget_removed_row(where.row());
@@ -153,6 +155,7 @@ void SceneCore::remove_discs_of(std::span<const BodyId> removed)
         for (std::size_t i = 0; i < discs.segments.size();) {
             if (discs.segments[i].body == body) {
                 discs.remove_wall(discs.segments[i].wall);
+                shapes.version.reset();
             } else {
                 ++i;
             }
@@ -216,10 +219,7 @@ DiscContact contact_of(const SceneCore& scene, const DiscImpulse& impulse)
     DiscContact contact;
     contact.a = scene.bodies.id_of_slot(impulse.slot_a);
     contact.b = scene.bodies.id_of_slot(impulse.slot_b);
-    if (impulse.segment != UINT32_MAX) {
-        const std::uint32_t slot = scene.discs.segments[impulse.segment].wall;
-        contact.wall = {slot, scene.discs.walls[slot].generation};
-    }
+    if (impulse.segment != UINT32_MAX) contact.wall = scene.discs.wall_of(impulse.segment);
     contact.normal = impulse.normal;
     contact.separation = impulse.separation;
     const double per_second = scene.last_step > 0 ? 1 / static_cast<double>(scene.last_step) : 0;

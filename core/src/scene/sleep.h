@@ -5,7 +5,7 @@
 // what speed they have, and nothing moves them. Joints and contacts between sleepers, and between sleepers and bodies
 // that are not dynamic, are left out of steps and keep what they bore. An island wakes as a whole:
 //
-//   - at once, by Scene::wake, and by every call that changes one of its bodies (set_pose, set_mass, set_disc,
+//   - at once, by Scene::wake, and by every call that changes one of its bodies (set_pose, set_mass, change_body, set_disc,
 //     clear_disc, remove_body), its joints (add_joint, set_joint, remove_joint) or a wall near it (add_wall, remove_wall,
 //     set_pose or remove_body of the wall's body);
 //   - when the next step begins, by set_velocity with a speed other than zero, and by set_force with a force that has
@@ -14,7 +14,8 @@
 //   - when a step begins in which a dynamic body that is awake, or a moving kinematic one, may come to touch it: their
 //     gap is at most a millimetre and what the other body goes in this step at its present speed and acceleration; or
 //     with a joint on a kinematic body that moves;
-//   - when a step begins in which a new contact of the host's list touches, or one that pushed is no longer listed.
+//   - when a step begins in which a new contact of the host's list or of capsules touches, or one that pushed is no longer
+//     listed.
 //
 // In a step in which a body hits a sleeper that it was not foreseen to reach, because something else threw it within that
 // step or because the host has just put it there, the sleeper counts as a body that cannot move; the next step wakes it.

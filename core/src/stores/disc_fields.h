@@ -27,13 +27,6 @@ void for_each_disc_class(const Work& work)
     work(std::integral_constant<DiscClass, DiscClass::smooth_wall>{});
     work(std::integral_constant<DiscClass, DiscClass::rough_wall>{});
 }
-/// Calls work(class, blocks) for the blocks of a band that are solved, then for those of bodies that sleep.
-template <class Band, class Work>
-void for_each_disc_blocks(Band& band, const Work& work)
-{
-    for_each_disc_class([&](auto c) { work(c, band.blocks[static_cast<std::size_t>(c.value)]); });
-    for_each_disc_class([&](auto c) { work(c, band.resting[static_cast<std::size_t>(c.value)]); });
-}
 /// The same for the class `c` alone.
 template <class Work>
 void with_disc_class(DiscClass c, const Work& work)
@@ -41,6 +34,13 @@ void with_disc_class(DiscClass c, const Work& work)
     for_each_disc_class([&](auto each) {
         if (each.value == c) work(each);
     });
+}
+/// Calls work(class, blocks) for the blocks of a band that are solved, then for those of bodies that sleep.
+template <class Band, class Work>
+void for_each_disc_blocks(Band& band, const Work& work)
+{
+    for_each_disc_class([&](auto c) { work(c, band.blocks[static_cast<std::size_t>(c.value)]); });
+    for_each_disc_class([&](auto c) { work(c, band.resting[static_cast<std::size_t>(c.value)]); });
 }
 
 /// The floats of a lane of a block as a struct of floats, field by field.
@@ -59,6 +59,20 @@ void store_lane(const Struct& value, float* stream, std::size_t block, std::size
     constexpr std::size_t fields = sizeof(Struct) / sizeof(float);
     const auto* from = reinterpret_cast<const float*>(&value);
     for (std::size_t f = 0; f < fields; ++f) stream[block_lanes * (fields * block + f) + lane] = from[f];
+}
+
+/// The body at an offset of BlockBodies.
+inline BodyRow row_at(std::int32_t offset, BodyKind kind)
+{
+    return {kind, static_cast<std::uint32_t>(offset / offsets_a_row(kind))};
+}
+/// Calls work(block, lane) for each lane that is not padding.
+template <class Work>
+void for_each_lane(const DiscBlocks& blocks, const Work& work)
+{
+    for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
+        for (std::size_t lane = 0; lane < blocks.lanes[block]; ++lane) work(block, lane);
+    }
 }
 
 }  // namespace motley

@@ -22,14 +22,17 @@
 
 namespace motley {
 
+/// Whether something of such a category and mask meets `other`: each has a category bit that the other one's mask has.
+template <class One, class Other>
+constexpr bool do_meet(const One& one, const Other& other)
+{
+    return (one.category & other.mask) != 0 && (other.category & one.mask) != 0;
+}
+
 /// Radius 0: the body has no disc.
 struct DiscShape {
     float radius = 0, friction = 0;
     std::uint32_t category = 1, mask = UINT32_MAX;
-    [[nodiscard]] bool meets(std::uint32_t others_category, std::uint32_t others_mask) const
-    {
-        return (category & others_mask) != 0 && (others_category & mask) != 0;
-    }
 };
 
 /// A straight piece of a wall.
@@ -144,6 +147,12 @@ struct DiscStore {
     [[nodiscard]] const DiscShape* shape_of(std::uint32_t slot) const
     {
         return slot < shapes.size() && shapes[slot].radius > 0 ? &shapes[slot] : nullptr;
+    }
+    /// The wall of a segment.
+    [[nodiscard]] WallId wall_of(std::size_t segment) const
+    {
+        const std::uint32_t slot = segments[segment].wall;
+        return {slot, walls[slot].generation};
     }
     [[nodiscard]] bool is_alive(WallId wall) const
     {

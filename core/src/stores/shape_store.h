@@ -1,6 +1,7 @@
 // Capsules and half-spaces, as a scene keeps them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -16,10 +17,6 @@ namespace motley {
 struct ShapeSurface {
     float friction = 0, restitution = 0;
     std::uint32_t category = 1, mask = UINT32_MAX;
-    [[nodiscard]] bool meets(std::uint32_t others_category, std::uint32_t others_mask) const
-    {
-        return (category & others_mask) != 0 && (others_category & mask) != 0;
-    }
 };
 struct Capsule {
     Vec3<float> from{}, to{};  ///< m, in the frame of the body
@@ -60,7 +57,7 @@ struct ShapeStore {
     static constexpr std::uint32_t first_given_group = std::uint32_t{1} << 31;
     /// The contacts that were found in the last step. The contact cache has them behind those of the host's list.
     std::vector<Contact> contacts;
-    std::vector<WallId> walls;  ///< of each of them, the wall that it is with; null: with no wall
+    std::vector<WallId> walls_met;  ///< of each of them, the wall that it is with; null: with no wall
     /// Token of this set of shapes, and of what else may meet them: null after a change, made by the next step, shared by
     /// copies of the scene.
     std::shared_ptr<const char> version;
@@ -70,6 +67,12 @@ struct ShapeStore {
     {
         return shape.slot < slots.size() && slots[shape.slot].kind != Kind::none &&
                slots[shape.slot].generation == shape.generation;
+    }
+    /// Looks at all capsules.
+    [[nodiscard]] bool has_capsule(BodyId body) const
+    {
+        return std::any_of(capsules.begin(), capsules.end(),
+                           [body](const Capsule& capsule) { return capsule.body == body; });
     }
     /// Makes room for so many more, so that put() cannot fail.
     void make_room(std::size_t more_capsules, std::size_t more_half_spaces);

@@ -77,13 +77,14 @@ void DiscFinder::make_room_for_workers(int workers)
     if (workers_.size() < static_cast<std::size_t>(workers))
         workers_.resize(static_cast<std::size_t>(workers));
     std::size_t pairs = 0, bodies = 0;
-    for (const Worker& worker : workers_) {
+    for (Worker& worker : workers_) {
         pairs = std::max(pairs, worker.pairs.capacity());
-        for (const BlockFiller& filler : worker.fillers) bodies = std::max(bodies, filler.most_bodies());
+        worker.for_each_filler(
+            [&](const BlockFiller& filler) { bodies = std::max(bodies, filler.most_bodies()); });
     }
     for (Worker& worker : workers_) {
         worker.pairs.reserve(pairs);
-        for (BlockFiller& filler : worker.fillers) filler.make_room_for(bodies);
+        worker.for_each_filler([&](BlockFiller& filler) { filler.make_room_for(bodies); });
     }
 }
 
@@ -262,7 +263,7 @@ void DiscFinder::add_pair(SceneCore& scene, DiscBand& band, Worker& worker, cons
         const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
         const DiscShape& shape_a = discs.shapes[slots[a.row]];
         const DiscShape& shape_b = discs.shapes[slots[b.row]];
-        if (!shape_a.meets(shape_b.category, shape_b.mask)) return;
+        if (!do_meet(shape_a, shape_b)) return;
         friction = friction_of(shape_a.friction, shape_b.friction);
     }
     with_disc_class(friction > 0 ? DiscClass::rough_pair : DiscClass::smooth_pair, [&](auto c) {
@@ -313,7 +314,7 @@ void DiscFinder::add_touch(SceneCore& scene, DiscBand& band, Worker& worker, con
     const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
     const WallSegment& wall = discs.segments[segment.index];
     const DiscShape& shape = discs.shapes[rows.slot[disc.row]];
-    if (!shape.meets(wall.category, wall.mask)) return;
+    if (!do_meet(shape, wall)) return;
     const float friction = friction_of(shape.friction, wall.friction);
     if (impulse.side == 0) {
         const Vec2<double>& from = discs.wall_ends[2 * std::size_t{segment.index}];

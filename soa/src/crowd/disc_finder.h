@@ -51,10 +51,15 @@ class DiscFinder {
         std::vector<Pair> pairs;
         std::array<BlockFiller, disc_class_count> fillers, resting_fillers;
         DiscSplit split;
+        template <class Work>
+        void for_each_filler(const Work& work)
+        {
+            for (BlockFiller& filler : fillers) work(filler);
+            for (BlockFiller& filler : resting_fillers) work(filler);
+        }
         void finish()
         {
-            for (BlockFiller& filler : fillers) filler.finish();
-            for (BlockFiller& filler : resting_fillers) filler.finish();
+            for_each_filler([](BlockFiller& filler) { filler.finish(); });
         }
     };
     std::shared_ptr<const char> self_ =

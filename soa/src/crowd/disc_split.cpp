@@ -6,30 +6,17 @@
 namespace motley {
 namespace {
 
-std::uint32_t row_at(std::int32_t offset, BodyKind kind)
-{
-    return static_cast<std::uint32_t>(offset / offsets_a_row(kind));
-}
-
 /// How many of a contact's bodies sleep; a wall counts as one that does.
 template <DiscClass c>
 int sleepers_of(const SceneCore& scene, const BlockBodies& bodies, std::size_t lane)
 {
     const auto sleeps = [&](std::int32_t offset) {
-        return scene.bodies.is_asleep(BodyRow(BodyKind::planar, row_at(offset, BodyKind::planar))) ? 1 : 0;
+        return scene.bodies.is_asleep(row_at(offset, BodyKind::planar)) ? 1 : 0;
     };
     if constexpr (is_wall(c)) {
         return 1 + sleeps(bodies.b[lane]);
     } else {
         return sleeps(bodies.a[lane]) + sleeps(bodies.b[lane]);
-    }
-}
-
-template <class Work>
-void for_each_lane(const DiscBlocks& blocks, const Work& work)
-{
-    for (std::size_t block = 0; block < static_cast<std::size_t>(blocks.count); ++block) {
-        for (std::size_t lane = 0; lane < blocks.lanes[block]; ++lane) work(block, lane);
     }
 }
 
@@ -47,8 +34,8 @@ void DiscSplit::take_out(const SceneCore& scene, const DiscBlocks& blocks)
         take(load_lane<typename Fields::Row>(blocks.rows.data(), block, lane));
         take(load_lane<typename Fields::Impulse>(blocks.impulses.data(), block, lane));
         take(load_lane<typename Fields::Impulse>(blocks.sums.data(), block, lane));
-        rows_.push_back(row_at(blocks.bodies[block].a[lane], Fields::kind_a));
-        rows_.push_back(row_at(blocks.bodies[block].b[lane], BodyKind::planar));
+        rows_.push_back(row_at(blocks.bodies[block].a[lane], Fields::kind_a).row());
+        rows_.push_back(row_at(blocks.bodies[block].b[lane], BodyKind::planar).row());
         if constexpr (is_wall(c)) touches_.push_back(blocks.touches[block_lanes * block + lane]);
         rests_.push_back(sleepers_of<c>(scene, blocks.bodies[block], lane) == 2 ? 1 : 0);
     });

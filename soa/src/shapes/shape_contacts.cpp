@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "maths/across.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -56,14 +57,7 @@ Vec3<double> direction_across(const Axis& a, const Axis& b, const Vec3<double>& 
     const double aa = dot(a.along, a.along), bb = dot(b.along, b.along);
     const Vec3<double>& longer = aa >= bb ? a.along : b.along;
     Vec3<double> across = is_flat ? Vec3<double>{-longer.y, longer.x, 0} : cross(a.along, b.along);
-    if (!(dot(across, across) > 1e-12 * aa * bb) && !is_flat) {
-        // Any direction across the longer axis: that of the coordinate along which it extends least.
-        const Vec3<double> size{std::abs(longer.x), std::abs(longer.y), std::abs(longer.z)};
-        const Vec3<double> least = size.x <= size.y && size.x <= size.z ? Vec3<double>{1, 0, 0}
-                                   : size.y <= size.z                   ? Vec3<double>{0, 1, 0}
-                                                                        : Vec3<double>{0, 0, 1};
-        across = cross(longer, least);
-    }
+    if (!(dot(across, across) > 1e-12 * aa * bb) && !is_flat) across = some_across(longer);
     double length = std::sqrt(dot(across, across));
     if (!(length > 0)) {  // two points in one place
         across = is_flat ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 0, 1};
@@ -192,7 +186,7 @@ void ShapeContacts::list_half_spaces(const SceneCore& scene, const ShapePairs& p
     if (!b.shape->can_move || b.shape->is_flat) return;
     for (std::size_t i = 0; i < half_spaces_.size(); ++i) {
         const HalfSpace& half_space = scene.shapes.half_spaces[i];
-        if (!half_space.surface.meets(b.surface.category, b.surface.mask)) continue;
+        if (!do_meet(half_space.surface, b.surface)) continue;
         const Side a{half_space.body, half_spaces_[i].centre, nullptr, half_space.surface,
                      is_static(scene, half_space.body)};
         list_half_space(a, half_spaces_[i], b,

@@ -218,7 +218,7 @@ bool ShapePairs::may_meet(const SceneCore& scene, std::uint32_t a, std::uint32_t
     const Capsule &one = scene.shapes.capsules[a], &other = scene.shapes.capsules[b];
     if (one.body == other.body || (one.group != 0 && one.group == other.group)) return false;
     if (!placed_[a].can_move && !placed_[b].can_move) return false;
-    return one.surface.meets(other.surface.category, other.surface.mask);
+    return do_meet(one.surface, other.surface);
 }
 
 void ShapePairs::find_capsules(const SceneCore& scene, std::uint32_t capsule, Found& found) const
@@ -253,7 +253,7 @@ void ShapePairs::find_discs(const SceneCore& scene, std::int64_t chunk, Found& f
             if (distance(flattened(placed_[capsule].axis), centre) >
                 reach + placed_[capsule].radius + anchors_[capsule].skin)
                 return;
-            if (other.body.slot == slot || !disc.meets(other.surface.category, other.surface.mask)) return;
+            if (other.body.slot == slot || !do_meet(disc, other.surface)) return;
             if (are_joined(scene.bodies.id_of_slot(slot), other.body)) return;
             found.discs.push_back({capsule, slot});
         });
@@ -280,7 +280,7 @@ void ShapePairs::find_walls(const SceneCore& scene, std::int64_t chunk, Found& f
                 const std::uint32_t capsule = order_[k];
                 const PlacedCapsule& near = placed_[capsule];
                 const Capsule& own = scene.shapes.capsules[capsule];
-                if (!near.can_move || !own.surface.meets(segment.category, segment.mask)) continue;
+                if (!near.can_move || !do_meet(own.surface, segment)) continue;
                 if (distance(flattened(near.axis), axis) > near.radius + anchors_[capsule].skin + wall_skin_)
                     continue;
                 found.walls.push_back({capsule, static_cast<std::uint32_t>(i)});

@@ -242,7 +242,8 @@ class Scene {
 
     /// The loads that the contacts of the last step put on bodies: loads[i] is of bodies[i], which may be dynamic,
     /// kinematic, static or contained. `contacts` is the list of that step; another list is refused. Contacts of discs
-    /// and of capsules count as well. `circumferences` (m, above 0, to 1e9), if given, turn forces into pressures. Allocates one sum for each body of the scene.
+    /// and of capsules count as well. `circumferences` (m, above 0, to 1e9), if given, turn forces into pressures. Allocates
+    /// one sum for each body of the scene.
     void read_loads(std::span<const BodyId> bodies, std::span<const Contact> contacts,
                     StridedSpan<BodyLoad> loads, StridedSpan<const float> circumferences = {}) const;
 

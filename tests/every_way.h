@@ -1,0 +1,30 @@
+// Settings for tests in which two scenes must step alike in every way.
+#pragma once
+
+#include <vector>
+
+#include "motley/motley.h"
+
+namespace motley::testing {
+
+/// Every way to solve a step that treats bodies in its own way.
+inline std::vector<SolverSettings> every_way()
+{
+    std::vector<SolverSettings> ways(6);
+    for (SolverSettings& settings : ways) settings.gravity = {0, -9.81F, 0};
+    ways[1].exact_joints = true;
+    ways[2].method = Method::sequential_impulse;
+    ways[3].method = Method::direct;
+    ways[4].measures = true;
+    ways[5].tolerance = 1e-4F;
+    return ways;
+}
+
+/// The same settings, but nothing is solved in lockstep: a step that measures itself sweeps everything by colour.
+inline SolverSettings swept(SolverSettings settings)
+{
+    settings.measures = true;
+    return settings;
+}
+
+}  // namespace motley::testing
