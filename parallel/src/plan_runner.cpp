@@ -22,6 +22,7 @@ void PlanRunner::run(const Plan& plan, const Plan& figure_plan, const Step& step
         clock.enter(stage_of(stage.operation));
         run_stage(stage, substep, plan, figure_plan, step);
     });
+    sweeper_.leave_out_contacts(false);
     // Each substep has a warm start, replayed or swept.
     step.report.sweeps += plan.substeps;
 }
@@ -41,6 +42,7 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
         case Operation::prepare:
             sweeper_.transfer(&ConstraintKernels::prepare);
             discs_.prepare(step.scene);
+            if (step.settings.exact_contacts) begin_exact_contacts(step);
             break;
         case Operation::stiffen:
             if (layout_.is_overloaded()) sweeper_.sweep(&ConstraintKernels::stiffen);
@@ -154,7 +156,7 @@ int PlanRunner::iterate(ConstraintKernels::Sweep ConstraintKernels::*kernel, int
     if (renewing) renewal_.begin();
     for (int done = 1; done <= times; ++done) {
         sweeper_.sweep(kernel);
-        sweeper_.solve_touched_trees(exact_rate(kernel));
+        solve_exactly(kernel, step);
         if (renewing) renew_after(done, times);
     }
     return times;
@@ -179,7 +181,7 @@ int PlanRunner::iterate_by_island(ConstraintKernels::Sweep ConstraintKernels::*k
         const bool measured = tolerance > 0 && (done == 2 || done % 4 == 0 || done == most);
         layout_.context.measure = measured ? Measure::while_solving : Measure::nothing;
         sweeper_.sweep(kernel, done <= times ? 0 : done);
-        sweeper_.solve_touched_trees(exact_rate(kernel));
+        solve_exactly(kernel, step);
         if (measured) convergence_.judge(layout_.sweeps(), tolerance);
         if (renewing) renew_after(done, most);
     }
@@ -191,6 +193,29 @@ int PlanRunner::iterate_by_island(ConstraintKernels::Sweep ConstraintKernels::*k
 float PlanRunner::exact_rate(ConstraintKernels::Sweep ConstraintKernels::*kernel) const
 {
     return kernel == &ConstraintKernels::solve ? layout_.context.step.exact_rate : 0;
+}
+
+void PlanRunner::find_contact_islands(const SceneCore& scene)
+{
+    exact_contacts_.find_islands(scene.bodies, layout_.sweeps());
+}
+
+void PlanRunner::begin_exact_contacts(const Step& step)
+{
+    sweeper_.begin_islands(exact_contacts_);
+    step.report.exact_contacts_refused = exact_contacts_.left_out();
+    step.report.exact_contact_islands = exact_contacts_.islands() - exact_contacts_.left_out();
+    sweeper_.leave_out_contacts(exact_contacts_.left_out() == 0);
+}
+
+/// What is solved at once after a sweep: the trees of exact joints, then the islands of exact contacts.
+void PlanRunner::solve_exactly(ConstraintKernels::Sweep ConstraintKernels::*kernel, const Step& step)
+{
+    sweeper_.solve_touched_trees(exact_rate(kernel));
+    if (!step.settings.exact_contacts) return;
+    sweeper_.solve_islands(exact_contacts_, kernel == &ConstraintKernels::relax);
+    step.report.exact_contacts_residual =
+        std::max(step.report.exact_contacts_residual, exact_contacts_.residual());
 }
 
 /// Measures the residuals of the constraints for the present state of the bodies.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "contacts/exact_contacts.h"
 #include "disc_pipeline.h"
 #include "layout/layout.h"
 #include "renewal.h"
@@ -30,6 +31,8 @@ class PlanRunner {
         bool picks_islands;  ///< some islands want more sweeps than others: see Convergence
         StepReport& report;
     };
+    /// With SolverSettings::exact_contacts: finds the islands of contacts, and makes space to solve them.
+    void find_contact_islands(const SceneCore& scene);
     /// Runs the stages of `plan`. Figures that touch no other moving body run `figure_plan`, in which no stages are fused.
     void run(const Plan& plan, const Plan& figure_plan, const Step& step, StepClock& clock);
 
@@ -42,6 +45,7 @@ class PlanRunner {
     Layout& layout_;
     Convergence convergence_;
     Renewal renewal_;
+    ExactContacts exact_contacts_;
     int solves_in_substep_ = 0;
 
     void run_stage(const PlanStage& stage, int substep, const Plan& plan, const Plan& figure_plan,
@@ -53,6 +57,8 @@ class PlanRunner {
     void renew_after(int done, int most);
     [[nodiscard]] float exact_rate(ConstraintKernels::Sweep ConstraintKernels::*kernel) const;
     void measure_residual(const Step& step);
+    void begin_exact_contacts(const Step& step);
+    void solve_exactly(ConstraintKernels::Sweep ConstraintKernels::*kernel, const Step& step);
     void move_bodies(const Step& step);
 };
 

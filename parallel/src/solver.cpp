@@ -299,7 +299,9 @@ void Solver::Impl::lay_out(SceneCore& scene, std::span<const Contact> contacts, 
                                     {.figures = use_of_figures(scene),
                                      .tells_apart = tells_blocks_apart(scene),
                                      .adds_up = settings.substeps > 1});
-    if (report.error.empty()) sweeper.make_room();
+    if (!report.error.empty()) return;
+    sweeper.make_room();
+    if (settings.exact_contacts) plan_runner.find_contact_islands(scene);
 }
 
 /// Plans what this step does, in which order, and what of it is fused.
@@ -362,8 +364,8 @@ FigureUse Solver::Impl::use_of_figures(const SceneCore& scene) const
                           settings.drift_correction == DriftCorrection::projection;
     const bool possible = settings.method != Method::direct && !projects;
     // Nor in lockstep with many sweeps: velocities of copies are not computed anew (Renewal).
-    const bool in_lockstep =
-        !tells_blocks_apart(scene) && (settings.exact_joints || !PlanRunner::sweeps_long(settings));
+    const bool in_lockstep = !tells_blocks_apart(scene) && !settings.exact_contacts &&
+                             (settings.exact_joints || !PlanRunner::sweeps_long(settings));
     return {possible && in_lockstep, possible && settings.exact_joints};
 }
 
@@ -372,8 +374,8 @@ FigureUse Solver::Impl::use_of_figures(const SceneCore& scene) const
 bool Solver::Impl::can_visit_patches_once(const SceneCore& scene) const
 {
     return layout.intake.patches.are_wanted() && settings.method == Method::soft_step &&
-           settings.relaxations > 0 && !PlanRunner::sweeps_long(settings) && !tells_blocks_apart(scene) &&
-           layout.figures.touched_trees().empty() && layout.disc_bands() == 0;
+           settings.relaxations > 0 && !settings.exact_contacts && !PlanRunner::sweeps_long(settings) &&
+           !tells_blocks_apart(scene) && layout.figures.touched_trees().empty() && layout.disc_bands() == 0;
 }
 
 }  // namespace motley

@@ -84,16 +84,32 @@ void run_chunks(const KernelContext& context, const KernelTable& kernels, std::s
 
 }  // namespace
 
+/// Whether a sweep leaves out a chunk because ExactContacts solves it. Measuring sweeps leave out nothing.
+bool Sweeper::is_left_out(const SweepChunk& chunk, ConstraintKernels::Sweep ConstraintKernels::*kernel) const
+{
+    const bool solves = kernel == &ConstraintKernels::solve || kernel == &ConstraintKernels::relax;
+    return leaves_out_contacts_ && solves && chunk.type < contact_type_count &&
+           layout_.context.measure == Measure::nothing;
+}
+
+void Sweeper::run_listed(std::span<const SweepChunk> chunks,
+                         ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+{
+    for (const SweepChunk& chunk : chunks) {
+        if (!is_left_out(chunk, kernel))
+            run_chunk(layout_.context, layout_.kernels(), chunk, kernel, at_least);
+    }
+}
+
 void Sweeper::sweep_beside_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
     // The overflow runs first and in order, so that the constraints of the colours are solved last.
     const SweepLists& sweeps = layout_.sweeps();
-    run_chunks(layout_.context, layout_.kernels(), sweeps.of_colour(overflow_colour), kernel, at_least);
+    run_listed(sweeps.of_colour(overflow_colour), kernel, at_least);
     for (int colour = 0; colour < parallel_colours; ++colour) {
         const std::span<const SweepChunk> chunks = sweeps.of_colour(colour);
         runner_.run(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t i) {
-            run_chunk(layout_.context, layout_.kernels(), chunks[static_cast<std::size_t>(i)], kernel,
-                      at_least);
+            run_listed(chunks.subspan(static_cast<std::size_t>(i), 1), kernel, at_least);
         });
     }
 }
@@ -101,9 +117,8 @@ void Sweeper::sweep_beside_patches(ConstraintKernels::Sweep ConstraintKernels::*
 void Sweeper::sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
     const SweepLists& sweeps = layout_.sweeps();
-    runner_.run(static_cast<std::int64_t>(sweeps.patches.size()), [&](std::int64_t patch) {
-        run_chunks(layout_.context, layout_.kernels(), sweeps.of_patch(patch), kernel, at_least);
-    });
+    runner_.run(static_cast<std::int64_t>(sweeps.patches.size()),
+                [&](std::int64_t patch) { run_listed(sweeps.of_patch(patch), kernel, at_least); });
 }
 
 void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
@@ -307,6 +322,16 @@ void Sweeper::solve_touched_trees(float rate)
     for_each_touched_tree([&](const FigureBlock& block) {
         solve_tree(layout_.context, layout_.kernels().figures, block, rate);
     });
+}
+
+void Sweeper::begin_islands(ExactContacts& contacts)
+{
+    runner_.run(contacts.islands(), [&](std::int64_t i) { contacts.begin(i); });
+}
+
+void Sweeper::solve_islands(ExactContacts& contacts, bool relaxes)
+{
+    runner_.run(contacts.islands(), [&](std::int64_t i) { contacts.solve(layout_.context, i, relaxes); });
 }
 
 template <class Work>

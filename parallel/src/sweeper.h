@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "contacts/exact_contacts.h"
 #include "figures/figure_step.h"
 #include "figures/figure_workspace.h"
 #include "layout/layout.h"
@@ -44,6 +45,11 @@ class Sweeper {
     void prepare_touched_trees();
     void begin_touched_trees();
     void solve_touched_trees(float rate);
+    /// ExactContacts::begin and solve of every island. Sweeps of solve and relax then leave out all contacts, if this is
+    /// asked for.
+    void begin_islands(ExactContacts& contacts);
+    void solve_islands(ExactContacts& contacts, bool relaxes);
+    void leave_out_contacts(bool leave_out) { leaves_out_contacts_ = leave_out; }
     /// Adds the displacements of a step to the poses. Returns how many bodies had to be contained because their state
     /// is not finite, and sets the lowest slot among them.
     std::int64_t commit(BodyStore& bodies, std::uint32_t& first_slot);
@@ -55,6 +61,12 @@ class Sweeper {
     StageRunner& runner_;
     Layout& layout_;
     std::vector<FigureWorkspace> workspaces_;  ///< one per worker
+    bool leaves_out_contacts_ = false;
+
+    [[nodiscard]] bool is_left_out(const SweepChunk& chunk,
+                                   ConstraintKernels::Sweep ConstraintKernels::*kernel) const;
+    void run_listed(std::span<const SweepChunk> chunks, ConstraintKernels::Sweep ConstraintKernels::*kernel,
+                    int at_least);
 
     void sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel);
     void sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);

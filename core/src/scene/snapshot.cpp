@@ -20,7 +20,7 @@ namespace motley {
 namespace {
 
 /// To be increased with every change of what is written.
-constexpr std::uint32_t format_version = 6;
+constexpr std::uint32_t format_version = 7;
 using Name = std::array<char, 8>;
 constexpr Name scene_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 's'};
 constexpr Name problem_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 'p'};
@@ -181,8 +181,9 @@ SolverSettings read_settings(ArchiveReader& archive)
 {
     std::array<unsigned char, sizeof(SolverSettings)> bytes{};
     archive(bytes);
-    for (const std::size_t at : {offsetof(SolverSettings, exact_joints), offsetof(SolverSettings, warm_start),
-                                 offsetof(SolverSettings, measures)}) {
+    for (const std::size_t at :
+         {offsetof(SolverSettings, exact_joints), offsetof(SolverSettings, exact_contacts),
+          offsetof(SolverSettings, warm_start), offsetof(SolverSettings, measures)}) {
         if (bytes[at] > 1) throw std::runtime_error("holds settings that are neither true nor false");
     }
     SolverSettings settings;

@@ -30,7 +30,7 @@ enum class Operation : std::uint8_t {
     begin_trees,                 ///< impulses of exact joints start from zero
     warm_start,                  ///< applies the impulses of the last substep
     solve_trees,                 ///< exact joints, once
-    solve,                       ///< one sweep over all constraints, and the exact joints after it
+    solve,                       ///< one sweep over all constraints, and what is solved exactly after it
     measure,                     ///< residuals, with nothing changed
     visit_patches,               ///< the stages of Plan::visit over one patch after another
     integrate_positions,         ///< x += h v

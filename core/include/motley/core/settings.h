@@ -55,6 +55,13 @@ struct SolverSettings {
     /// springs and contacts are still swept. Costs about one to two sweeps more a substep. `joint_hertz` then applies
     /// to the other joints only.
     bool exact_joints = false;
+    /// soft_step and sequential_impulse: contacts of an island, which are bodies that contacts connect, are solved all at
+    /// once after each sweep, rigidly and in double, so that towers, queues and presses are right in every step: 50 boxes
+    /// stand, and of 300 people who lean each bears what is behind. For listed contacts and those of capsules; not for
+    /// discs, which are swept. The islands must be sparse, as chains, stacks and small heaps are; large packs are left to
+    /// the sweeps (StepReport::exact_contacts_refused). Joints are swept beside. Where contacts stay as they were, it
+    /// costs about ten sweeps; one substep is then enough for what four are taken else.
+    bool exact_contacts = false;
     bool warm_start = true;  ///< start from the accumulated impulses of the last substep
     /// m/s, 0 to 1e9; 0: off. Above 0 the sweeps over an island end within a substep once none of its constraints would
     /// change a speed by more than this (the measure of StepMeasures::residual_max); `iterations` and `relaxations` are

@@ -78,6 +78,10 @@ struct StepReport {
     /// exactly in float, these would not keep momentum.
     std::int64_t exact_joints_refused = 0;
     BodyId first_light_body{};        ///< such a light body, if there is one
+    /// With SolverSettings::exact_contacts: islands whose contacts are solved at once, those that are left to the sweeps
+    /// because their matrix would be too dense, and the most that one more sweep would change a speed by, m/s.
+    std::int64_t exact_contact_islands = 0, exact_contacts_refused = 0;
+    double exact_contacts_residual = 0;
     int colours = 0;                  ///< colours in use, the overflow not counted
     std::int64_t overflow = 0;        ///< constraints that got no colour and were solved one after another
     std::int64_t blocks = 0;          ///< blocks of 16 lanes

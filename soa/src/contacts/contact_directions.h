@@ -1,0 +1,153 @@
+// The directions of a contact's rows, from the row that its kernels prepared: for solvers of whole islands, which need
+// the Jacobian itself.
+#pragma once
+
+#include <cstring>
+#include <type_traits>
+
+#include "constraints/contact.h"
+#include "kernels/kernel_table.h"
+
+namespace motley {
+
+/// One row J = [-n, -l_a, n, l_b] of a contact: n its direction, l = r x n the levers of the bodies' arms.
+struct ContactDirection {
+    Vec3<double> n, lever_a, lever_b;
+};
+
+/// A contact as a solver of islands reads it from lane `lane` of a block.
+struct ContactDirections {
+    static constexpr int most = 3;
+    ContactDirection of[most];  ///< the normal, and the tangents if there is friction
+    int count = 1;
+    double separation = 0;  ///< m, when the step began
+    double friction = 0;    ///< coefficient
+};
+
+namespace detail {
+
+template <class Real>
+Vec3<double> in_double(const Vec3<Real>& v)
+{
+    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+template <class Real>
+Vec3<double> in_double(const Vec2<Real>& v)
+{
+    return {static_cast<double>(v.x), static_cast<double>(v.y), 0};
+}
+/// A lever of one number is about z.
+inline Vec3<double> in_double(float lever)
+{
+    return {0, 0, static_cast<double>(lever)};
+}
+inline Vec3<double> in_double(NoLever)
+{
+    return {0, 0, 0};
+}
+
+/// A row consists of floats only; field i of a lane is at stream[16 i + lane].
+template <class Row>
+Row row_of_lane(const float* stream)
+{
+    constexpr auto fields = sizeof(Row) / sizeof(float);
+    float values[fields];
+    for (std::size_t i = 0; i < fields; ++i) values[i] = stream[i * block_lanes];
+    static_assert(std::is_trivially_copyable_v<Row>);
+    Row row;
+    std::memcpy(&row, values, sizeof(Row));
+    return row;
+}
+
+template <class Type, BodyKind a, BodyKind b>
+ContactDirections directions_of(const float* stream)
+{
+    const auto whole = row_of_lane<typename Type::template Row<float, a, b>>(stream);
+    const auto& row = [&]() -> const auto&
+    {
+        if constexpr (Type::has_restitution) {
+            return whole.in_sweep;
+        } else {
+            return whole;
+        }
+    }
+    ();
+    ContactDirections all;
+    all.separation = static_cast<double>(row.separation);
+    const Vec3<double> n = in_double(row.normal);
+    if constexpr (Type::smooth) {
+        all.of[0] = {n, in_double(row.lever_a), in_double(row.lever_b)};
+    } else {
+        all.friction = static_cast<double>(row.friction);
+        const Vec3<double> arm_a = in_double(row.arm_a), arm_b = in_double(row.arm_b);
+        const auto along = [&](const Vec3<double>& d) {
+            return ContactDirection{d, cross(arm_a, d), cross(arm_b, d)};
+        };
+        all.of[0] = along(n);
+        if constexpr (requires { row.tangent; }) {
+            const Vec3<double> t = in_double(row.tangent);
+            all.of[1] = along(t);
+            all.of[2] = along(cross(n, t));
+            all.count = 3;
+        } else {
+            all.of[1] = along(in_double(Type::tangent_of(row.normal)));
+            all.count = 2;
+        }
+    }
+    return all;
+}
+
+using ReadDirections = ContactDirections (*)(const float* stream);
+
+template <class Type, BodyKind a>
+ReadDirections reader_of(BodyKind b)
+{
+    switch (b) {
+        case BodyKind::particle:
+            return directions_of<Type, a, BodyKind::particle>;
+        case BodyKind::planar:
+            return directions_of<Type, a, BodyKind::planar>;
+        case BodyKind::rigid:
+            return directions_of<Type, a, BodyKind::rigid>;
+        case BodyKind::fixed:
+            break;
+    }
+    if constexpr (a == BodyKind::fixed) {
+        return nullptr;
+    } else {
+        return directions_of<Type, a, BodyKind::fixed>;
+    }
+}
+template <class Type>
+ReadDirections reader_of(BodyKind a, BodyKind b)
+{
+    switch (a) {
+        case BodyKind::particle:
+            return reader_of<Type, BodyKind::particle>(b);
+        case BodyKind::planar:
+            return reader_of<Type, BodyKind::planar>(b);
+        case BodyKind::rigid:
+            return reader_of<Type, BodyKind::rigid>(b);
+        case BodyKind::fixed:
+            break;
+    }
+    return reader_of<Type, BodyKind::fixed>(b);
+}
+
+}  // namespace detail
+
+/// What reads the rows of a contact type and pair of bodies.
+inline detail::ReadDirections reader_of_contacts(int type, BodyKind a, BodyKind b)
+{
+    switch (static_cast<Touch>(type)) {
+        case Touch::smooth:
+            return detail::reader_of<SmoothContact>(a, b);
+        case Touch::rough:
+            return detail::reader_of<RoughContact>(a, b);
+        case Touch::bouncing:
+            break;
+    }
+    return detail::reader_of<BouncingContact>(a, b);
+}
+
+}  // namespace motley
