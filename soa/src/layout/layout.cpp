@@ -362,22 +362,19 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
     context.overloaded = &overloaded_;
 }
 
-void Layout::report(StepReport& report) const
+void Layout::report(StepReport& report, const BatchSet::Count& in_lockstep) const
 {
     const BatchSet::Count joints = joints_.count(kernels_);
     BatchSet::Count touches = contacts.count(kernels_);
+    touches += in_lockstep;
     for (const SweepChunk& chunk : disc_chunks_) {
         std::int64_t lanes = 0;
         for (std::int32_t block = 0; block < chunk.end; ++block) lanes += chunk.streams.counts[block];
-        const int floats = chunk.kernels->swept_floats + chunk.kernels->impulse_floats;
-        touches.constraints += lanes;
-        touches.blocks += chunk.end;
-        touches.streamed_bytes +=
-            static_cast<double>(lanes) * (sizeof(float) * static_cast<double>(floats) + 8);
+        touches.add_blocks(*chunk.kernels, chunk.end, lanes);
         report.disc_contacts += lanes;
     }
     report.joints = joints.constraints;
-    report.contacts = touches.constraints + static_cast<std::int64_t>(figures.contacts_in_lockstep());
+    report.contacts = touches.constraints;
     report.blocks = joints.blocks + touches.blocks;
     report.overflow = joints.overflow + touches.overflow;
     report.joints_in_lockstep = figures.lone_joints();

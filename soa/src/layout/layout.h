@@ -103,8 +103,8 @@ class Layout {
     {
         return {contact_placements(), kernels_.constraints, contacts.adds_up()};
     }
-    /// Fills the counts of a report.
-    void report(StepReport& report) const;
+    /// Fills the counts of a report. `in_lockstep`: of the contacts that figures solved on their own.
+    void report(StepReport& report, const BatchSet::Count& in_lockstep) const;
 
   private:
     const KernelTable& kernels_;
