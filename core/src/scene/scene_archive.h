@@ -135,6 +135,7 @@ struct SceneArchive {
         archive(bodies.slow_for);
         archive(bodies.inverse_masses);
         archive(bodies.inverse_inertias);
+        archive(bodies.dampings);
     }
     template <class Archive, class Stores>
     static void visit_joints(Archive& archive, Stores& joints)

@@ -49,6 +49,7 @@ BodyStore::BodyStore()
     slow_for.push_back(0);
     inverse_masses.push_back(0);
     inverse_inertias.push_back(0);
+    dampings.emplace_back();
     for (int kind = 0; kind < body_kind_count; ++kind)
         take_row(static_cast<BodyKind>(kind));  // the null bodies
 }
@@ -85,6 +86,7 @@ void BodyStore::make_room(std::span<const BodyDefinition> definitions)
     make_room_for(slow_for, more);
     make_room_for(inverse_masses, more);
     make_room_for(inverse_inertias, more);
+    make_room_for(dampings, more);
 }
 
 void BodyStore::make_room_in_rows(BodyKind kind, std::size_t wanted)
@@ -167,6 +169,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
         slow_for.push_back(0);
         inverse_masses.push_back(0);
         inverse_inertias.push_back(0);
+        dampings.emplace_back();
     } else {
         slot = free_slots_.back();
         free_slots_.pop_back();
@@ -180,6 +183,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
     }
 
     inverse_masses[slot] = dynamic ? 1 / d.mass : 0.0F;
+    if (dynamic) set_damping(slot, {d.linear_damping, d.angular_damping});
     Content content;
     content.pose = {convert<PoseReal>(d.position), static_cast<PoseReal>(d.yaw)};
     if (quads_of(kind) == 2) {  // only then is it checked
@@ -277,6 +281,7 @@ void BodyStore::remove(BodyId body)
         --awake_beside(row_of(body));
     }
     sleep[body.slot] = Sleep::awake;
+    set_damping(body.slot, {});
     live_[body.slot] = 0;
     if (++slots_[body.slot].generation == 0) slots_[body.slot].generation = 1;  // zero is the null handle's
     free_slots_.push_back(body.slot);
@@ -370,6 +375,8 @@ void BodyStore::count_awake(BodyKind kind)
 void BodyStore::derive()
 {
     contained_count = static_cast<std::size_t>(std::count(contained.begin(), contained.end(), 1));
+    damped = static_cast<std::size_t>(std::count_if(dampings.begin(), dampings.end(),
+                                                    [](const Damping& damping) { return damping.is_any(); }));
     sleepers = 0;
     for (std::uint32_t slot = 1; slot < slot_count(); ++slot)
         sleepers += sleep[slot] != Sleep::awake && motions_[slot] == BodyMotion::dynamic_body ? 1 : 0;
