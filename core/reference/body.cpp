@@ -28,6 +28,8 @@ Body Body::from(const BodyDefinition& d)
     body.velocity << d.linear_velocity.x, d.linear_velocity.y, d.linear_velocity.z, d.angular_velocity.x,
         d.angular_velocity.y, d.angular_velocity.z;
     body.mass = d.mass;
+    body.linear_damping = d.linear_damping;
+    body.angular_damping = d.angular_damping;
     body.inertia << d.inertia.xx, d.inertia.xy, d.inertia.xz, d.inertia.xy, d.inertia.yy, d.inertia.yz,
         d.inertia.xz, d.inertia.yz, d.inertia.zz;
     return body;
@@ -71,6 +73,8 @@ void Body::accelerate(const Eigen::Vector3d& gravity, double h)
     g.head<3>() = gravity;
     if (model == BodyModel::planar) g(2) = 0;
     velocity += h * (g + inverse_mass() * force);
+    velocity.head<3>() /= 1 + h * linear_damping;
+    velocity.tail<3>() /= 1 + h * angular_damping;
 }
 
 void Body::move_on(double seconds)

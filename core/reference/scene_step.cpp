@@ -25,6 +25,8 @@ Body body_of(const SceneCore& scene, BodyId id)
     definition.yaw = state.yaw;
     definition.linear_velocity = state.linear_velocity;
     definition.angular_velocity = state.angular_velocity;
+    definition.linear_damping = store.dampings[id.slot].linear;
+    definition.angular_damping = store.dampings[id.slot].angular;
     const BodyRows& rows = store.rows(where.kind());
     if (where.kind() == BodyKind::rigid) definition.inertia = rows.inertia[where.row()];
     Body body = Body::from(definition);

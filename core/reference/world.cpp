@@ -447,6 +447,7 @@ Vector6 World::free_acceleration(int i, const SolverSettings& settings) const
     Body body = bodies[static_cast<std::size_t>(i)];
     if (body.motion != BodyMotion::dynamic_body) return Vector6::Zero();
     body.velocity.setZero();
+    body.linear_damping = body.angular_damping = 0;
     body.accelerate(eigen(settings.gravity), 1);
     return body.velocity;
 }
@@ -465,7 +466,7 @@ double World::opening_speed(int a, int b, const Jacobian& normal, double approac
 }
 
 /// Corrects free flight: v += h a, x += h v moves the centre of mass of a group of jointed bodies whose momentum only
-/// forces have changed in the step by a h dt / 2 too far. Rotations are not corrected, except that of a single planar
+/// forces, and no damping, have changed in the step by a h dt / 2 too far. Rotations are not corrected, except that of a single planar
 /// body, which is integrated like a position.
 void World::land_free_groups(double h, double dt, const SolverSettings& settings)
 {
@@ -473,7 +474,7 @@ void World::land_free_groups(double h, double dt, const SolverSettings& settings
     struct Group {
         double mass = 0;
         Eigen::Vector3d force = Eigen::Vector3d::Zero(), change = Eigen::Vector3d::Zero();  // of momentum
-        bool has_joints = false, is_held = false, in_plane = false;
+        bool has_joints = false, is_held = false, in_plane = false, is_damped = false;
     };
     std::vector<Group> groups(bodies.size());
     for (const Joint& joint : joints) {
@@ -493,7 +494,10 @@ void World::land_free_groups(double h, double dt, const SolverSettings& settings
         group.mass += bodies[i].mass;
         group.force += bodies[i].mass * free_acceleration(static_cast<int>(i), settings).head<3>();
         group.change += bodies[i].mass * (bodies[i].velocity - start_[i].velocity).head<3>();
-        group.in_plane = group.in_plane || bodies[i].model == BodyModel::planar;
+        const bool in_plane = bodies[i].model == BodyModel::planar;
+        group.in_plane = group.in_plane || in_plane;
+        group.is_damped =
+            group.is_damped || bodies[i].linear_damping > 0 || (in_plane && bodies[i].angular_damping > 0);
     }
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         if (group_of[i] < 0) continue;
@@ -503,7 +507,8 @@ void World::land_free_groups(double h, double dt, const SolverSettings& settings
                               change = in_space.cwiseProduct(group.change);
         // Impulses perpendicular to the force do not change how far it moves the group.
         const double by_force = dt * force.squaredNorm();
-        if (group.is_held || !(std::abs(change.dot(force) - by_force) < 1e-3 * by_force)) continue;
+        if (group.is_held || group.is_damped || !(std::abs(change.dot(force) - by_force) < 1e-3 * by_force))
+            continue;
         Vector6 back = Vector6::Zero();
         back.head<3>() = force / group.mass;
         if (group.in_plane && !group.has_joints)

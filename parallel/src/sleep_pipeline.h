@@ -1,5 +1,5 @@
-// Who wakes when a step begins, and who falls asleep when it has ended, by the rules of scene/sleep.h. What a host's
-// calls wake is in core/src/scene/scene_sleep.cpp.
+// Who wakes when a step begins (waking.cpp), and who falls asleep when it has ended (sleep_pipeline.cpp), by the rules of
+// scene/sleep.h. What a host's calls wake is in core/src/scene/scene_sleep.cpp.
 //
 // Waking looks only at sleepers that have somebody awake beside them: at the list of contacts, at bands of discs of which
 // DiscBand::half_awake counts such pairs, and at walls that move. Islands are looked for when somebody has been slow for

@@ -330,7 +330,7 @@ void Solver::Impl::finish(SceneCore& scene, std::span<const Contact> contacts, f
     scene.find_break_events();
     sleep.fall_asleep({scene, contacts, dt, settings});
     report.bodies_asleep = static_cast<std::int64_t>(scene.bodies.sleepers);
-    layout.report(report);
+    layout.report(report, sweeper.contacts_in_lockstep());
     report.shape_contacts = static_cast<std::int64_t>(shapes.found());
     report.substeps = settings.substeps;
 }

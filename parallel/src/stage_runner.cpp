@@ -2,6 +2,7 @@
 #include "stage_runner.h"
 
 #include <algorithm>
+#include <chrono>
 #include <thread>
 #include <utility>
 
@@ -22,8 +23,19 @@ inline void pause()
 constexpr int spins_before_yield = 4000;
 /// Spins before a thread takes the last chunk of another's share: longer than a chunk takes.
 constexpr int spins_before_last_chunk = 400;
+/// For how long a thread that an executor lends waits for the caller: longer than a caller is late on a loaded machine.
+constexpr std::chrono::milliseconds patience{100};
 /// Weight of one stage's measurement of the workers' speeds in their learned shares.
 constexpr double learning_rate = 1.0 / 32;
+
+void wait_a_moment(int spins)
+{
+    if (spins < spins_before_yield) {
+        pause();
+    } else {
+        std::this_thread::yield();
+    }
+}
 
 /// A share in one word: its stage, whether its worker has begun it, its last chunk plus one, and the next chunk to
 /// claim.
@@ -175,12 +187,18 @@ bool StageRunner::come_to_work(int worker, int spins)
         done_.fetch_add(count, std::memory_order_release);
         return true;
     }
-    if (spins < spins_before_yield) {
-        pause();
-    } else {
-        std::this_thread::yield();
-    }
+    wait_a_moment(spins);
     return false;
+}
+
+bool StageRunner::comes_in_time(const std::atomic<bool>& begun)
+{
+    const auto last = std::chrono::steady_clock::now() + patience;
+    for (int spins = 0; !begun.load(std::memory_order_acquire); ++spins) {
+        if (spins >= spins_before_yield && std::chrono::steady_clock::now() > last) return false;
+        wait_a_moment(spins);
+    }
+    return true;
 }
 
 void StageRunner::work(int worker)

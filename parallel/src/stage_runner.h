@@ -54,7 +54,7 @@ class StageRunner {
             if (worker < 0 || worker >= workers_) return;
             const StepFloats floats;
             if (worker != 0) {
-                work(worker);
+                if (comes_in_time(own.begun)) work(worker);
                 return;
             }
             if (own.begun.exchange(true)) return;
@@ -121,6 +121,9 @@ class StageRunner {
     bool claim_and_run(int whose, int worker, std::uint64_t stage, bool patient);
     bool help_others(int worker, std::uint64_t stage, bool patient);
     bool come_to_work(int worker, int spins);
+    /// Waits for the caller to begin, but not for long: an executor that fails before it calls job(0) may join this
+    /// thread before anybody hears of the failure. Returns whether the caller has begun.
+    static bool comes_in_time(const std::atomic<bool>& begun);
     void work(int worker);
 
     Executor* executor_;

@@ -296,6 +296,13 @@ void Sweeper::step_lone_figures(const Plan& plan)
     });
 }
 
+BatchSet::Count Sweeper::contacts_in_lockstep() const
+{
+    BatchSet::Count all;
+    for (const FigureWorkspace& workspace : workspaces_) all += workspace.contacts_taken();
+    return all;
+}
+
 template <class Work>
 void Sweeper::for_each_touched_tree(const Work& work)
 {

@@ -41,6 +41,8 @@ class Sweeper {
     void move_beside_patches();
     /// Runs the whole plan over the figures that touch no other moving body.
     void step_lone_figures(const Plan& plan);
+    /// The contacts that they had in this step.
+    [[nodiscard]] BatchSet::Count contacts_in_lockstep() const;
     /// For the trees of figures that touch another moving body: prepare_tree(), begin_tree() and solve_tree() of each.
     void prepare_touched_trees();
     void begin_touched_trees();

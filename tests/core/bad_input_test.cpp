@@ -122,6 +122,12 @@ TEST(BadInput, EveryFieldOfABodyIsCheckedAndABatchIsAllOrNone)
         body(
             "mass NaN", [](auto& b) { b.mass = nan; }, "mass", "nan"),
         body(
+            "linear damping", [](auto& b) { b.linear_damping = -1; }, "linear_damping", "-1"),
+        body(
+            "linear damping NaN", [](auto& b) { b.linear_damping = nan; }, "linear_damping", "nan"),
+        body(
+            "angular damping", [](auto& b) { b.angular_damping = 2e6F; }, "angular_damping", "0 to 1e6"),
+        body(
             "inertia zero", [](auto& b) { b.inertia.xx = 0; }, "inertia.xx", "0"),
         body(
             "inertia NaN", [](auto& b) { b.inertia.yz = nan; }, "inertia", "nan"),
@@ -631,6 +637,14 @@ TEST(BadInput, StaleHandlesAndWrongSizesAreRefused)
              f.scene.set_mass(f.kinematic, 1, {1, 0, 0, 1, 0, 1});
          },
          "set_mass.body", "kinematic"},
+        {"damping of a removed body", [](Fixture& f) { f.scene.set_damping(f.removed, 1, 1); },
+         "set_damping.body", "not alive"},
+        {"damping of a kinematic body", [](Fixture& f) { f.scene.set_damping(f.kinematic, 1, 1); },
+         "set_damping.body", "kinematic"},
+        {"damping below 0", [](Fixture& f) { f.scene.set_damping(f.rigid, -1, 1); },
+         "set_damping.linear_damping", "-1"},
+        {"damping NaN", [](Fixture& f) { f.scene.set_damping(f.rigid, 1, nan); },
+         "set_damping.angular_damping", "nan"},
         {"mass zero", [](Fixture& f) { f.scene.set_mass(f.particle, 0, {}); }, "set_mass.mass", "0"},
         {"mass NaN",
          [](Fixture& f) {

@@ -89,7 +89,7 @@ class HostileHost {
 
     void call_something()
     {
-        switch (byte() % 22) {
+        switch (byte() % 23) {
             case 0:
             case 1:
                 return add_body();
@@ -160,6 +160,8 @@ class HostileHost {
                 scene_.wake(sleeper);
                 return demand(!scene_.is_asleep(sleeper), "a woken body sleeps");
             }
+            case 20:
+                return scene_.set_damping(body(), number(), number());
             default:
                 return step();
         }

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <functional>
+#include <future>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -285,6 +288,73 @@ TEST(Executor, WhoseThreadFailsBeforeOrAfterItsJobStillDoesTheStep)
         }
         EXPECT_EQ(mixed.scene.state_hash(), alone.scene.state_hash()) << bad << before;
     }
+}
+
+/// A pool that fails when its first thread runs already and the caller's job has not begun, and joins its threads while
+/// the exception leaves.
+class UnwindingPool final : public Executor {
+  public:
+    [[nodiscard]] int concurrency() const override { return 3; }
+    void run(int, Job job) override
+    {
+        struct Joined {
+            std::thread thread;
+            ~Joined() { thread.join(); }
+        };
+        std::promise<void> begun;
+        const Joined worker{std::thread([&] {
+            begun.set_value();
+            job(1);
+        })};
+        begun.get_future().wait();
+        throw std::runtime_error("no more threads");
+    }
+};
+
+TEST(Executor, ThatFailsBeforeTheCallersJobAndJoinsWhileUnwindingIsRefusedInsteadOfWaitedForForever)
+{
+    struct Refused {
+        testing::MixedScene mixed;
+        UnwindingPool pool;
+        Solver solver{{.gravity = {0, -9.81F, 0}}, {.alone_below = 0, .executor = &pool}};
+        std::promise<StepReport> report;
+    };
+    // A step that waits forever keeps its thread and what that uses, so that this test can end and tell.
+    const auto step = std::make_shared<Refused>();
+    const std::uint64_t before = step->mixed.scene.state_hash();
+    std::future<StepReport> report = step->report.get_future();
+    std::thread([step] {
+        step->report.set_value(step->solver.step(step->mixed.scene, 1.0F / 60, step->mixed.contacts()));
+    }).detach();
+    ASSERT_EQ(report.wait_for(std::chrono::seconds(20)), std::future_status::ready);
+    const StepReport told = report.get();
+    EXPECT_EQ(told.status, StepStatus::refused);
+    EXPECT_EQ(told.error, "no more threads");
+    EXPECT_EQ(step->mixed.scene.state_hash(), before);
+}
+
+/// A pool whose caller is late: its other threads have begun long before.
+class LateCaller final : public Executor {
+  public:
+    [[nodiscard]] int concurrency() const override { return 2; }
+    void run(int, Job job) override
+    {
+        std::thread other([job] { job(1); });
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        job(0);
+        other.join();
+    }
+};
+
+TEST(Executor, WhoseCallerIsLateStillDoesTheStepWithTheSameBits)
+{
+    testing::MixedScene alone, mixed;
+    Solver one({.gravity = {0, -9.81F, 0}}, {.threads = 1});
+    LateCaller late;
+    Solver solver({.gravity = {0, -9.81F, 0}}, {.alone_below = 0, .executor = &late});
+    one.step(alone.scene, 1.0F / 60, alone.contacts());
+    EXPECT_EQ(solver.step(mixed.scene, 1.0F / 60, mixed.contacts()).status, StepStatus::done);
+    EXPECT_EQ(mixed.scene.state_hash(), alone.scene.state_hash());
 }
 
 TEST(Executor, ALoopThatThrowsIsThrownToItsCaller)

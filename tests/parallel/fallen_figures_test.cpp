@@ -55,12 +55,45 @@ TEST(FallenFigures, HaveTheBitsOfOrdinarySweepsAfterEveryStep)
             ASSERT_EQ(report.status, StepStatus::done) << report.error;
             ASSERT_EQ(report.joints_in_lockstep, everything.copies * Ragdoll::joints);
             ASSERT_EQ(report.contacts, static_cast<std::int64_t>(contacts.size()));
-            ASSERT_EQ(reference.step(ordinary.scene, frame_time, contacts).joints_in_lockstep, 0);
+            const StepReport expected = reference.step(ordinary.scene, frame_time, contacts);
+            ASSERT_EQ(expected.joints_in_lockstep, 0);
+            ASSERT_EQ(report.bytes_per_constraint, expected.bytes_per_constraint);
             ASSERT_EQ(fallen.scene.state_hash(), ordinary.scene.state_hash()) << "step " << step;
             ASSERT_TRUE(have_equal_bits(fallen.scene.contact_impulses(), ordinary.scene.contact_impulses()))
                 << "step " << step;
         }
         EXPECT_GT(most, 15U * everything.copies);
+    }
+}
+
+/// Sixteen copies of one box, each with one contact at one corner: a block of contacts without a gap, and one of joints.
+TEST(FallenFigures, HaveTheirShareInTheCountsOfBlocks)
+{
+    Figure figure;
+    const BodyId lower = figure.add_body(testing::box({0, 0.5, 0}, 1)),
+                 upper = figure.add_body(testing::box({0, 1.5, 0}, 1));
+    figure.add_joint(BallSocketDefinition{lower, upper, {0, 0.5F, 0}, {0, -0.5F, 0}});
+    std::vector<Placing> places;
+    for (int copy = 0; copy < 16; ++copy) places.push_back({.position = {4.0 * copy, 0, 0}});
+    for (const int threads : {1, 2}) {
+        Scene scene;
+        const std::vector<BodyId> ids = add_assembly(scene, figure, places);
+        const BodyId floor = scene.ground();
+        Solver solver(testing::with_gravity({0, -9.81F, 0}), {.threads = threads, .alone_below = 0});
+        for (const std::size_t touching : {16U, 12U}) {
+            std::vector<Contact> contacts;
+            for (std::size_t copy = 0; copy < touching; ++copy) {
+                Contact contact{.body_a = floor, .body_b = ids[2 * copy], .key = copy};
+                contact.normal = {0, 1, 0};
+                contact.arm_b = {0, -0.5F, 0};
+                contacts.push_back(contact);
+            }
+            const StepReport report = solver.step(scene, frame_time, contacts);
+            ASSERT_EQ(report.joints_in_lockstep, 16) << report.error;
+            EXPECT_EQ(report.contacts, static_cast<std::int64_t>(touching));
+            EXPECT_EQ(report.blocks, 2);
+            EXPECT_EQ(report.lane_occupancy, static_cast<double>(16 + touching) / 32);
+        }
     }
 }
 

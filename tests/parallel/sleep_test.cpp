@@ -415,6 +415,7 @@ TEST(Sleep, EveryCauseWakesTheWholeIsland)
              row.scene.set_mass(row.people[2], 60, {0, 0, 0, 0, 0, 1.2F});
          },
          true},
+        {"damping", [](PressedRow& row) { row.scene.set_damping(row.people[2], 1, 1); }, true},
         {"a disc", [](PressedRow& row) { row.scene.set_disc(row.people[2], {0.21F}); }, true},
         {"no disc", [](PressedRow& row) { row.scene.clear_disc(row.people[2]); }, true},
         {"a neighbour gone", [](PressedRow& row) { row.scene.remove_body(row.people[2]); }, true},

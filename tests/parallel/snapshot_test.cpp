@@ -1,10 +1,12 @@
 // Scenes in files. Independent evidence: the same scene without a file in between.
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -107,6 +109,67 @@ TEST(Snapshot, KeepsEveryTypeOfJointBetweenEveryPairOfBodies)
         solver.step(back, dt);
         ASSERT_EQ(back.state_hash(), joints.scene.state_hash()) << "step " << step;
     }
+}
+
+/// Fills the stack below its caller.
+[[gnu::noinline]] void fill_stack(int byte)
+{
+    std::array<char, 100000> below;
+    std::memset(below.data(), byte, below.size());
+    asm volatile("" : : "r"(below.data()) : "memory");  // or the compiler leaves it out
+}
+
+/// A scene with all that scenes have, made and saved where new memory has this byte.
+std::vector<std::byte> saved_where_memory_is(int byte)
+{
+    mallopt(M_PERTURB, byte);
+    fill_stack(byte);
+    JointScene joints;
+    Scene& scene = joints.scene;
+    fill_stack(byte);
+    const std::vector<Vec2<double>> corners{{-5, 20}, {5, 20}, {5, 30}};
+    scene.add_wall({.points = corners});
+    scene.remove_wall(scene.add_wall({.points = corners, .friction = 1}));
+    for (int i = 0; i < 20; ++i) {
+        fill_stack(byte);
+        BodyDefinition person;
+        person.model = BodyModel::planar;
+        person.position = {0.3 * i, 19.9, 0};
+        const BodyId body = scene.add_body(person);
+        scene.set_disc(body, {.radius = 0.2F, .friction = i % 2 == 0 ? 0.3F : 0});
+        person.position = {3.0 * i, 40, 0};
+        person.linear_damping = 0.5F;
+        scene.add_capsule({.body = scene.add_body(person), .from = {-0.2F, 0, 0}, .to = {0.2F, 0, 0}});
+    }
+    scene.add_half_space({.normal = {0, 0, 1}});
+    const BodyId a = scene.add_body({}), b = scene.add_body({});
+    scene.remove_joint(scene.add_joint(BallSocketDefinition{a, b, {}, {}}));
+    const ConstraintId joint = scene.add_joint(BallSocketDefinition{a, b, {}, {}});
+    scene.set_break_limit(joint, {.force = 100, .torque = 100});
+    scene.set_iterations(joint, 3);
+    scene.set_island_iterations(a, 4);
+    scene.set_user_data(b, 5);
+    Solver solver(settings_of(Method::soft_step));
+    for (int step = 0; step < 3; ++step) {
+        fill_stack(byte);
+        EXPECT_EQ(solver.step(scene, dt).status, StepStatus::done);
+    }
+    fill_stack(byte);
+    std::vector<std::byte> bytes =
+        save_problem({.scene = scene, .settings = settings_of(Method::soft_step), .dt = dt});
+    const std::vector<std::byte> of_scene = save_scene(scene);
+    mallopt(M_PERTURB, 0);
+    bytes.insert(bytes.end(), of_scene.begin(), of_scene.end());
+    return bytes;
+}
+
+TEST(Snapshot, EqualScenesHaveEqualBytesWhateverLayInMemoryBefore)
+{
+    const std::vector<std::byte> one = saved_where_memory_is(0x5A), other = saved_where_memory_is(0xA7);
+    ASSERT_EQ(one.size(), other.size());
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) different += one[i] != other[i] ? 1 : 0;
+    EXPECT_EQ(different, 0U);
 }
 
 /// The file with `what`, which occurs once in it, replaced by `instead`, and with a valid checksum.

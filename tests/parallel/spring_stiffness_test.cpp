@@ -222,5 +222,44 @@ TEST(Armature, ReportsWhatItTakesFromTheBodies)
     EXPECT_NEAR(scene.joint_report(drive).torque.z, -1.5 * 2, 3e-3);
 }
 
+/// A fixed joint has one stiffness for all of its rows. One that gives in translation by one frequency and in rotation by
+/// another, or by none, is a point servo beside a rotation lock.
+TEST(SpringStiffness, OfTranslationAndRotationApartIsAPointServoBesideARotationLock)
+{
+    constexpr float linear_hertz = 2, angular_hertz = 3, mass = 2, force = 8, torque = 3;
+    constexpr double inertia = 0.25 * mass;  // of a box about z
+    const auto square_of = [](float hertz) {
+        return std::pow(2 * std::numbers::pi * static_cast<double>(hertz), 2);
+    };
+    for (const bool turns : {false, true}) {
+        for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
+            Scene scene;
+            const BodyId plate = scene.add_body(box({1, 2, 0}, mass));
+            const JointFrame frame{{1, 2, 0}};
+            scene.add_joint(PointServoDefinition{.body_a = scene.ground(),
+                                                 .body_b = plate,
+                                                 .local_anchor_a = frame.position,
+                                                 .hertz = linear_hertz,
+                                                 .damping_ratio = 1});
+            scene.add_joint(RotationLockDefinition{
+                .body_a = scene.ground(),
+                .body_b = plate,
+                .frame_a = frame,
+                .stiffness = {.hertz = turns ? angular_hertz : 0, .damping_ratio = 1}});
+            scene.set_force(plate, {force, 0, 0}, {0, 0, torque});
+            SolverSettings settings;
+            settings.method = method;
+            Solver solver(settings);
+            testing::run(scene, solver, 10);
+            const BodyState state = scene.state(plate);
+            const double slid = force / (mass * square_of(linear_hertz));
+            EXPECT_NEAR(state.position.x, 1 + slid, 1e-3 * slid);
+            EXPECT_NEAR(state.position.y, 2, 1e-6);
+            const double turned = torque / (inertia * square_of(angular_hertz));
+            EXPECT_NEAR(angle_of(state), turns ? turned : 0, turns ? 5e-3 * turned : 1e-3);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace motley

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "motley/core/invalid_input.h"
+#include "motley/core/six_dof.h"
 #include "scene/scene_core.h"
 #include "stores/growth.h"
 #include "stores/joint_store.h"
@@ -67,6 +69,16 @@ BodyId Figure::add_body(const BodyDefinition& definition)
     const BodyId id = sketch_.add_body(definition);
     bodies_.push_back(definition);
     return id;
+}
+
+void Figure::add_six_dof(const SixDofDefinition& definition)
+{
+    refuse_ground(definition.body_a);
+    refuse_ground(definition.body_b);
+    // In a copy, because a refusal removes joints, and nothing is ever removed from the sketch: see join().
+    Scene with_joint = sketch_;
+    motley::add_six_dof(with_joint, definition);
+    sketch_ = std::move(with_joint);
 }
 
 void Figure::add_capsule(const CapsuleDefinition& capsule)

@@ -123,6 +123,16 @@ void check_inertia_of(const char* who, BodyModel model, const Sym3<float>& inert
     if (model == BodyModel::rigid) check_inertia(who, inertia);
 }
 
+void check_damping(const char* who, float linear, float angular)
+{
+    // The name is made only for a refusal: hosts add whole crowds.
+    const auto check_one = [who](const char* which, float value) {
+        if (!(value >= 0 && value <= most_damping)) refuse(std::string(who) + which, value, "0 to 1e6 (1/s)");
+    };
+    check_one(".linear_damping", linear);
+    check_one(".angular_damping", angular);
+}
+
 void check_model(const char* field, BodyModel model)
 {
     if (model > BodyModel::rigid) refuse(field, static_cast<double>(model), "particle, planar or rigid");
@@ -148,6 +158,7 @@ void check_definition(const BodyDefinition& d)
     if (fixed) return;
     check_model_is_built("BodyDefinition.model", d.model);
     check_mass("BodyDefinition", d.model, d.mass, d.inertia);
+    check_damping("BodyDefinition", d.linear_damping, d.angular_damping);
 }
 
 void check_disc(const DiscDefinition& disc)

@@ -10,6 +10,9 @@ namespace motley {
 inline constexpr float lightest_body = 1e-10F, heaviest_body = 1e10F;
 inline constexpr float least_moment = 1e-20F, most_moment = 1e20F;
 
+/// The largest damping of a body, 1/s.
+inline constexpr float most_damping = 1e6F;
+
 /// The largest component of a velocity that a host may give, m/s and rad/s.
 inline constexpr float largest_speed = 1e9F;
 
@@ -31,6 +34,8 @@ void check_inertia(const char* who, const Sym3<float>& inertia);
 void check_inertia_of(const char* who, BodyModel model, const Sym3<float>& inertia);
 /// `who`.mass, and of `who`.inertia what the model has.
 void check_mass(const char* who, BodyModel model, float mass, const Sym3<float>& inertia);
+/// `who`.linear_damping and `who`.angular_damping.
+void check_damping(const char* who, float linear, float angular);
 void check_definition(const BodyDefinition& definition);
 /// Refuses a number that names no model.
 void check_model(const char* field, BodyModel model);

@@ -60,9 +60,11 @@ void SceneArchive::check_bodies(const SceneCore& scene)
     demand(slots > 0 && bodies.live_.size() == slots && bodies.models_.size() == slots &&
                bodies.motions_.size() == slots && bodies.contained.size() == slots &&
                bodies.sleep.size() == slots && bodies.slow_for.size() == slots &&
-               bodies.inverse_masses.size() == slots && bodies.inverse_inertias.size() == slots,
+               bodies.inverse_masses.size() == slots && bodies.inverse_inertias.size() == slots &&
+               bodies.dampings.size() == slots,
            "its tables of bodies differ in length");
-    demand(bodies.live_[0] == 0 && bodies.contained[0] == 0, "a body of the null handle");
+    demand(bodies.live_[0] == 0 && bodies.contained[0] == 0 && !bodies.dampings[0].is_any(),
+           "a body of the null handle");
     for (int k = 0; k < body_kind_count; ++k) {
         const auto kind = static_cast<BodyKind>(k);
         const BodyRows& rows = bodies.rows(kind);
@@ -86,6 +88,9 @@ void SceneArchive::check_bodies(const SceneCore& scene)
         const bool dynamic = motion == BodyMotion::dynamic_body;
         demand(bodies.contained[slot] <= (bodies.live_[slot] != 0 && dynamic ? 1 : 0),
                "a frozen body that cannot move");
+        const Damping& damping = bodies.dampings[slot];
+        check_damping("BodyDefinition", damping.linear, damping.angular);
+        demand(!damping.is_any() || (bodies.live_[slot] != 0 && dynamic), "damping of a body that has none");
         if (bodies.live_[slot] == 0) continue;
         ++alive;
         const BodyRow where = bodies.slots_[slot].row;

@@ -17,7 +17,8 @@
 
 namespace motley {
 
-/// Writes fields as bytes.
+/// Writes fields as bytes. The bytes between and behind the members of a struct are written as zeros (g++ only; other
+/// compilers cannot tell them, and write what lies there), so that equal scenes have equal files.
 class ArchiveWriter {
   public:
     static constexpr bool reads = false;
@@ -26,18 +27,32 @@ class ArchiveWriter {
     template <class T>
     void operator()(const T& value)
     {
-        static_assert(std::is_trivially_copyable_v<T>);
-        append(&value, sizeof value);
+        append_each(&value, 1);
     }
     template <class T, class Allocator>
     void operator()(const std::vector<T, Allocator>& values)
     {
-        static_assert(std::is_trivially_copyable_v<T>);
         (*this)(static_cast<std::uint64_t>(values.size()));
-        append(values.data(), values.size() * sizeof(T));
+        append_each(values.data(), values.size());
     }
 
   private:
+    template <class T>
+    void append_each(const T* values, std::size_t count)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+#if __has_builtin(__builtin_clear_padding)
+        if constexpr (!std::is_arithmetic_v<T> && !std::has_unique_object_representations_v<T>) {
+            for (std::size_t i = 0; i < count; ++i) {
+                T value = values[i];
+                __builtin_clear_padding(&value);
+                append(&value, sizeof value);
+            }
+            return;
+        }
+#endif
+        append(values, count * sizeof(T));
+    }
     void append(const void* from, std::size_t size)
     {
         const auto* first = static_cast<const std::byte*>(from);
@@ -135,6 +150,7 @@ struct SceneArchive {
         archive(bodies.slow_for);
         archive(bodies.inverse_masses);
         archive(bodies.inverse_inertias);
+        archive(bodies.dampings);
     }
     template <class Archive, class Stores>
     static void visit_joints(Archive& archive, Stores& joints)

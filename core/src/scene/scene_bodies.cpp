@@ -48,6 +48,16 @@ void Scene::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
     if (core_->bodies.first_ends[body.slot] != 0) core_->joints->version.reset();
 }
 
+void Scene::set_damping(BodyId body, float linear, float angular)
+{
+    core_->require_alive(body, "set_damping.body");
+    if (core_->bodies.motion(body) != BodyMotion::dynamic_body)
+        refuse("set_damping.body", "a static or kinematic body", "a dynamic body");
+    check_damping("set_damping", linear, angular);
+    core_->wake_island(body.slot);
+    core_->bodies.set_damping(body.slot, {linear, angular});
+}
+
 void SceneCore::check_change(BodyId body, const BodyChange& change) const
 {
     require_alive(body, "change_body.body");

@@ -5,9 +5,9 @@
 // what speed they have, and nothing moves them. Joints and contacts between sleepers, and between sleepers and bodies
 // that are not dynamic, are left out of steps and keep what they bore. An island wakes as a whole:
 //
-//   - at once, by Scene::wake, and by every call that changes one of its bodies (set_pose, set_mass, change_body, set_disc,
-//     clear_disc, remove_body), its joints (add_joint, set_joint, remove_joint) or a wall near it (add_wall, remove_wall,
-//     set_pose or remove_body of the wall's body);
+//   - at once, by Scene::wake, and by every call that changes one of its bodies (set_pose, set_mass, set_damping,
+//     change_body, set_disc, clear_disc, remove_body), its joints (add_joint, set_joint, remove_joint) or a wall near it
+//     (add_wall, remove_wall, set_pose or remove_body of the wall's body);
 //   - when the next step begins, by set_velocity with a speed other than zero, and by set_force with a force that has
 //     changed since the island fell asleep by so much that it would bring a free body to sleep_speed within a second;
 //   - when a step begins with another gravity, or without sleep_speed;

@@ -1,4 +1,4 @@
-// Rows of bodies: added, removed, and moved at the end of a step.
+// Rows of bodies: added, changed and removed.
 #include "stores/body_store.h"
 
 #include <algorithm>
@@ -27,14 +27,6 @@ Sym3<float> inverse_of(const Sym3<float>& m)
             f(xx * zz - xz * xz), f(xz * xy - xx * yz), f(xx * yy - xy * xy)};
 }
 
-/// Whether all values are finite: infinity and NaN times zero are NaN.
-bool all_finite(const float* values, int count)
-{
-    float zero = 0;
-    for (int i = 0; i < count; ++i) zero += values[i] * 0.0F;
-    return zero == 0.0F;
-}
-
 }  // namespace
 
 BodyStore::BodyStore()
@@ -49,6 +41,7 @@ BodyStore::BodyStore()
     slow_for.push_back(0);
     inverse_masses.push_back(0);
     inverse_inertias.push_back(0);
+    dampings.emplace_back();
     for (int kind = 0; kind < body_kind_count; ++kind)
         take_row(static_cast<BodyKind>(kind));  // the null bodies
 }
@@ -85,6 +78,7 @@ void BodyStore::make_room(std::span<const BodyDefinition> definitions)
     make_room_for(slow_for, more);
     make_room_for(inverse_masses, more);
     make_room_for(inverse_inertias, more);
+    make_room_for(dampings, more);
 }
 
 void BodyStore::make_room_in_rows(BodyKind kind, std::size_t wanted)
@@ -167,6 +161,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
         slow_for.push_back(0);
         inverse_masses.push_back(0);
         inverse_inertias.push_back(0);
+        dampings.emplace_back();
     } else {
         slot = free_slots_.back();
         free_slots_.pop_back();
@@ -180,6 +175,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
     }
 
     inverse_masses[slot] = dynamic ? 1 / d.mass : 0.0F;
+    if (dynamic) set_damping(slot, {d.linear_damping, d.angular_damping});
     Content content;
     content.pose = {convert<PoseReal>(d.position), static_cast<PoseReal>(d.yaw)};
     if (quads_of(kind) == 2) {  // only then is it checked
@@ -277,6 +273,7 @@ void BodyStore::remove(BodyId body)
         --awake_beside(row_of(body));
     }
     sleep[body.slot] = Sleep::awake;
+    set_damping(body.slot, {});
     live_[body.slot] = 0;
     if (++slots_[body.slot].generation == 0) slots_[body.slot].generation = 1;  // zero is the null handle's
     free_slots_.push_back(body.slot);
@@ -310,54 +307,6 @@ void BodyStore::refresh_world_inertia(std::uint32_t row)
     }
 }
 
-void BodyStore::revive(BodyId body)
-{
-    contained[body.slot] = 0;
-    --contained_count;
-    thaw(body.slot);
-}
-
-void BodyStore::freeze(std::uint32_t slot)
-{
-    const BodyRow where = slots_[slot].row;
-    BodyRows& r = rows(where.kind());
-    const std::size_t quads = static_cast<std::size_t>(quads_of(where.kind()));
-    for (std::size_t q = quads * where.row(); q < quads * (where.row() + 1); ++q) {
-        set_quad(r.velocity, q, 0, 0, 0, 0);
-        if (where.kind() != BodyKind::rigid) continue;
-        set_quad(r.world_inverse_inertia, q, 0, 0, 0, 0);
-        set_quad(r.start_inverse_inertia, q, 0, 0, 0, 0);
-    }
-    if (where.kind() == BodyKind::planar) r.delta[std::size_t{4} * where.row() + 3] = 0;
-}
-
-void BodyStore::thaw(std::uint32_t slot)
-{
-    const BodyRow where = slots_[slot].row;
-    BodyRows& r = rows(where.kind());
-    r.velocity[std::size_t{4} * static_cast<std::size_t>(quads_of(where.kind())) * where.row() + 3] =
-        inverse_masses[slot];
-    if (where.kind() == BodyKind::planar) r.delta[std::size_t{4} * where.row() + 3] = inverse_inertias[slot];
-    if (where.kind() == BodyKind::rigid) refresh_world_inertia(where.row());
-}
-
-void BodyStore::fall_asleep(std::uint32_t slot)
-{
-    sleep[slot] = Sleep::asleep;
-    ++sleepers;
-    --awake_beside(slots_[slot].row);
-    freeze(slot);
-}
-
-void BodyStore::wake(std::uint32_t slot)
-{
-    sleep[slot] = Sleep::awake;
-    slow_for[slot] = 0;
-    --sleepers;
-    ++awake_beside(slots_[slot].row);
-    if (contained[slot] == 0) thaw(slot);
-}
-
 void BodyStore::count_awake(BodyKind kind)
 {
     BodyRows& r = rows(kind);
@@ -370,6 +319,8 @@ void BodyStore::count_awake(BodyKind kind)
 void BodyStore::derive()
 {
     contained_count = static_cast<std::size_t>(std::count(contained.begin(), contained.end(), 1));
+    damped = static_cast<std::size_t>(std::count_if(dampings.begin(), dampings.end(),
+                                                    [](const Damping& damping) { return damping.is_any(); }));
     sleepers = 0;
     for (std::uint32_t slot = 1; slot < slot_count(); ++slot)
         sleepers += sleep[slot] != Sleep::awake && motions_[slot] == BodyMotion::dynamic_body ? 1 : 0;
@@ -402,72 +353,6 @@ void BodyStore::derive()
             if (kind == BodyKind::rigid) refresh_world_inertia(row);
         }
     }
-}
-
-void BodyStore::restore_planar_inertia()
-{
-    BodyRows& r = rows(BodyKind::planar);
-    for (std::uint32_t row = 1; row < r.size(); ++row) {
-        const std::uint32_t slot = r.slot[row];
-        if (slot != 0 && contained[slot] == 0 && !is_asleep(slot))
-            r.delta[std::size_t{4} * row + 3] = inverse_inertias[slot];
-    }
-}
-
-int BodyStore::commit(BodyKind kind, std::uint32_t begin, std::uint32_t end, const Flight& flight,
-                      std::uint32_t& contained_slot)
-{
-    BodyRows& r = rows(kind);
-    const int quads = quads_of(kind);
-    int count = 0;
-    for (std::uint32_t row = begin; row < end; ++row) {
-        if (r.slot[row] == 0) continue;
-        float* velocity = &r.velocity[std::size_t{4} * quads * row];
-        float* delta = &r.delta[std::size_t{4} * quads * row];
-        if (!all_finite(velocity, 4 * quads) || !all_finite(delta, 4 * quads)) {
-            // Frozen at its last finite pose: without inverse mass nothing can move it until the host revives it.
-            freeze(r.slot[row]);
-            count += contained[r.slot[row]] == 0 ? 1 : 0;
-            contained[r.slot[row]] = 1;
-            contained_slot = std::min(contained_slot, r.slot[row]);
-        } else if (!is_asleep(r.slot[row])) {
-            BodyPose& pose = r.pose[row];
-            const float* a = &r.acceleration[std::size_t{4} * quads * row];
-            const bool in_plane = kind == BodyKind::planar;
-            const Vec3<float>& g = flight.gravity;
-            const Vec3<float> acceleration{a[0] + g.x, a[1] + g.y, in_plane ? 0 : a[2] + g.z};
-            const Vec3<float> now{velocity[0], velocity[1], in_plane ? 0 : velocity[2]};
-            // Bodies without inverse mass, fixed or contained, do not fall; the acceleration of a contained one may be
-            // infinite.
-            const bool falls = velocity[3] > 0 && flight.is_jointed[row] == 0 &&
-                               flew_freely(flight.start_along[row], dot(now, acceleration),
-                                           flight.seconds * dot(acceleration, acceleration));
-            const auto moved = [&](int i, float along) {
-                const float back = falls ? flight.excess * along : 0.0F;
-                return static_cast<PoseReal>(delta[i]) - static_cast<PoseReal>(back);
-            };
-            pose.position.x += moved(0, acceleration.x);
-            pose.position.y += moved(1, acceleration.y);
-            if (in_plane) {
-                pose.yaw += moved(2, a[2]);
-            } else {
-                pose.position.z += moved(2, acceleration.z);
-            }
-            if (quads == 2) {
-                const Quat<PoseReal> turn{delta[4], delta[5], delta[6], delta[7]};
-                const Quat<PoseReal> q = normalised(turn * r.orientation[row]);
-                r.orientation[row] = normalised(q);
-                if (kind == BodyKind::rigid && contained[r.slot[row]] == 0) refresh_world_inertia(row);
-            }
-        }
-        delta[0] = delta[1] = delta[2] = 0;
-        if (quads == 2) {
-            delta[4] = delta[5] = delta[6] = 0;
-            delta[7] = 1;
-        }
-        if (kind == BodyKind::planar && contained[r.slot[row]] != 0) delta[3] = 0;
-    }
-    return count;
 }
 
 }  // namespace motley

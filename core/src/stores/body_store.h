@@ -50,6 +50,12 @@ enum class Sleep : std::uint8_t {
     roused  ///< it sleeps until the next step begins; of a body that is not dynamic: it was changed since the last step
 };
 
+/// The damping of a body, 1/s: see BodyDefinition::linear_damping.
+struct Damping {
+    float linear = 0, angular = 0;
+    [[nodiscard]] bool is_any() const { return linear > 0 || angular > 0; }
+};
+
 /// The type of positions and orientations from step to step. Floats halve their bytes, but resolve positions at 1 km
 /// from the origin only to 0.06 mm.
 #ifdef MOTLEY_FLOAT_POSITIONS
@@ -172,6 +178,14 @@ class BodyStore {
     /// For each slot the inverse mass, 1/kg; kept while the body is contained, for its revival.
     AlignedVector<float> inverse_masses;
     std::vector<float> inverse_inertias;  ///< likewise, planar only
+
+    std::vector<Damping> dampings;  ///< for each slot; none for bodies that are not dynamic
+    std::size_t damped = 0;         ///< how many of them are above 0
+    void set_damping(std::uint32_t slot, const Damping& damping)
+    {
+        damped += (damping.is_any() ? 1U : 0U) - (dampings[slot].is_any() ? 1U : 0U);
+        dampings[slot] = damping;
+    }
 
     /// Adds the deltas of a step to the poses of rows [begin, end) of a kind, minus the excess of free flight (see
     /// Flight), and clears them. A body whose velocity or delta is not finite keeps its pose, loses its velocity and is

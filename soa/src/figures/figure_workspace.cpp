@@ -36,6 +36,7 @@ std::int64_t contact_floats(const ContactTables& tables)
 
 void FigureWorkspace::make_room(const Figures& figures, const ContactTables& tables)
 {
+    contacts_taken_ = {};
     std::int64_t most_floats = 0;
     std::size_t most_bodies = 0;
     const FigureShape* last = nullptr;
@@ -100,6 +101,8 @@ FigureBlock FigureWorkspace::take_in(const Figures& figures, std::size_t which, 
         const BodyKind kind_b = slot.fixed_is_a ? BodyKind::rigid : BodyKind::fixed;
         const ConstraintKernels& kernels =
             tables.kernels[static_cast<std::size_t>(class_of(slot.type, kind_a, kind_b))];
+        const float* const present = sorted_.present(slot);
+        contacts_taken_.add_blocks(kernels, 1, std::count(present, present + block_lanes, 1.0F));
         const int fixed = static_cast<int>(bodies) + slot.fixed;
         contacts_[count++] = {{&kernels,
                                take_lanes(kernels,
@@ -108,7 +111,7 @@ FigureBlock FigureWorkspace::take_in(const Figures& figures, std::size_t which, 
                                            .bodies = sorted_.bodies(slot),
                                            .counts = sorted_.count(slot),
                                            .constraints = sorted_.constraints(slot),
-                                           .present = sorted_.present(slot)},
+                                           .present = present},
                                           tables.adds_up),
                                0},
                               slot.type,

@@ -20,13 +20,17 @@ struct ContactTables {
 
 class FigureWorkspace {
   public:
-    /// Makes space for the largest of the blocks and the most contacts of one. Allocates only when these are larger than
-    /// all before.
+    /// Before a step: makes space for the largest of the blocks and the most contacts of one. Allocates only when these are
+    /// larger than all before.
     void make_room(const Figures& figures, const ContactTables& tables);
     /// The block with its pointers into this memory, and with its contacts; valid until the next take_in().
     [[nodiscard]] FigureBlock take_in(const Figures& figures, std::size_t block, const ContactTables& tables);
 
+    /// The contacts that were taken in since the last make_room().
+    [[nodiscard]] const BatchSet::Count& contacts_taken() const { return contacts_taken_; }
+
   private:
+    BatchSet::Count contacts_taken_;
     AlignedVector<float> floats_;
     std::vector<FigureBlock::Joint> joints_;
     CopyContacts sorted_;

@@ -57,11 +57,7 @@ class Figures {
         const std::uint32_t begin = block == 0 ? 0 : end_of_contacts_[block - 1];
         return std::span(contacts_).subspan(begin, end_of_contacts_[block] - begin);
     }
-    /// How many contacts are taken in this step, and the most by one block.
-    [[nodiscard]] std::size_t contacts_in_lockstep() const
-    {
-        return is_empty() ? 0 : end_of_contacts_.back();
-    }
+    /// The most contacts that one block has taken in this step.
     [[nodiscard]] std::size_t most_contacts() const { return is_empty() ? 0 : most_contacts_; }
     /// Where a rigid row is in its block of copies: its body of the figure times block_lanes, plus its lane.
     [[nodiscard]] std::span<const std::int32_t> places() const { return place_of_row_; }

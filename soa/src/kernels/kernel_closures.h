@@ -66,9 +66,8 @@ inline Lanes push_along(const ClosureRow& c, const Lanes& lambda)
 inline void factor_closures(const FigureBlock& figure, int lane)
 {
     const FigureShape& shape = *figure.shape;
-    float* k = figure.system + shape.closure_factor + lane;
+    const StoredTriangle k{figure.system + shape.closure_factor + lane};
     float* alone = figure.system + shape.closure_alone + lane;
-    const auto at = [&](int row, int column) { return k + in_triangle(row, column) * block_lanes; };
     const Vec3<Lanes> still{Lanes(0), Lanes(0), Lanes(0)};
     const auto stop = [&] {
         for (const FigureNode& node : shape.nodes) {
@@ -91,7 +90,7 @@ inline void factor_closures(const FigureBlock& figure, int lane)
             if (row < column) return;
             const Lanes of_a = seen.a_moves ? end_speed(seen.row.linear, seen.row.lever_a, seen.a) : Lanes(0);
             const Lanes of_b = seen.b_moves ? end_speed(seen.row.linear, seen.row.lever_b, seen.b) : Lanes(0);
-            store_lanes(of_b - of_a, at(row, column));
+            k.set(row, column, of_b - of_a);
         });
     });
     for (const FigureNode& node : shape.nodes) {
@@ -102,55 +101,31 @@ inline void factor_closures(const FigureBlock& figure, int lane)
         body.angular = {velocity[3], velocity[4], velocity[5]};
         store_copy_velocity(body, figure.body(node.body) + lane);
     }
-    // L D L^T in place: L below the diagonal, 1 / D on it.
-    for (int i = 0; i < shape.closure_rows; ++i) {
-        Lanes pivot = load_lanes(at(i, i));
-        for (int j = 0; j < i; ++j) {
-            Lanes scaled = load_lanes(at(i, j));
-            for (int m = 0; m < j; ++m) scaled = scaled - load_lanes(at(i, m)) * load_lanes(at(j, m));
-            store_lanes(scaled, at(i, j));  // entry of L D, until the row is done
-        }
-        for (int j = 0; j < i; ++j) {
-            const Lanes scaled = load_lanes(at(i, j));
-            const Lanes l = scaled * load_lanes(at(j, j));
-            pivot = pivot - scaled * l;
-            store_lanes(l, at(i, j));
-        }
+    factor_in_place(shape.closure_rows, k, [&](int i, const Lanes& pivot) {
         const auto usable = pivot > Lanes(closure_rounding) * load_lanes(alone + i * block_lanes);
-        store_lanes(select(usable, inverse_or_zero(pivot), Lanes(0)), at(i, i));
-    }
+        return select(usable, inverse_or_zero(pivot), Lanes(0));
+    });
 }
 
 /// Applies the impulses with which the closures hold, then solves the tree so that its locks hold too.
 inline void solve_closures(const FigureBlock& figure, float rate, int lane)
 {
     const FigureShape& shape = *figure.shape;
-    const float* k = figure.system + shape.closure_factor + lane;
-    float* target = figure.system + shape.closure_target + lane;
-    const auto at = [&](int row, int column) {
-        return load_lanes(k + in_triangle(row, column) * block_lanes);
-    };
-    const auto x = [&](int row) { return target + row * block_lanes; };
+    const StoredTriangle k{figure.system + shape.closure_factor + lane};
+    const StoredColumn x{figure.system + shape.closure_target + lane};
     for_each_closure_row(figure, lane, [&](const ClosureRow& c, int row) {
-        store_lanes(-(speed_along(c) + Lanes(rate) * c.row.error), x(row));
+        x.set(row, -(speed_along(c) + Lanes(rate) * c.row.error));
     });
-    for (int i = 0; i < shape.closure_rows; ++i) {
-        Lanes value = load_lanes(x(i));
-        for (int j = 0; j < i; ++j) value = value - at(i, j) * load_lanes(x(j));
-        store_lanes(value, x(i));
-    }
-    for (int i = shape.closure_rows; i-- > 0;) {
-        Lanes value = load_lanes(x(i)) * at(i, i);
-        for (int j = i + 1; j < shape.closure_rows; ++j) value = value - at(j, i) * load_lanes(x(j));
-        // A row without a pivot gets no impulse.
-        store_lanes(select(at(i, i) > Lanes(0), value, Lanes(0)), x(i));
-    }
+    // A row without a pivot gets no impulse.
+    solve_in_place(shape.closure_rows, k, x, [&](int i, const Lanes& value) {
+        return select(k.get(i, i) > Lanes(0), value, Lanes(0));
+    });
     for (const FigureClosure& closure : shape.closures) {
         float* impulse = impulse_of(figure, closure.joint) + lane;
         const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
         Wrench<Lanes> sum{none, none};
         for (int i = 0; i < closure.rows; ++i) {
-            const Lanes lambda = load_lanes(x(closure.first_row + i));
+            const Lanes lambda = x.get(closure.first_row + i);
             const ClosureRow pushed = closure_row(figure, closure, i, lane);
             push_along(pushed, lambda);
             store_lanes(load_lanes(impulse + i * block_lanes) + lambda, impulse + i * block_lanes);

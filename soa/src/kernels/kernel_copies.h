@@ -77,13 +77,15 @@ inline void store_copy_velocities(const KernelContext& context, const FigureBloc
 
 inline void integrate_copy_velocities(const KernelContext& context, const FigureBlock& figure)
 {
-    for_each_moving_copy(figure, [&](float* lanes, const std::int32_t*, int) {
+    const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
+    for_each_moving_copy(figure, [&](float* lanes, const std::int32_t* offsets, int) {
         Mover body = load_row<Mover>(lanes);
         const Mover before = body;
         Lanes a[4], t[4];
         load_field_quads(lanes + CopyBody::acceleration * block_lanes, a);
         load_field_quads(lanes + (CopyBody::acceleration + 3) * block_lanes, t);
         accelerate(context.step, a, t, body);
+        if (arrays.decay != nullptr) damp(arrays, offsets, body);
         const auto moves = body.inverse_mass > Lanes(0);
         for_each_component(body, before,
                            [&](Lanes& now, const Lanes& then) { now = select(moves, now, then); });

@@ -39,6 +39,29 @@ inline void accelerate(const KernelContext& context, const BodyArrays& arrays, c
     accelerate(context.step, a, t, body);
 }
 
+/// v = v / (1 + h c) with the damping c, after the acceleration by forces: see BodyDefinition::linear_damping.
+inline void damp(const BodyArrays& arrays, const std::int32_t* offsets, Body<BodyKind::particle>& body)
+{
+    Lanes k[4];
+    load_quads(arrays.decay, offset_floats, offsets, k);
+    body.linear = {k[0] * body.linear.x, k[1] * body.linear.y, k[2] * body.linear.z};
+}
+inline void damp(const BodyArrays& arrays, const std::int32_t* offsets, Body<BodyKind::planar>& body)
+{
+    Lanes k[4];
+    load_quads(arrays.decay, offset_floats, offsets, k);
+    body.linear = {k[0] * body.linear.x, k[1] * body.linear.y};
+    body.yaw_rate = k[2] * body.yaw_rate;
+}
+inline void damp(const BodyArrays& arrays, const std::int32_t* offsets, Body<BodyKind::rigid>& body)
+{
+    Lanes k[4], turns[4];
+    load_quads(arrays.decay, offset_floats, offsets, k);
+    load_quads(arrays.decay + 4, offset_floats, offsets, turns);
+    body.linear = {k[0] * body.linear.x, k[1] * body.linear.y, k[2] * body.linear.z};
+    body.angular = {turns[0] * body.angular.x, turns[1] * body.angular.y, turns[2] * body.angular.z};
+}
+
 /// Where the rows of a bundle begin. They are consecutive or listed; lanes from `count` on are the null row.
 template <BodyKind kind>
 struct RowIndex {
@@ -80,13 +103,14 @@ template <BodyKind kind, class Work>
     if (first < count) work(RowIndex<kind>(rows + first, count - first));
 }
 
-/// Applies forces and gravity and, where Replay says so, the velocity change by constraints in the last substep.
+/// Applies forces, gravity and damping and, where Replay says so, the velocity change by constraints in the last substep.
 template <BodyKind kind>
 void change_velocity(const KernelContext& context, const BodyArrays& arrays, const RowIndex<kind>& index,
                      Body<kind>& body)
 {
     const Body<kind> before = body;
     accelerate(context, arrays, index.offsets, body);
+    if (arrays.decay != nullptr) damp(arrays, index.offsets, body);
     // A row without inverse mass is the null row, unused, or a contained body: not even gravity moves it.
     const auto moves = body.inverse_mass > Lanes(0);
     for_each_component(body, before, [&](Lanes& now, const Lanes& then) { now = select(moves, now, then); });
@@ -121,6 +145,17 @@ Along along_acceleration(const KernelContext& context, const BodyArrays& arrays,
     return {dot(velocity, acceleration), dot(acceleration, acceleration)};
 }
 
+/// v . a as a step begins, for flew_freely. Infinite for damped bodies, which do not fly on a parabola.
+template <BodyKind kind>
+Lanes start_along(const KernelContext& context, const BodyArrays& arrays, const RowIndex<kind>& index)
+{
+    const Lanes v_a = along_acceleration<kind>(context, arrays, index).v_a;
+    if (arrays.decay == nullptr) return v_a;
+    Lanes k[4];
+    load_quads(arrays.decay, offset_floats, index.offsets, k);
+    return select(k[3] > Lanes(0), v_a, Lanes(__builtin_inff()));
+}
+
 template <BodyKind kind, bool begins>
 void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
 {
@@ -128,7 +163,7 @@ void integrate_velocities(const KernelContext& context, std::int32_t begin, std:
     for_each_rows<kind>(begin, end, [&](const RowIndex<kind>& index) {
         Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
         alignas(64) float start[Lanes_width];
-        if constexpr (begins) store_lanes(along_acceleration<kind>(context, arrays, index).v_a, start);
+        if constexpr (begins) store_lanes(start_along<kind>(context, arrays, index), start);
         change_velocity(context, arrays, index, body);
         store_velocity(arrays, index.offsets, body, index.count);
         if constexpr (begins) {

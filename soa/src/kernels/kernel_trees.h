@@ -1,5 +1,5 @@
 // Solves all locks of a figure at once: J M^-1 J^T is factored along its tree, one copy per lane. Included inside an
-// anonymous namespace, after kernel_tree_rows.h.
+// anonymous namespace, after kernel_elimination.h.
 //
 // In the system
 //
@@ -13,50 +13,13 @@
 // Masses are only ever added, so nothing cancels whatever their ratio. If all bodies were eliminated first, the
 // system of the locks would consist of terms 1/m + 1/m' - ..., which cancel.
 
-/// The index of an entry of a lower triangle that is stored row by row, including the diagonal.
-constexpr int in_triangle(int row, int column)
-{
-    return row * (row + 1) / 2 + column;
-}
-
-/// Symmetric K = L D L^T: L below the diagonal and 1 / D on it.
-template <int n>
-struct Triangle {
-    Lanes entry[n * (n + 1) / 2];
-    Lanes& at(int row, int column) { return entry[in_triangle(row, column)]; }
-    const Lanes& at(int row, int column) const { return entry[in_triangle(row, column)]; }
-};
 /// Factors K in place. Its pivots are known to be at least `least`, so one that rounding has made smaller is raised
 /// to that. For a row without a pivot, 1 / D is 0.
 template <int n>
 void factor_in_place(Triangle<n>& k, const Lanes (&least)[n])
 {
-    unrolled<n>([&](auto i) {
-        Lanes scaled[n];  // row i of L D
-        Lanes pivot = k.at(i, i);
-        unrolled<i>([&](auto j) {
-            scaled[j] = k.at(i, j);
-            unrolled<j>([&](auto m) { scaled[j] = scaled[j] - scaled[m] * k.at(j, m); });
-            k.at(i, j) = scaled[j] * k.at(j, j);
-            pivot = pivot - scaled[j] * k.at(i, j);
-        });
-        k.at(i, i) = inverse_or_zero(maximum(pivot, least[i]));
-    });
-}
-/// K^-1 x in place; entries of x before `first` are 0.
-template <int first = 0, int n>
-void solve_in_place(const Triangle<n>& f, Lanes (&x)[n])
-{
-    unrolled<n>([&](auto i) {
-        unrolled<i>([&](auto j) {
-            if constexpr (j() >= first) x[i] = x[i] - f.at(i, j) * x[j];
-        });
-    });
-    unrolled<n>([&](auto i) { x[i] = x[i] * f.at(i, i); });
-    unrolled<n>([&](auto back) {
-        constexpr int i = n - 1 - back;
-        unrolled<n - 1 - i>([&](auto j) { x[i] = x[i] - f.at(i + 1 + j, i) * x[i + 1 + j]; });
-    });
+    factor_in_place(Constant<n>{}, k,
+                    [&](int i, const Lanes& pivot) { return inverse_or_zero(maximum(pivot, least[i])); });
 }
 
 /// Swaps the sides of a row whose body a is the child body: J v and C change sign.

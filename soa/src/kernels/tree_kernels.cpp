@@ -15,6 +15,8 @@ namespace {
 #include "kernels/kernel_copies.h"
 
 #include "kernels/kernel_tree_rows.h"
+
+#include "kernels/kernel_elimination.h"
 #include "kernels/kernel_trees.h"
 
 #include "kernels/kernel_closures.h"

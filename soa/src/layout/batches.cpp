@@ -389,12 +389,9 @@ BatchSet::Count BatchSet::count(const KernelTable& table) const
         std::int64_t constraints = 0;
         for (std::int32_t block = 0; block < pool.all_blocks; ++block)
             constraints += pool.counts[static_cast<std::size_t>(block)];
-        const ConstraintKernels& kernels = table.constraints[static_cast<std::size_t>(first_class_) + p];
-        const double floats = kernels.swept_floats + kernels.impulse_floats + 2;  // two body indices
-        total.blocks += pool.all_blocks;
-        total.constraints += constraints;
+        total.add_blocks(table.constraints[static_cast<std::size_t>(first_class_) + p], pool.all_blocks,
+                         constraints);
         total.overflow += pool.overflow;
-        total.streamed_bytes += 4.0 * floats * static_cast<double>(constraints);
     }
     return total;
 }

@@ -195,10 +195,26 @@ class BatchSet {
     /// wanted number of sweeps of each block. Pointers in them stay valid until the next begin().
     void cut(const KernelTable& kernels, bool tells_apart, SweepLists& sweeps, TransferList& transfers);
 
-    /// Blocks, constraints, overflow and streamed floats, for the report.
+    /// What a report counts.
     struct Count {
         std::int64_t blocks = 0, constraints = 0, overflow = 0;
         double streamed_bytes = 0;  ///< by one sweep of solve
+
+        void add_blocks(const ConstraintKernels& kernels, std::int64_t new_blocks,
+                        std::int64_t new_constraints)
+        {
+            blocks += new_blocks;
+            constraints += new_constraints;
+            const int floats = kernels.swept_floats + kernels.impulse_floats + 2;  // two body indices
+            streamed_bytes += 4.0 * floats * static_cast<double>(new_constraints);
+        }
+        void operator+=(const Count& other)
+        {
+            blocks += other.blocks;
+            constraints += other.constraints;
+            overflow += other.overflow;
+            streamed_bytes += other.streamed_bytes;
+        }
     };
     [[nodiscard]] Count count(const KernelTable& kernels) const;
     [[nodiscard]] bool has_blocks() const { return !used_.empty(); }

@@ -64,6 +64,9 @@ struct BodyArrays {
     float* start_along = nullptr;  ///< see Flight, like is_jointed
     const std::uint8_t* is_jointed = nullptr;
     const float* acceleration = nullptr;
+    /// As velocity: by what a substep multiplies each component, and last in each row's first quad whether free flight
+    /// keeps to its parabola (1 or 0). Null unless a body of the kind is damped.
+    const float* decay = nullptr;
     float* world_inverse_inertia = nullptr;
     float* start_inverse_inertia = nullptr;
     const Sym3<float>* inverse_inertia = nullptr;  ///< in the body's frame

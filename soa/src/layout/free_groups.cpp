@@ -83,6 +83,7 @@ FreeGroups::Sums FreeGroups::sums_of(const KernelContext& context, std::int64_t 
         sums.momentum = sums.momentum + m * Vec3<double>{v[0], v[1], v[2]};
         sums.force = sums.force + m * Vec3<double>{a[0], a[1], a[2]};
         sums.in_plane = sums.in_plane || body.kind() == BodyKind::planar;
+        sums.is_damped = sums.is_damped || (rows.decay != nullptr && rows.decay[row_offset(body) + 3] == 0);
     }
     if (sums.in_plane) sums.momentum.z = sums.force.z = 0;
     return sums;
@@ -97,6 +98,7 @@ void FreeGroups::land(const KernelContext& context, std::int64_t group) const
 {
     const StepConstants& step = context.step;
     const Sums sums = sums_of(context, group);
+    if (sums.is_damped) return;  // it does not fly on a parabola
     Vec3<double> a = 1 / sums.mass * sums.force + convert<double>(step.gravity);
     if (sums.in_plane) a.z = 0;
     const auto along = [&](const Vec3<double>& momentum) { return dot(1 / sums.mass * momentum, a); };

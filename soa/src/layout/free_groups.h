@@ -36,6 +36,7 @@ class FreeGroups {
         double mass = 0;
         Vec3<double> momentum{}, force{};  ///< N s; N, without gravity
         bool in_plane = false;             ///< some body is planar, so the group is not free along z
+        bool is_damped = false;            ///< some body is, so the group does not fly on a parabola
     };
     [[nodiscard]] Sums sums_of(const KernelContext& context, std::int64_t group) const;
     std::vector<std::uint32_t> end_of_members_;  ///< by group

@@ -71,6 +71,8 @@ void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse&
         const std::size_t rows = scene.bodies.rows(static_cast<BodyKind>(kind)).size();
         grow_to(is_jointed_[kind], rows);
         grow_to(start_along_[kind], rows);
+        if (scene.bodies.damped > 0 && static_cast<BodyKind>(kind) != BodyKind::fixed)
+            grow_to(decay_[kind], 4 * static_cast<std::size_t>(quads_of(static_cast<BodyKind>(kind))) * rows);
     }
     figures.make_room(contact_count);
     if (contact_count > 0) masks_.copy(joint_masks_, scene.bodies);
@@ -343,12 +345,15 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
     for (int kind = 0; kind < body_kind_count; ++kind) {
         BodyRows& rows = scene.bodies.rows(static_cast<BodyKind>(kind));
         swept += swept_bytes(static_cast<BodyKind>(kind)) * static_cast<std::int64_t>(rows.size());
+        const bool decays = scene.bodies.damped > 0 && static_cast<BodyKind>(kind) != BodyKind::fixed &&
+                            find_decay(scene.bodies, static_cast<BodyKind>(kind), step.substep);
         context.bodies[kind] = {rows.velocity.data(),
                                 rows.delta.data(),
                                 rows.unpushed.data(),
                                 start_along_[static_cast<std::size_t>(kind)].data(),
                                 is_jointed_[static_cast<std::size_t>(kind)].data(),
                                 rows.acceleration.data(),
+                                decays ? decay_[static_cast<std::size_t>(kind)].data() : nullptr,
                                 rows.world_inverse_inertia.data(),
                                 rows.start_inverse_inertia.data(),
                                 rows.inverse_inertia.data(),
@@ -362,22 +367,19 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
     context.overloaded = &overloaded_;
 }
 
-void Layout::report(StepReport& report) const
+void Layout::report(StepReport& report, const BatchSet::Count& in_lockstep) const
 {
     const BatchSet::Count joints = joints_.count(kernels_);
     BatchSet::Count touches = contacts.count(kernels_);
+    touches += in_lockstep;
     for (const SweepChunk& chunk : disc_chunks_) {
         std::int64_t lanes = 0;
         for (std::int32_t block = 0; block < chunk.end; ++block) lanes += chunk.streams.counts[block];
-        const int floats = chunk.kernels->swept_floats + chunk.kernels->impulse_floats;
-        touches.constraints += lanes;
-        touches.blocks += chunk.end;
-        touches.streamed_bytes +=
-            static_cast<double>(lanes) * (sizeof(float) * static_cast<double>(floats) + 8);
+        touches.add_blocks(*chunk.kernels, chunk.end, lanes);
         report.disc_contacts += lanes;
     }
     report.joints = joints.constraints;
-    report.contacts = touches.constraints + static_cast<std::int64_t>(figures.contacts_in_lockstep());
+    report.contacts = touches.constraints;
     report.blocks = joints.blocks + touches.blocks;
     report.overflow = joints.overflow + touches.overflow;
     report.joints_in_lockstep = figures.lone_joints();

@@ -103,8 +103,8 @@ class Layout {
     {
         return {contact_placements(), kernels_.constraints, contacts.adds_up()};
     }
-    /// Fills the counts of a report.
-    void report(StepReport& report) const;
+    /// Fills the counts of a report. `in_lockstep`: of the contacts that figures solved on their own.
+    void report(StepReport& report, const BatchSet::Count& in_lockstep) const;
 
   private:
     const KernelTable& kernels_;
@@ -124,6 +124,7 @@ class Layout {
     std::vector<FreeGroups::Tie> ties_;
     std::array<std::vector<std::uint8_t>, body_kind_count> is_jointed_;  ///< by kind and row
     std::array<AlignedVector<float>, body_kind_count> start_along_;      ///< see Flight
+    std::array<AlignedVector<float>, body_kind_count> decay_;            ///< see BodyArrays
     std::atomic<bool> overloaded_ = false;
     std::array<std::vector<std::uint8_t>, body_kind_count>
         awake_;  ///< by chunk of rows: whether a step visits it
@@ -139,6 +140,7 @@ class Layout {
     void place_joints(SceneCore& scene);
     void keep_impulses(ContactCache& cache, std::uint32_t i);
     void find_groups(const BodyStore& bodies);
+    bool find_decay(const BodyStore& bodies, BodyKind kind, float h);
     bool note_awake(const BodyStore& bodies);
     void list_rows(const SceneCore& scene);
     void point_at_data(SceneCore& scene, std::span<const Contact> contacts);

@@ -11,6 +11,8 @@
 #pragma GCC visibility push(default)
 namespace motley {
 
+struct SixDofDefinition;
+
 /// Bodies, joints and capsules to be copied, in the frame of the figure.
 class Figure {
   public:
@@ -27,6 +29,9 @@ class Figure {
         refuse_ground(definition.body_b);
         sketch_.add_joint(definition);
     }
+    /// Adds the joints of a joint of six degrees of freedom between bodies of this figure. Refuses what motley::add_six_dof
+    /// refuses; then nothing is added.
+    void add_six_dof(const SixDofDefinition& definition);
     /// Gives a body of this figure a capsule. Refuses what Scene::add_capsule refuses. The groups of each copy are its own:
     /// capsules of one group do not touch in one copy, but do in two.
     void add_capsule(const CapsuleDefinition& capsule);

@@ -38,6 +38,12 @@ struct BodyDefinition {
     /// principal moments that obey the triangle inequality A + B >= C, and xx, yy and zz from 1e-20 to 1e20.
     /// planar: only zz is read, 1e-20 to 1e20. particle: not read.
     Sym3<float> inertia{1, 0, 0, 1, 0, 1};
+    /// 1/s, 0 to 1e6; read of dynamic bodies only. The medium slows the body by the force -mass * linear_damping *
+    /// velocity and the torque -inertia * angular_damping * angular velocity, each integrated implicitly: a substep h
+    /// divides the velocities by 1 + h damping, after forces and gravity have changed them and before constraints do. A
+    /// particle has no angular damping.
+    float linear_damping = 0;
+    float angular_damping = 0;  ///< 1/s, likewise
 };
 
 /// What a body becomes: see Scene::change_body().

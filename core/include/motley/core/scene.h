@@ -83,6 +83,10 @@ class Scene {
     /// contained body takes it when it is revived. Refuses what add_body refuses, and static and kinematic bodies.
     /// Where the body has joints, the next step lays out all joints anew.
     void set_mass(BodyId body, float mass, const Sym3<float>& inertia);
+    /// Changes the damping (1/s, each 0 to 1e6) of a dynamic body: see BodyDefinition::linear_damping. The next steps have
+    /// the bits of a body that was added with it. It stays when the body changes its model. Refuses values out of these
+    /// ranges, and static and kinematic bodies.
+    void set_damping(BodyId body, float linear, float angular);
     /// Gives a dynamic body another model in place: who is near, far or has fallen is modelled by what the scene requires
     /// of them. The handle stays, and with it user data, joints, break limits, island iterations, and what contacts of
     /// the host's list are found again by.

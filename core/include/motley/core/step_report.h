@@ -64,8 +64,7 @@ struct StepReport {
     std::string
         error;  ///< why the step was refused; if it is done, what the executor threw afterwards, if anything
 
-    std::int64_t contacts =
-        0;  ///< that are solved: those of sleepers rest. Those of copies in lockstep have no share in the counts of blocks
+    std::int64_t contacts = 0;  ///< that are solved: those of sleepers rest
     std::int64_t disc_contacts =
         0;  ///< of these, those of discs near each other or near walls that the library found
     std::int64_t shape_contacts = 0;      ///< of these, those of capsules that the library found

@@ -21,6 +21,7 @@ struct Body {
     Vector6 force = Vector6::Zero();     ///< (force, torque), constant through a step
     double mass = 1;
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< body frame
+    double linear_damping = 0, angular_damping = 0;         ///< 1/s
 
     /// A body from a host's definition.
     static Body from(const BodyDefinition& definition);
@@ -28,7 +29,7 @@ struct Body {
     [[nodiscard]] Matrix6 inverse_mass() const;
     /// Moves the pose with a constant generalised velocity for a time, exactly.
     void advance(const Vector6& generalised_velocity, double seconds);
-    /// v += h (g + M^-1 f), with the time h, gravity g and the force f.
+    /// v += h (g + M^-1 f), with the time h, gravity g and the force f; then v /= 1 + h c, with the damping c.
     void accelerate(const Eigen::Vector3d& gravity, double seconds);
     /// x += h v. A rigid body is turned by the angular velocity that it has half way, and afterwards has the angular
     /// velocity that keeps its angular momentum.

@@ -14,7 +14,8 @@ class Executor {
     [[nodiscard]] virtual int concurrency() const = 0;
     /// Calls job(0) on the calling thread, and may call job(1) ... job(workers - 1) each once on other threads at any
     /// time meanwhile, or not at all: the step finishes with any number of them. Returns when every call that began
-    /// has returned and no further one will begin; `job` is valid until then. A `job` of a step never throws. When run
+    /// has returned and no further one will begin; `job` is valid until then. A `job` of a step never throws, and one that
+    /// has waited 0.1 s for job(0) returns without work: run may join its threads wherever it fails. When run
     /// throws before it has called job(0), the step is refused; when it throws afterwards, the step is done, and its
     /// report tells what was thrown. A solver calls it from the thread that called step(): from several at the same
     /// time only if the host steps several solvers on this executor at once (see Solver).
