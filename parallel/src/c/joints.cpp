@@ -73,7 +73,10 @@ motley_status motley_scene_joint_count(const motley_scene* scene, size_t* count)
 motley_status motley_scene_joint_report(const motley_scene* scene, motley_constraint_id joint,
                                         motley_joint_report* report)
 {
-    return motley_scene_read_joint_reports(scene, 1, &joint, report, sizeof *report);
+    return call(__func__, [&] {
+        need(report, "report") =
+            as<motley_joint_report>(scene_of(scene).joint_report(as<ConstraintId>(joint)));
+    });
 }
 
 motley_status motley_scene_read_joint_reports(const motley_scene* scene, size_t count,

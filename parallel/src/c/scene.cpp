@@ -2,7 +2,6 @@
 #include "motley/c/scene.h"
 
 #include <cstdlib>
-#include <memory>
 #include <new>
 
 #include "handles.h"
@@ -14,22 +13,24 @@ using namespace motley::c;
 
 namespace {
 
-/// Makes a handle of a scene.
-motley_scene* handle_of(Scene&& scene)
+/// Writes a handle of the scene that `make` returns to where the host wants it; makes none if it wants it nowhere.
+template <class Make>
+void give_scene(motley_scene** to, const char* name, const Make& make)
 {
-    return new motley_scene{std::move(scene)};
+    motley_scene*& handle = need(to, name);
+    handle = new motley_scene{make()};
 }
 
 }  // namespace
 
 motley_status motley_scene_create(motley_scene** scene)
 {
-    return call(__func__, [&] { need(scene, "scene") = handle_of({}); });
+    return call(__func__, [&] { give_scene(scene, "scene", [] { return Scene(); }); });
 }
 
 motley_status motley_scene_copy(const motley_scene* scene, motley_scene** copy)
 {
-    return call(__func__, [&] { need(copy, "copy") = new motley_scene{scene_of(scene)}; });
+    return call(__func__, [&] { give_scene(copy, "copy", [&] { return scene_of(scene); }); });
 }
 
 void motley_scene_destroy(motley_scene* scene)
@@ -80,9 +81,9 @@ motley_status motley_scene_save(const motley_scene* scene, void** bytes, size_t*
 motley_status motley_scene_load(const void* bytes, size_t size, motley_scene** scene)
 {
     return call_on_file(__func__, [&] {
-        need(scene, "scene");
         check_array(bytes, size, 1, 1, 1, "bytes");
-        *scene = handle_of(load_scene(std::span(static_cast<const std::byte*>(bytes), size)));
+        give_scene(scene, "scene",
+                   [&] { return load_scene(std::span(static_cast<const std::byte*>(bytes), size)); });
     });
 }
 
@@ -93,6 +94,7 @@ motley_status motley_scene_save_file(const motley_scene* scene, const char* file
 
 motley_status motley_scene_load_file(const char* file, motley_scene** scene)
 {
-    return call_on_file(
-        __func__, [&] { need(scene, "scene") = handle_of(load_scene(std::string(&need(file, "file")))); });
+    return call_on_file(__func__, [&] {
+        give_scene(scene, "scene", [&] { return load_scene(std::string(&need(file, "file"))); });
+    });
 }

@@ -23,8 +23,10 @@
 //         for (int step = 0; step < 60 && !failed; ++step)
 //             failed = motley_solver_step(solver, scene, 1.0F / 60, 0, NULL, NULL);
 //         failed = failed || motley_scene_body_state(scene, ball, &state);
-//         if (failed) fprintf(stderr, "%s\n", motley_last_error());
-//         else printf("the ball hangs at y = %.3f m\n", state.position.y);
+//         if (failed)
+//             fprintf(stderr, "%s\n", motley_last_error());
+//         else
+//             printf("the ball hangs at y = %.3f m\n", state.position.y);
 //         motley_solver_destroy(solver);
 //         motley_scene_destroy(scene);
 //         return failed;
