@@ -11,8 +11,8 @@ int main(void)
     motley_ball_socket_definition joint = motley_default_ball_socket_definition();
     motley_solver_settings settings = motley_default_solver_settings();
     settings.gravity.y = -9.81F;
-    body.position.x = joint.local_anchor_a.y = 1;
-    joint.local_anchor_b = (motley_vec3f){-1, 1, 0};
+    body.position.x = 1;
+    joint.local_anchor_b.x = -1;
     int failed = motley_scene_create(&scene) || motley_solver_create(&settings, NULL, &solver) ||
                  motley_scene_ground(scene, &ground) || motley_scene_add_body(scene, &body, &ball);
     joint.body_a = ground, joint.body_b = ball;

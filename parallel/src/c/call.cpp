@@ -41,20 +41,19 @@ motley_status keep_error(const char* call) noexcept
 void check_array(const void* first, std::size_t count, std::size_t stride, std::size_t size,
                  std::size_t alignment, const char* name)
 {
-    const std::string array = name;
     if (count == 0) return;
     if (stride < size || stride % alignment != 0) {
-        refuse(array + ", its stride", std::to_string(stride),
+        refuse(name + std::string(", its stride"), std::to_string(stride),
                std::to_string(size) + " or more, a multiple of " + std::to_string(alignment) + " (bytes)");
     }
     // A negative number of the host has become one near the largest.
     if (count > static_cast<std::size_t>(PTRDIFF_MAX) / stride) {
-        refuse(array + ", its count", std::to_string(static_cast<std::ptrdiff_t>(count)),
+        refuse(name + std::string(", its count"), std::to_string(static_cast<std::ptrdiff_t>(count)),
                "0 to " + std::to_string(static_cast<std::size_t>(PTRDIFF_MAX) / stride));
     }
-    if (first == nullptr) refuse(array, "null", "an array of " + std::to_string(count));
+    if (first == nullptr) refuse(name, "null", "an array of " + std::to_string(count));
     if (reinterpret_cast<std::uintptr_t>(first) % alignment != 0)
-        refuse(array, "not aligned", "an address that is a multiple of " + std::to_string(alignment));
+        refuse(name, "not aligned", "an address that is a multiple of " + std::to_string(alignment));
 }
 
 }  // namespace motley::c

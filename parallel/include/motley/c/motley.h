@@ -14,8 +14,8 @@
 //         motley_ball_socket_definition joint = motley_default_ball_socket_definition();
 //         motley_solver_settings settings = motley_default_solver_settings();
 //         settings.gravity.y = -9.81F;
-//         body.position.x = joint.local_anchor_a.y = 1;
-//         joint.local_anchor_b = (motley_vec3f){-1, 1, 0};
+//         body.position.x = 1;
+//         joint.local_anchor_b.x = -1;
 //         int failed = motley_scene_create(&scene) || motley_solver_create(&settings, NULL, &solver) ||
 //                      motley_scene_ground(scene, &ground) || motley_scene_add_body(scene, &body, &ball);
 //         joint.body_a = ground, joint.body_b = ball;
@@ -32,12 +32,12 @@
 //         return failed;
 //     }
 //
-// Link it as motley::motley with CMake, or libmotley.so with -lmotley; a static libmotley.a needs -lstdc++ and -ltbb beside.
+// Link it as motley::motley with CMake, or libmotley.so with -lmotley; a static libmotley.a needs -lstdc++ -ltbb -lm beside.
 //
 // - Calls. Every call that can fail returns a motley_status; unless that is MOTLEY_DONE, it changed nothing, and
 //   motley_last_error() says why. No exception leaves a call. Null pointers, handles of what was removed, unknown values of
 //   enumerations, counts and strides that cannot be, and numbers out of the ranges that stand beside each field are
-//   refused. A pointer to which a call writes a handle may be null where the host does not want it.
+//   refused. A pointer to which a call writes the handle of one object may be null where the host does not want it.
 // - Units and frames are SI, radians and the world, right-handed, unless a comment says otherwise.
 // - Structs. Those that a host fills begin with a struct_size: make them by motley_default_...(), then change fields. They
 //   may grow at their end in later versions; a library reads what an older host knows and takes the defaults for the
