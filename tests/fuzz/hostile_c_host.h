@@ -26,6 +26,13 @@ class HostileCHost {
         motley_body_id ground;
         done(motley_scene_ground(scene_, &ground));
         bodies_ = {ground, {}};
+        // With a person and a box from the start, more of what is tried succeeds.
+        motley_body_definition definition = motley_default_body_definition();
+        for (const motley_body_model model : {MOTLEY_RIGID, MOTLEY_PLANAR, MOTLEY_RIGID}) {
+            definition.model = model;
+            bodies_.emplace_back();
+            done(motley_scene_add_body(scene_, &definition, &bodies_.back()));
+        }
     }
     HostileCHost(const HostileCHost&) = delete;
     HostileCHost& operator=(const HostileCHost&) = delete;
@@ -93,7 +100,7 @@ class HostileCHost {
     template <class T>
     T* or_null(T* pointer)
     {
-        return byte() % 32 == 0 ? nullptr : pointer;
+        return byte() % 32 == 31 ? nullptr : pointer;
     }
     /// Mostly what it should be.
     std::size_t length(std::size_t right)
@@ -142,7 +149,8 @@ class HostileCHost {
     void distort(Struct& value, std::size_t first)
     {
         const std::size_t words = (sizeof value - first) / 4;
-        for (int change = byte() % 6; change > 0; --change) {
+        const std::uint8_t changes = byte();
+        for (int change = changes < 0x80 ? 0 : changes % 6; change > 0; --change) {
             const float as_float = number();
             const std::int32_t as_integer = byte() % 8 - 2;
             char* word = reinterpret_cast<char*>(&value) + first + byte() % words * 4;
@@ -276,7 +284,7 @@ class HostileCHost {
         distort(wall, offsetof(motley_wall_definition, closed));
         wall.points = or_null(points.data());
         wall.point_count = byte() % 6;
-        if (byte() % 16 == 0) wall.point_count = SIZE_MAX;
+        if (byte() % 16 == 15) wall.point_count = SIZE_MAX;
         if (byte() % 2 == 0) {
             return add(walls_,
                        [&](motley_wall_id* id) { return motley_scene_add_wall(scene_, or_null(&wall), id); });
@@ -322,7 +330,7 @@ class HostileCHost {
             agents[i].velocity = vector();
         }
         std::size_t count = byte() % 5, stride = length(sizeof(Agent));
-        if (byte() % 16 == 0) count = SIZE_MAX - byte();
+        if (byte() % 16 == 15) count = SIZE_MAX - byte();
         call([&] {
             return motley_scene_set_velocities(scene_, count, or_null(of.data()),
                                                or_null(&agents[0].velocity), stride,

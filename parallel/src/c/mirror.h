@@ -150,7 +150,7 @@ void give(const From& from, To& to)
 template <class C, class Cpp>
 void take_fields(const C& from, Cpp& to)
 {
-    static_assert(lists_every_field<C, Cpp>());
+    static_assert(lists_every_field<C, Cpp>(), "the struct of C++ has a field that the Mirror does not list");
     const auto take_one = [&](const auto& field) {
         take(from.*field.c_member, to.*field.cpp_member, FieldName{Mirror<C, Cpp>::name, field.name});
     };
@@ -160,7 +160,7 @@ void take_fields(const C& from, Cpp& to)
 template <class Cpp, class C>
 void give_fields(const Cpp& from, C& to)
 {
-    static_assert(lists_every_field<C, Cpp>());
+    static_assert(lists_every_field<C, Cpp>(), "the struct of C++ has a field that the Mirror does not list");
     std::apply([&](const auto&... field) { (give(from.*field.cpp_member, to.*field.c_member), ...); },
                Mirror<C, Cpp>::fields);
 }

@@ -223,9 +223,9 @@ void motley_solver_destroy(motley_solver* solver);
 
 /// Advances the scene by `dt` seconds (0 to 1; 0 changes nothing), with the contacts of this step, which are read during
 /// the call only. A step is fastest if the list is in about the order of the step before. `contacts` may be null where
-/// `contact_count` is 0. Writes what it did to `report`, also when it is refused, unless that is null. MOTLEY_REFUSED for
-/// bad input, a lack of memory and an executor that fails: then the scene is untouched. Allocates nothing once the scene
-/// has stopped growing.
+/// `contact_count` is 0. Writes what it did to `report`, unless that is null; also when the step is refused, but not when a
+/// pointer, a count or a size is. MOTLEY_REFUSED for bad input, a lack of memory and an executor that fails: then the scene
+/// is untouched. Allocates nothing once the scene has stopped growing.
 motley_status motley_solver_step(motley_solver* solver, motley_scene* scene, float dt, size_t contact_count,
                                  const motley_contact* contacts, motley_step_report* report);
 

@@ -17,8 +17,8 @@ extern "C" {
 /// library.
 int32_t motley_c_version(void);
 
-/// How a call ended. Unless it is MOTLEY_DONE, the call has changed nothing, what its pointers point to included, and
-/// motley_last_error() says why.
+/// How a call ended. Unless it is MOTLEY_DONE, the call has changed nothing, what its pointers point to included (but for the
+/// report of motley_solver_step()), and motley_last_error() says why.
 typedef enum motley_status {
     MOTLEY_DONE = 0,
     MOTLEY_REFUSED = 1,        ///< bad input; the text names the field, its value and the valid range
