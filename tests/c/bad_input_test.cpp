@@ -412,6 +412,9 @@ TEST(CStructs, HaveTheSizesThatHostsWereBuiltWith)
     EXPECT_EQ(sizeof(motley_body_load), 24U);
     EXPECT_EQ(sizeof(motley_step_measures), 168U);
     EXPECT_EQ(sizeof(motley_step_report), 1520U);
+    EXPECT_EQ(sizeof(motley_near_person), 16U);
+    EXPECT_EQ(sizeof(motley_wall_hit), 16U);
+    EXPECT_EQ(sizeof(motley_contact_pair), 24U);
     EXPECT_EQ(sizeof(motley_scene_errors), 64U);
 }
 

@@ -1,9 +1,8 @@
 // Discs and walls of the C interface.
 #include "motley/c/crowd.h"
 
-#include "handles.h"
 #include "motley/core/crowd.h"
-#include "motley/core/polygon.h"
+#include "rings.h"
 
 namespace motley::c {
 
@@ -36,12 +35,6 @@ WallDefinition read_wall(const motley_wall_definition* given, const char* name)
     const motley_wall_definition full = in_full<WallDefinition>(given, name);
     wall.points = array<const Vec2<double>>(full.points, full.point_count, "motley_wall_definition.points");
     return wall;
-}
-
-std::vector<Vec2<double>> points_of(const motley_ring& ring)
-{
-    const auto points = array<const Vec2<double>>(ring.points, ring.point_count, "motley_ring.points");
-    return {points.begin(), points.end()};
 }
 
 }  // namespace
@@ -103,11 +96,8 @@ motley_status motley_scene_add_polygon(motley_scene* scene, size_t ring_count, c
 {
     return call(__func__, [&] {
         Scene& to = scene_of(scene);
-        if (ring_count == 0) refuse("ring_count", 0, "1 or more: the outline, then the holes");
-        check_array(rings, ring_count, sizeof *rings, sizeof *rings, alignof(motley_ring), "rings");
+        const Polygon polygon = polygon_of(rings, ring_count);
         const auto ids = array<WallId>(walls, ring_count, "walls");
-        Polygon polygon{.outer = points_of(rings[0]), .holes = {}};
-        for (std::size_t i = 1; i < ring_count; ++i) polygon.holes.push_back(points_of(rings[i]));
         const WallDefinition shared = like == nullptr ? WallDefinition{} : read_wall(like, "like");
         std::ranges::copy(add_polygon(to, polygon, shared), ids.begin());
     });

@@ -45,6 +45,8 @@
 // - Memory. What create, copy and load make is destroyed by the host. Pointers that the host passes are read and written
 //   during the call only. The library allocates by operator new of the process, which a host in C++ may replace. It has no
 //   hooks of its own: its containers do not share one place that could serve them.
+// - Figures. Copies of a figure are bodies and joints like all others; a solver finds out by itself which are alike, and solves
+//   sixteen of them together.
 // - Threads. Different scenes and solvers are independent of each other. Of one scene, calls that take a const one may run
 //   at the same time as each other; set_velocity, set_velocities, set_force and set_forces may run at the same time as
 //   each other and as reads of other bodies, as long as a body that one of them names is named by no other; every other
@@ -55,6 +57,7 @@
 #include "motley/c/bodies.h"
 #include "motley/c/crowd.h"
 #include "motley/c/joints.h"
+#include "motley/c/queries.h"
 #include "motley/c/scene.h"
 #include "motley/c/shapes.h"
 #include "motley/c/solver.h"
