@@ -127,9 +127,9 @@ typedef struct motley_wheel_definition {
     size_t struct_size;
     motley_body_id chassis, wheel;
     motley_vec3f position;  ///< m, chassis frame: the centre of the wheel at suspension travel 0; default 0
-    motley_vec3f
-        suspension;     ///< chassis frame, length 1e-6 to 1e6: of positive travel, up; default {0, 1, 0}
-    motley_vec3f axle;  ///< chassis frame, length 1e-6 to 1e6, perpendicular to it; default {0, 0, 1}
+    /// Chassis frame, length 1e-6 to 1e6: of positive travel, up; default {0, 1, 0}.
+    motley_vec3f suspension;
+    motley_vec3f axle;        ///< chassis frame, length 1e-6 to 1e6, perpendicular to it; default {0, 0, 1}
     motley_vec3f wheel_axle;  ///< wheel frame, length 1e-6 to 1e6: its spin axis; default {0, 0, 1}
     float lower, upper;       ///< m, stops; infinite, which is the default: none
     /// Hz, on the effective mass along the suspension; 0, which is the default: no spring

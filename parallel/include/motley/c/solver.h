@@ -88,8 +88,8 @@ MOTLEY_DECLARE_DEFAULT(solver_settings)
 /// An instruction set. Every one of them computes the same bits.
 typedef int32_t motley_isa;
 enum {
-    MOTLEY_ISA_DEFAULT =
-        -1,  ///< what the environment variable MOTLEY_ISA names, else the widest this machine has
+    /// What the environment variable MOTLEY_ISA names, else the widest this machine has.
+    MOTLEY_ISA_DEFAULT = -1,
     MOTLEY_ISA_SCALAR = 0,
     MOTLEY_ISA_SSE2 = 1,
     MOTLEY_ISA_AVX2 = 2,
@@ -168,8 +168,8 @@ typedef struct motley_step_measures {
     double residual_max;     ///< m/s, the largest of them
     double penetration_rms;  ///< m, over the host's contacts that overlap, at the beginning of the step
     double penetration_max;  ///< m
-    motley_scene_errors before,
-        after;  ///< of the step: their differences are the changes of energy and momentum
+    /// Of the step: their differences are the changes of energy and momentum.
+    motley_scene_errors before, after;
 } motley_step_measures;
 
 /// What a step did. Counting is free; times cost two clock reads a stage.
@@ -202,9 +202,9 @@ typedef struct motley_step_report {
     motley_step_measures measures;
     /// MOTLEY_DIRECT: largest residual of its equations and inequalities, m/s or rad/s
     double direct_violation;
-    int64_t
-        direct_unsolved;    ///< MOTLEY_DIRECT: islands with a larger one than 1e-9, summed over the substeps
-    int64_t bodies_asleep;  ///< when the step has ended
+    /// MOTLEY_DIRECT: islands with a larger one than 1e-9 m/s or rad/s, summed over the substeps.
+    int64_t direct_unsolved;
+    int64_t bodies_asleep;           ///< when the step has ended
     int64_t bodies_contained;        ///< bodies frozen in this step because their state was not finite
     motley_body_id first_contained;  ///< one of them
     double seconds[16];              ///< of each stage, in the order of motley_stage_name(); the rest is 0

@@ -28,8 +28,9 @@ typedef enum motley_status {
 } motley_status;
 
 /// Why the last call of this thread that was not MOTLEY_DONE ended so, as in "motley_scene_add_body: BodyDefinition.mass is -1;
-/// expected 1e-10 to 1e10 (kg)"; at most 1,023 characters, empty before the first such call. Fields have the names of
-/// the structs here, in words of the C++ interface. Never null; valid until the next failing call of this thread.
+/// expected 1e-10 to 1e10 (kg)"; at most 1,023 characters, empty before the first such call. What
+/// the C++ interface refuses has its names: BodyDefinition is motley_body_definition, and fields are called the same. Never
+/// null; valid until the next failing call of this thread.
 const char* motley_last_error(void);
 
 /// Frees memory that a call of this interface gave to the host. Null is allowed.
