@@ -224,6 +224,8 @@ class HostileCHost {
                 return save_and_load();
             case 19:
                 return read_everything();
+            case 20:
+                return ask();
             default:
                 return step();
         }
@@ -398,6 +400,37 @@ class HostileCHost {
         call([&] { return motley_scene_body_state(scene_, of[1], &state); });
         done(motley_scene_measure_errors(scene_, &errors));
         done(motley_scene_renumber_bodies(scene_));
+    }
+
+    void ask()
+    {
+        motley_crowd_index* people = nullptr;
+        motley_wall_index* walls = nullptr;
+        done(motley_crowd_index_create(&people));
+        done(motley_wall_index_create(&walls));
+        std::array<motley_body_id, 3> found;
+        std::array<motley_near_person, 3> near;
+        const motley_vec2d corners[] = {{number(), number()}, {number(), number()}, {number(), number()}};
+        const motley_ring area{or_null(corners), byte() % 4U};
+        std::size_t count = 0;
+        motley_bool is_hit = 0;
+        motley_wall_hit hit;
+        call([&] { return motley_crowd_index_build(people, or_null(scene_)); });
+        call([&] { return motley_wall_index_build(walls, or_null(scene_)); });
+        call([&] {
+            return motley_crowd_index_nearest(people, corners[0], number(), 3, or_null(near.data()),
+                                              or_null(&count));
+        });
+        call([&] {
+            return motley_crowd_index_discs_within(people, corners[1], number(), 3, found.data(), &count);
+        });
+        call([&] { return motley_crowd_index_inside(people, byte() % 2, &area, 3, found.data(), &count); });
+        call([&] {
+            return motley_wall_index_first_hit(walls, corners[0], corners[1], byte(), or_null(&is_hit),
+                                               or_null(&hit));
+        });
+        motley_crowd_index_destroy(people);
+        motley_wall_index_destroy(walls);
     }
 
     void step()
