@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <fstream>
+#include <new>
 #include <type_traits>
 #include <utility>
 
@@ -73,12 +74,14 @@ std::uint32_t layout_of_numbers()
     return static_cast<std::uint32_t>(hash >> 32);
 }
 
-/// Runs `read`, and adds where it reads from to any error.
+/// Runs `read`, and adds where it reads from to any error. A lack of memory is none of what is read.
 template <class Read>
 auto reading(const std::string& from, const Read& read)
 {
     try {
         return read();
+    } catch (const std::bad_alloc&) {
+        throw;
     } catch (const std::exception& error) {
         throw std::runtime_error(from + ": " + error.what());
     }

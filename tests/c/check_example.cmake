@@ -1,0 +1,10 @@
+# The example in the comment of HEADER is the program MAIN, letter for letter, and that is built and run.
+file(READ ${HEADER} header)
+file(READ ${MAIN} main)
+string(STRIP "${main}" main)
+string(REPLACE "\n" "\n//     " main "//     ${main}")
+string(REPLACE "\n//     \n" "\n//\n" main "${main}")
+string(FIND "${header}" "${main}" found)
+if(found EQUAL -1)
+    message(FATAL_ERROR "${HEADER} does not hold ${MAIN} as it is")
+endif()
