@@ -98,6 +98,12 @@ Contact contact_between(const Side& a, const Side& b, const std::array<Axis, 2>&
     return contact_at(a, b, point, normal, separation);
 }
 
+/// m: two capsules that are further apart do not touch within the step.
+double margin_of(const PlacedCapsule& a, const PlacedCapsule& b)
+{
+    return step_slack + a.goes + b.goes;
+}
+
 /// Lists the contacts of two capsules that may touch within the step. `key` is that of the first one.
 void list_capsules(const Side& a, const Side& b, std::uint64_t key, std::vector<Contact>& contacts)
 {
@@ -105,7 +111,7 @@ void list_capsules(const Side& a, const Side& b, std::uint64_t key, std::vector<
     const bool is_flat = of_a.is_flat || of_b.is_flat;
     const Axis axis_a = is_flat ? flattened(of_a.axis) : of_a.axis;
     const Axis axis_b = is_flat ? flattened(of_b.axis) : of_b.axis;
-    const double margin = step_slack + of_a.goes + of_b.goes;
+    const double margin = margin_of(of_a, of_b);
     const TouchingPlaces touching = touching_places(axis_a, axis_b);
     for (int i = 0; i < touching.count; ++i) {
         const AxisPlaces& places = touching.places[static_cast<std::size_t>(i)];
@@ -328,6 +334,8 @@ void ShapeContacts::list_half_spaces(const SceneCore& scene, const ShapePairs& p
 void ShapeContacts::list_pair(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
                               std::vector<Contact>& contacts)
 {
+    const PlacedCapsule &a = pairs.capsule(pair.capsule), &b = pairs.capsule(pair.partner);
+    if (!may_be_within(a, b, a.radius + b.radius + margin_of(a, b))) return;
     list_capsules(side_of(scene, pairs, pair.capsule), side_of(scene, pairs, pair.partner),
                   key_of(Partner::capsule, slot_of(scene, pair.capsule), slot_of(scene, pair.partner), 0),
                   contacts);

@@ -36,7 +36,7 @@ double distance(const Axis& a, const Axis& b)
 /// The skin of what goes so far within a step: enough for some steps.
 double skin_of(double goes)
 {
-    constexpr double least = 0.03, steps_ahead = 4;  // m; steps
+    constexpr double least = 0.06, steps_ahead = 4;  // m; steps
     return least + steps_ahead * goes;
 }
 
@@ -223,7 +223,7 @@ void ShapePairs::for_each_near(const Box& box, const Work& work) const
         return apart ? BoxShare::none : BoxShare::some;
     };
     tree_.visit(judge, [&](std::uint32_t first, std::uint32_t last, bool) {
-        for (std::uint32_t i = first; i < last; ++i) work(order_[i]);
+        for (std::uint32_t place = first; place < last; ++place) work(place);
         return true;
     });
 }
@@ -241,21 +241,35 @@ bool ShapePairs::may_meet(const SceneCore& scene, std::uint32_t a, std::uint32_t
     return do_meet(one.surface, other.surface);
 }
 
-void ShapePairs::find_capsules(const SceneCore& scene, std::uint32_t capsule, Found& found) const
+/// The pairs of capsules at places `first` to `last` - 1 of the order with those behind them. They are near each other, so
+/// that one visit to the tree serves all.
+void ShapePairs::find_capsules(const SceneCore& scene, std::size_t first, std::size_t last,
+                               Found& found) const
 {
-    const PlacedCapsule& own = placed_[capsule];
-    const double reach = own.radius + anchors_[capsule].skin;
-    for_each_near(box_of(capsule), [&](std::uint32_t other) {
-        if (other <= capsule) return;  // the other one finds it
-        if (!may_meet(scene, capsule, other)) return;
-        const PlacedCapsule& near = placed_[other];
-        const bool is_flat = own.is_flat || near.is_flat;
-        const double apart =
-            is_flat ? distance(flattened(own.axis), flattened(near.axis)) : distance(own.axis, near.axis);
-        if (apart > reach + near.radius + anchors_[other].skin) return;
-        if (!are_joined(scene.shapes.capsules[capsule].body, scene.shapes.capsules[other].body))
-            found.capsules.push_back({capsule, other});
+    Box box;
+    for (std::size_t i = first; i < last; ++i) box.include(box_of(order_[i]));
+    found.near.clear();
+    for_each_near(box, [&](std::uint32_t place) {
+        if (place > first) found.near.push_back(place);
     });
+    for (std::size_t i = first; i < last; ++i) {
+        const std::uint32_t capsule = order_[i];
+        const PlacedCapsule& own = placed_[capsule];
+        const double reach = own.radius + anchors_[capsule].skin;
+        for (const std::uint32_t place : found.near) {
+            if (place <= i) continue;  // the other one finds it
+            const std::uint32_t other = order_[place];
+            const PlacedCapsule& near = placed_[other];
+            const double within = reach + near.radius + anchors_[other].skin;
+            if (!may_be_within(own, near, within) || !may_meet(scene, capsule, other)) continue;
+            const bool is_flat = own.is_flat || near.is_flat;
+            const double apart =
+                is_flat ? distance(flattened(own.axis), flattened(near.axis)) : distance(own.axis, near.axis);
+            if (apart > within) continue;
+            if (!are_joined(scene.shapes.capsules[capsule].body, scene.shapes.capsules[other].body))
+                found.capsules.push_back({std::min(capsule, other), std::max(capsule, other)});
+        }
+    }
 }
 
 bool ShapePairs::are_too_many(std::size_t before, const std::vector<ShapePair>& pairs)
@@ -275,7 +289,8 @@ void ShapePairs::find_discs(const SceneCore& scene, std::int64_t chunk, Found& f
         const DiscShape& disc = *scene.discs.shape_of(slot);
         const double reach = static_cast<double>(disc.radius) + anchor.skin;
         const Vec2<double> wide{reach, reach};
-        for_each_near({anchor.at - wide, anchor.at + wide, 0}, [&](std::uint32_t capsule) {
+        for_each_near({anchor.at - wide, anchor.at + wide, 0}, [&](std::uint32_t place) {
+            const std::uint32_t capsule = order_[place];
             const Capsule& other = scene.shapes.capsules[capsule];
             const Axis centre{{anchor.at.x, anchor.at.y, 0}, {}};
             if (distance(flattened(placed_[capsule].axis), centre) >
@@ -327,12 +342,12 @@ void ShapePairs::find(const SceneCore& scene, std::int64_t chunk)
     found.capsules.clear();
     found.walls.clear();
     found.discs.clear();
-    const auto first = static_cast<std::size_t>(chunk * capsules_a_chunk);
-    // In the order of the curve, so that neighbours are looked for one after another.
-    for (std::size_t i = first; i < std::min(count_, first + static_cast<std::size_t>(capsules_a_chunk));
-         ++i) {
+    const auto begin = static_cast<std::size_t>(chunk * capsules_a_chunk);
+    const std::size_t end = std::min(count_, begin + static_cast<std::size_t>(capsules_a_chunk));
+    constexpr std::size_t at_once = 8;
+    for (std::size_t first = begin; first < end; first += at_once) {
         const std::size_t before = found.capsules.size();
-        find_capsules(scene, order_[i], found);
+        find_capsules(scene, first, std::min(end, first + at_once), found);
         if (are_too_many(before, found.capsules)) return;
     }
     if (chunk < chunk_count()) find_walls(scene, chunk, found);

@@ -74,6 +74,7 @@ class ShapePairs {
     /// What one chunk found.
     struct Found {
         std::vector<ShapePair> capsules, walls, discs;
+        std::vector<std::uint32_t> near;           ///< places in the order: space for find_capsules()
         bool leaves = false, discs_leave = false;  ///< whether a shape may leave its skin in this step
         double fastest = 0, fastest_disc = 0;      ///< m: how far any of them goes
     };
@@ -105,13 +106,14 @@ class ShapePairs {
         return {dot(plane_[0], at), dot(plane_[1], at)};
     }
     [[nodiscard]] Box box_of(std::uint32_t capsule) const;
+    /// Calls work(place) for the places in the order of the capsules whose boxes may meet this one.
     template <class Work>
     void for_each_near(const Box& box, const Work& work) const;
     void list_joined(const SceneCore& scene);
     /// Whether two capsules meet each other, but for joints between their bodies.
     [[nodiscard]] bool may_meet(const SceneCore& scene, std::uint32_t a, std::uint32_t b) const;
     [[nodiscard]] bool are_joined(BodyId a, BodyId b) const;
-    void find_capsules(const SceneCore& scene, std::uint32_t capsule, Found& found) const;
+    void find_capsules(const SceneCore& scene, std::size_t first, std::size_t last, Found& found) const;
     [[nodiscard]] std::int64_t most_pairs() const
     {
         return (std::int64_t{1} << 22) + 16 * static_cast<std::int64_t>(count_ + disc_rows_);
