@@ -24,8 +24,8 @@ constexpr double simulated_seconds = 1;
 /// written and a displacement that is read; and the impulse that is written back.
 constexpr double body_bytes = 2 * 3 * 16 + 4;
 
-/// Bytes of memory for a person: of the scene, the solver, and the bench's host.
-constexpr double most_bytes_a_person = 1024;
+/// Lists that grow have room for up to a quarter more.
+constexpr double most_growth = 1.25;
 
 /// What is measured once a round.
 struct Case {
@@ -88,6 +88,25 @@ int crowds_of_several_hashes(const std::vector<std::vector<ScaleResult::Size>>& 
     return static_cast<int>(ends.size() - crowds.size());
 }
 
+/// Memory follows the number of people: that of a person is no more in a large crowd than in one of a tenth of its size,
+/// but for what lists have to spare.
+void mark_growth(ScaleResult& result)
+{
+    double growth = 0;
+    for (const ScaleResult::Size& small : result.sizes) {
+        for (const ScaleResult::Size& large : result.sizes) {
+            const bool compare = small.people >= 10'000 && large.people >= 10 * small.people &&
+                                 small.density == large.density && small.threads == large.threads;
+            const double of_both = large.bytes / static_cast<double>(large.people) /
+                                   (small.bytes / static_cast<double>(small.people));
+            if (compare) growth = std::max(growth, of_both);
+        }
+    }
+    if (growth > 0)
+        result.marks.push_back({"memory of a person over that in a crowd a tenth of the size or less, most",
+                                growth, most_growth});
+}
+
 }  // namespace
 
 ScaleResult measure_scale(const ScaleOptions& options)
@@ -123,14 +142,9 @@ ScaleResult measure_scale(const ScaleOptions& options)
         }
         result.sizes.push_back(size);
     }
-    double bytes = 0;
-    for (const ScaleResult::Size& size : result.sizes) {
-        if (size.people >= 10'000) bytes = std::max(bytes, size.bytes / static_cast<double>(size.people));
-    }
     result.marks.push_back({"crowds whose bits differ between threads or runs",
                             static_cast<double>(crowds_of_several_hashes(runs)), 0});
-    result.marks.push_back(
-        {"memory of 10,000 people and more, most (bytes a person)", bytes, most_bytes_a_person});
+    mark_growth(result);
     result.host_load = host_load();
     return result;
 }

@@ -4,8 +4,8 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "maths/contact_surface.h"
@@ -50,7 +50,7 @@ class ShapeContacts {
     struct Beside {
         std::uint32_t capsule, wall, number, body;  ///< slots; the number of the segment in its wall
         int side;                                   ///< 1: left; -1: right; 0: at an end of the segment
-        friend auto operator<=>(const Beside&, const Beside&) = default;
+        [[nodiscard]] auto order() const { return std::tuple(capsule, wall, number, body, side); }
         [[nodiscard]] bool is_of(const Beside& other) const
         {
             return capsule == other.capsule && wall == other.wall && number == other.number &&
