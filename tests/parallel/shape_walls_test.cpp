@@ -141,7 +141,7 @@ TEST(ShapeWalls, NobodyComesBackThroughATurnstile)
             }
         }
     }
-    EXPECT_GT(passed, 40);
+    EXPECT_GT(passed, testing::long_run(40));
 }
 
 /// A torso pressed flat on a belt slides with mu N / m until it is as fast as the belt. Friction acts at one radius from
