@@ -353,6 +353,7 @@ void ShapePairs::find(const SceneCore& scene, std::int64_t chunk)
     if (chunk < chunk_count()) find_walls(scene, chunk, found);
     if (chunk < disc_chunk_count()) find_discs(scene, chunk, found);
     for (std::vector<ShapePair>* pairs : {&found.capsules, &found.walls, &found.discs}) keep_room(*pairs);
+    keep_room(found.near);
 }
 
 void ShapePairs::sort(std::vector<ShapePair>& pairs)
