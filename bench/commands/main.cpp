@@ -194,11 +194,15 @@ int main(int count, char** arguments)
         ->capture_default_str();
     anchors_app->add_flag("--quick", anchor_options.quick, "small scenes, for a look");
     ScaleOptions scale_options;
-    CLI::App* scale_app = app.add_subcommand(
-        "scale", "the crowd from a thousand to a million: what a contact costs, and the share of bandwidth");
+    CLI::App* scale_app = app.add_subcommand("scale",
+                                             "a crowd from a thousand to a million people, on one thread and "
+                                             "on several: speed, memory, bandwidth");
     scale_app->add_option("--people", scale_options.people, "sizes; several: 1000,10000")
         ->delimiter(',')
         ->check(CLI::PositiveNumber);
+    scale_app->add_option("--densities", scale_options.densities, "people per m2; several: 2,5")
+        ->delimiter(',')
+        ->check(CLI::Range(1e-6, 6.0));
     scale_app->add_option("--rounds", scale_options.rounds, "runs of each, in turn")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
@@ -272,8 +276,9 @@ int main(int count, char** arguments)
             return 0;
         }
         if (*scale_app) {
-            fmt::print("{}", table_of(measure_scale(scale_options)));
-            return 0;
+            const ScaleResult result = measure_scale(scale_options);
+            fmt::print("{}", table_of(result));
+            return std::ranges::all_of(result.marks, &Mark::passes) ? 0 : 1;
         }
         if (*sleep_app) {
             fmt::print("{}", table_of(measure_sleep(sleep_options)));

@@ -27,6 +27,10 @@ inline const std::map<std::string, SteeringModel> steering_names{
     {"social-force", SteeringModel::social_force},
     {"orca", SteeringModel::orca}};
 
+inline const std::map<std::string, FrameColour> colour_names{{"pressure", FrameColour::pressure},
+                                                             {"density", FrameColour::density},
+                                                             {"voronoi", FrameColour::voronoi}};
+
 struct RunCommand {
     std::string scene, json;
     SolverCommand dials;
@@ -49,14 +53,14 @@ struct RunCommand {
         app.add_option("--door", options.door, "m, width of the door of evacuation; default: 1.2")
             ->check(CLI::Range(0.6, 50.0));
         app.add_option("--density", options.density,
-                       "people per m2 of crowd, counterflow and corridor; default: the scene's")
+                       "people per m2 of crowd, flow, counterflow and corridor; default: the scene's")
             ->check(CLI::Range(1e-6, 6.0));
         app.add_option("--steering", options.steering,
-                       "of evacuation, counterflow and crowd: plain, social-force or orca")
+                       "of evacuation, counterflow, crowd and flow: plain, social-force or orca")
             ->transform(CLI::CheckedTransformer(steering_names));
         app.add_flag(
             "--torsos", options.torsos,
-            "of bottleneck, evacuation and counterflow: people are capsules across the shoulders, not discs");
+            "of bottleneck, evacuation, counterflow and flow: people are capsules across the shoulders");
         app.add_option("--friction", options.friction, "between people; default: the scene's")
             ->check(CLI::Range(0.0, 1e6));
         app.add_option("--seed", options.seed, "of the scene's random numbers")->capture_default_str();
@@ -69,6 +73,12 @@ struct RunCommand {
         app.add_option("--json", json, "write the figures to this file");
         app.add_option("--trajectories", outputs.trajectories, "write PedPy text to this file");
         app.add_option("--frames", outputs.frames, "write pictures to this folder");
+        app.add_option("--colour", outputs.colour,
+                       "what pictures show: pressure, density on each square metre, or voronoi, that of each "
+                       "person's cell")
+            ->transform(CLI::CheckedTransformer(colour_names));
+        app.add_flag("--densities", outputs.densities,
+                     "tell how close people stand at the end: on square metres, and by Voronoi cells");
         app.add_option("--frame-every", outputs.frame_every, "steps between pictures")
             ->check(CLI::PositiveNumber)
             ->capture_default_str();

@@ -1,6 +1,7 @@
-// Reads /proc.
+// Reads /proc, and asks the allocator of glibc.
 #include "measuring/host.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -21,6 +22,12 @@ double resident_bytes()
     double all = 0, resident = 0;
     file >> all >> resident;
     return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+double allocated_bytes()
+{
+    const struct mallinfo2 all = mallinfo2();
+    return static_cast<double>(all.uordblks) + static_cast<double>(all.hblkhd);
 }
 
 }  // namespace motley::bench

@@ -7,5 +7,7 @@ namespace motley::bench {
 double host_load();
 /// Bytes of this process in memory; 0 if the system does not tell.
 double resident_bytes();
+/// Bytes that the program has allocated and not freed.
+double allocated_bytes();
 
 }  // namespace motley::bench

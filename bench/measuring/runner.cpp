@@ -10,9 +10,11 @@
 #include <stdexcept>
 
 #include "measuring/clock.h"
+#include "measuring/host.h"
 #include "measuring/median.h"
 #include "page/frames.h"
 #include "scene/scene_core.h"
+#include "worlds/density.h"
 #include "worlds/trajectories.h"
 
 namespace motley::bench {
@@ -129,6 +131,25 @@ class DirectComparison {
     }
 };
 
+/// The density on each square metre that has anybody, and around each person.
+void add_densities(const View& view, Executor& executor, std::vector<Figure>& figures)
+{
+    const auto add = [&](const char* of, std::vector<double> values) {
+        std::erase(values, 0.0);
+        if (values.empty()) return;
+        std::ranges::sort(values);
+        double sum = 0;
+        for (const double value : values) sum += value;
+        figures.emplace_back(fmt::format("density of {}, mean (1/m2)", of),
+                             sum / static_cast<double>(values.size()));
+        figures.emplace_back(fmt::format("density of {}, 95th percentile (1/m2)", of),
+                             values[values.size() * 95 / 100]);
+        figures.emplace_back(fmt::format("density of {}, highest (1/m2)", of), values.back());
+    };
+    add("square metres with people", density_field(view.people).people);
+    add("Voronoi cells", voronoi_densities(view, density_reach, executor));
+}
+
 }  // namespace
 
 void settle_options(const SceneEntry& entry, RunOptions& options)
@@ -162,6 +183,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     if (options.agents == 0) options.agents = entry.agents;
     if (options.seconds == 0) options.seconds = entry.seconds;
     settle_options(entry, options);
+    const double bytes_before = allocated_bytes();
     const std::unique_ptr<BenchScene> scene = entry.make(options);
     scene->adjust(options.settings);
     DirectComparison direct(options);
@@ -172,10 +194,11 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     if (!outputs.trajectories.empty())
         trajectories =
             std::make_unique<TrajectoryWriter>(outputs.trajectories, 1 / static_cast<double>(options.dt));
-    if (!outputs.frames.empty()) frames = std::make_unique<FrameWriter>(outputs.frames);
-    if (scene->crowd() == nullptr && (trajectories || frames)) {
-        throw std::runtime_error(fmt::format("{}: has no people, so no trajectories or frames", entry.name));
-    }
+    if (!outputs.frames.empty()) frames = std::make_unique<FrameWriter>(outputs.frames, outputs.colour);
+    if (scene->crowd() == nullptr && trajectories)
+        throw std::runtime_error(fmt::format("{}: has no people who walk, so no trajectories", entry.name));
+    if (!scene->view() && (frames || outputs.densities))
+        throw std::runtime_error(fmt::format("{}: has no people, so no frames or densities", entry.name));
 
     RunResult result;
     result.scene = entry.name;
@@ -231,7 +254,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         ++result.steps;
         scene->observe(time, solver);
         if (trajectories) trajectories->write(*scene->crowd(), step);
-        if (frames && step % outputs.frame_every == 0) frames->write(*scene->crowd(), scene->scene);
+        if (frames && step % outputs.frame_every == 0) frames->write(*scene->view(), executor);
         if (outputs.hash_every > 0 && (step + 1) % outputs.hash_every == 0) {
             fmt::print("step {} hash {:016x}\n", step + 1, scene->scene.state_hash());
         }
@@ -252,10 +275,12 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     result.median_unsteered_seconds = median_of_eights(unsteered_seconds);
     result.errors = scene->scene.errors();
     result.state_hash = scene->scene.state_hash();
+    result.bytes = allocated_bytes() - bytes_before;
     judge_contacts(result, *scene, executor);
     direct.report(result);
     result.error = scene->error();
     result.figures = scene->figures();
+    if (outputs.densities) add_densities(*scene->view(), executor, result.figures);
     result.marks = scene->marks();
     if (result.error) result.figures.emplace_back(result.error->name, result.error->value);
     return result;

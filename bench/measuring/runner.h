@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "page/frames.h"
 #include "worlds/bench_scene.h"
 
 namespace motley::bench {
@@ -41,6 +42,7 @@ struct RunResult {
     double residual = 0;     ///< m/s, rms approach speed left at touching contacts
     SceneErrors errors;
     std::uint64_t state_hash = 0;
+    double bytes = 0;  ///< of memory that the scene, its host and the solver hold at the end
     std::int64_t contained = 0;
     double direct_rms = -1, direct_max = -1;  ///< m/s, off the simultaneous solution; negative: not compared
     std::optional<SceneError> error;
@@ -52,9 +54,11 @@ struct RunResult {
 /// What to write in addition to the table.
 struct RunOutputs {
     std::string trajectories, frames;  ///< empty: none
-    int frame_every = 30;              ///< steps
-    int hash_every = 0;                ///< steps; 0: never
-    std::string problem;               ///< the file for the problem of step `problem_step`; empty: none
+    FrameColour colour = FrameColour::pressure;
+    int frame_every = 30;    ///< steps
+    bool densities = false;  ///< figures of how close people stand at the end
+    int hash_every = 0;      ///< steps; 0: never
+    std::string problem;     ///< the file for the problem of step `problem_step`; empty: none
     std::int64_t problem_step = 0;
     bool progress = true;
 };

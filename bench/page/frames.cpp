@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "page/font.h"
+#include "worlds/density.h"
 
 namespace motley::bench {
 namespace {
@@ -23,13 +24,14 @@ constexpr int label_width = 44;
 
 struct Colour {
     std::uint8_t r, g, b;
+    friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// Blue over yellow to red.
+/// Blue over yellow to red, in 96 steps, so that all colours of a picture, edges included, fit the 256 of a palette.
 Colour colour_of(double share)
 {
     constexpr double stops[4][3] = {{70, 120, 180}, {120, 190, 170}, {250, 210, 90}, {205, 40, 45}};
-    const double at = 3 * std::clamp(share, 0.0, 1.0);
+    const double at = std::round(96 * std::clamp(share, 0.0, 1.0)) / 32;
     const int i = std::min(2, static_cast<int>(at));
     const auto mix = [&](int c) {
         return static_cast<std::uint8_t>(stops[i][c] + (at - i) * (stops[i + 1][c] - stops[i][c]));
@@ -72,6 +74,13 @@ class Picture {
             }
         }
     }
+    /// All from the upper left corner `from` to the lower right one `to`.
+    void rectangle(Vec2<double> from, Vec2<double> to, Colour c)
+    {
+        for (int py = static_cast<int>(from.y); py < static_cast<int>(to.y); ++py) {
+            for (int px = static_cast<int>(from.x); px < static_cast<int>(to.x); ++px) set(px, py, c);
+        }
+    }
     /// A line from `from` to `to`, `width` pixels wide.
     void line(Vec2<double> from, Vec2<double> to, int width, Colour c)
     {
@@ -106,8 +115,22 @@ class Picture {
         image.version = PNG_IMAGE_VERSION;
         image.width = static_cast<png_uint_32>(width_);
         image.height = static_cast<png_uint_32>(height_);
-        image.format = PNG_FORMAT_RGB;
-        if (png_image_write_to_file(&image, path.c_str(), 0, pixels_.data(), 0, nullptr) == 0) {
+        image.format = PNG_FORMAT_RGB_COLORMAP;
+        std::vector<Colour> palette;
+        std::vector<std::uint8_t> indices;
+        indices.reserve(pixels_.size());
+        for (const Colour& pixel : pixels_) {
+            // Neighbours are mostly alike.
+            if (indices.empty() || palette[indices.back()] != pixel) {
+                const auto found = std::ranges::find(palette, pixel);
+                indices.push_back(static_cast<std::uint8_t>(found - palette.begin()));
+                if (found == palette.end()) palette.push_back(pixel);
+            } else {
+                indices.push_back(indices.back());
+            }
+        }
+        image.colormap_entries = static_cast<png_uint_32>(palette.size());
+        if (png_image_write_to_file(&image, path.c_str(), 0, indices.data(), 0, palette.data()) == 0) {
             throw std::runtime_error(fmt::format("{}: {}", path, image.message));
         }
     }
@@ -134,70 +157,29 @@ void draw_bar(Picture& picture, int place, std::string_view unit, double full)
     picture.text(left, margin / 2, unit);
 }
 
-/// The force on each metre of a wall from its first point on, N/m. A person leans on the wall over the width of the
-/// shoulders and not at a point. The last band may be shorter.
-std::vector<double> pressures_on(std::int32_t wall, const Crowd& crowd, std::span<const Touch> touches)
-{
-    const Wall& segment = crowd.walls[static_cast<std::size_t>(wall)];
-    const Vec2<double> along = segment.to - segment.from;
-    const double length = std::max(std::sqrt(dot(along, along)), 1e-9);
-    std::vector<double> bands(static_cast<std::size_t>(std::ceil(length)), 0.0);
-    for (const Touch& touch : touches) {
-        if (touch.wall != wall) continue;
-        const auto person = static_cast<std::size_t>(touch.b);
-        const Vec3<double>& at = crowd.positions[person];
-        const double place = dot(along, Vec2<double>{at.x, at.y} - segment.from) / length;
-        const auto radius = static_cast<double>(crowd.agents[person].radius);
-        for (std::size_t band = 0; band < bands.size(); ++band) {
-            const double from = std::max(place - radius, static_cast<double>(band)),
-                         to = std::min({place + radius, static_cast<double>(band) + 1, length});
-            if (to > from) bands[band] += touch.force * (to - from) / (2 * radius);
-        }
-    }
-    const double rest = length - static_cast<double>(bands.size() - 1);
-    bands.back() /= std::max(rest, 0.1);
-    return bands;
-}
-
-/// From the centre of a torso to the end of its axis, m, world.
-Vec2<double> shoulder_of(const Agent& agent, double yaw)
-{
-    const Vec2<float> end = Crowd::shoulder(agent);
-    const auto x = static_cast<double>(end.x), y = static_cast<double>(end.y);
-    return {std::cos(yaw) * x - std::sin(yaw) * y, std::sin(yaw) * x + std::cos(yaw) * y};
-}
-
-double circumference_of(const Agent& agent, bool is_torso)
-{
-    constexpr double turn = 6.283185307179586;
-    if (!is_torso) return turn * static_cast<double>(agent.radius);
-    return turn * static_cast<double>(Crowd::depth_radius(agent)) +
-           4 * static_cast<double>(Crowd::shoulder(agent).y);
-}
-
 }  // namespace
 
-FrameWriter::FrameWriter(std::string folder) : folder_(std::move(folder))
+FrameWriter::FrameWriter(std::string folder, FrameColour colour) : folder_(std::move(folder)), colour_(colour)
 {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) throw std::runtime_error(fmt::format("{}: {}", folder_, error.message()));
 }
 
-void FrameWriter::fit(const Crowd& crowd)
+void FrameWriter::fit(const View& view)
 {
     double max_x = -1e300, max_y = -1e300;
     min_x_ = min_y_ = 1e300;
-    const auto include = [&](double x, double y) {
-        min_x_ = std::min(min_x_, x);
-        min_y_ = std::min(min_y_, y);
-        max_x = std::max(max_x, x);
-        max_y = std::max(max_y, y);
+    const auto include = [&](const Vec2<double>& p) {
+        min_x_ = std::min(min_x_, p.x);
+        min_y_ = std::min(min_y_, p.y);
+        max_x = std::max(max_x, p.x);
+        max_y = std::max(max_y, p.y);
     };
-    for (const Vec3<double>& p : crowd.positions) include(p.x, p.y);
-    for (const Wall& wall : crowd.walls) {
-        include(wall.from.x, wall.from.y);
-        include(wall.to.x, wall.to.y);
+    for (const Vec2<double>& p : view.people) include(p);
+    for (const Wall& wall : view.walls) {
+        include(wall.from);
+        include(wall.to);
     }
     if (max_x < min_x_) min_x_ = min_y_ = 0, max_x = max_y = 1;
     min_x_ -= 0.5;
@@ -208,24 +190,30 @@ void FrameWriter::fit(const Crowd& crowd)
     height_ = static_cast<int>(high * scale_) + 2 * margin;
 }
 
-void FrameWriter::write(const Crowd& crowd, const Scene& scene)
+void FrameWriter::write(const View& view, Executor& executor)
 {
-    if (count_ == 0) fit(crowd);
-    std::vector<double> load(crowd.agents.size(), 0.0);
-    const std::vector<Touch> touches = crowd.touches(scene);
-    for (const Touch& touch : touches) {
-        if (touch.a >= 0) load[static_cast<std::size_t>(touch.a)] += touch.force;
-        load[static_cast<std::size_t>(touch.b)] += touch.force;
-    }
-
+    if (count_ == 0) fit(view);
     Picture picture(width_, height_);
-    const auto x = [&](double world) { return margin + (world - min_x_) * scale_; };
-    const auto y = [&](double world) { return height_ - margin - (world - min_y_) * scale_; };
-    const auto pixel = [&](Vec2<double> world) { return Vec2<double>{x(world.x), y(world.y)}; };
-    for (std::size_t w = 0; w < crowd.walls.size(); ++w) {
-        const Wall& wall = crowd.walls[w];
+    const auto pixel = [&](const Vec2<double>& world) {
+        return Vec2<double>{margin + (world.x - min_x_) * scale_,
+                            height_ - margin - (world.y - min_y_) * scale_};
+    };
+    if (colour_ == FrameColour::density) {
+        const DensityField field = density_field(view.people);
+        for (std::int32_t row = 0; row < field.rows; ++row) {
+            for (std::int32_t column = 0; column < field.columns; ++column) {
+                const Vec2<double> corner = field.low + Vec2<double>{1.0 * column, 1.0 * row};
+                if (field.at(column, row) > 0)
+                    picture.rectangle(pixel(corner + Vec2<double>{0, 1}), pixel(corner + Vec2<double>{1, 0}),
+                                      colour_of(field.at(column, row) / full_density));
+            }
+        }
+    }
+    for (std::size_t w = 0; w < view.walls.size(); ++w) {
+        const Wall& wall = view.walls[w];
         picture.line(pixel(wall.from), pixel(wall.to), 2, wall_colour);
-        const std::vector<double> bands = pressures_on(static_cast<std::int32_t>(w), crowd, touches);
+        if (view.wall_pressures.empty()) continue;
+        const std::vector<double>& bands = view.wall_pressures[w];
         const Vec2<double> along = wall.to - wall.from;
         const double length = std::max(std::sqrt(dot(along, along)), 1e-9);
         for (std::size_t band = 0; band < bands.size(); ++band) {
@@ -236,17 +224,27 @@ void FrameWriter::write(const Crowd& crowd, const Scene& scene)
                          colour_of(bands[band] / full_wall_pressure));
         }
     }
-    for (std::size_t i = 0; i < crowd.positions.size() && i < load.size(); ++i) {
-        const Agent& agent = crowd.agents[i];
-        const Vec2<double> at{crowd.positions[i].x, crowd.positions[i].y};
-        const double pressure = load[i] / circumference_of(agent, crowd.are_torsos);
-        const Vec2<double> end = crowd.are_torsos ? shoulder_of(agent, crowd.yaws[i]) : Vec2<double>{};
-        const double radius =
-            static_cast<double>(crowd.are_torsos ? Crowd::depth_radius(agent) : agent.radius);
-        picture.capsule(pixel(at - end), pixel(at + end), radius * scale_,
-                        colour_of(pressure / full_pressure));
+    std::vector<double> densities;
+    if (colour_ == FrameColour::voronoi) densities = voronoi_densities(view, density_reach, executor);
+    for (const Silhouette& shape : view.shapes) {
+        const Vec2<double> from = pixel(shape.from), to = pixel(shape.to);
+        switch (colour_) {
+            case FrameColour::pressure:
+                picture.capsule(from, to, shape.radius * scale_, colour_of(shape.pressure / full_pressure));
+                break;
+            case FrameColour::voronoi:
+                picture.capsule(from, to, shape.radius * scale_,
+                                colour_of(densities[shape.person] / full_density));
+                break;
+            case FrameColour::density:
+                picture.capsule(from, to, std::max(1.0, 0.3 * shape.radius * scale_), wall_colour);
+        }
     }
-    draw_bar(picture, 0, "N/m", full_pressure);
+    if (colour_ == FrameColour::pressure) {
+        draw_bar(picture, 0, "N/m", full_pressure);
+    } else {
+        draw_bar(picture, 0, "/m2", full_density);
+    }
     draw_bar(picture, 1, "kN/m", full_wall_pressure / 1000);
     picture.save(fmt::format("{}/frame-{:05d}.png", folder_, count_++));
 }

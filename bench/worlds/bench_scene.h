@@ -11,6 +11,7 @@
 
 #include "motley/motley.h"
 #include "worlds/crowd.h"
+#include "worlds/view.h"
 
 namespace motley::bench {
 
@@ -72,8 +73,10 @@ class BenchScene {
     [[nodiscard]] virtual std::vector<Figure> figures() const { return {}; }
     /// The laws that the scene must meet, with how well it has met them so far.
     [[nodiscard]] virtual std::vector<Mark> marks() const { return {}; }
-    /// The people, for pictures and trajectories; null where there are none.
+    /// The people, for trajectories; null where there are none.
     [[nodiscard]] virtual Crowd* crowd() { return nullptr; }
+    /// What a picture shows, as last observed; nothing where there are no people.
+    [[nodiscard]] virtual std::optional<View> view() const { return {}; }
     /// True when there is nothing left to simulate.
     [[nodiscard]] virtual bool is_over(double) const { return false; }
 };
@@ -92,6 +95,7 @@ class CrowdScene : public BenchScene {
     }
     void observe(double, const Solver&) override {}
     [[nodiscard]] Crowd* crowd() override { return &people; }
+    [[nodiscard]] std::optional<View> view() const override { return view_of(people, scene); }
 
   protected:
     Crowd people;

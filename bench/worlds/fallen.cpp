@@ -165,6 +165,24 @@ Fallen fall(Scene& scene, BodyId body, const FallenShape& shape, std::uint32_t n
     return fallen;
 }
 
+void add_silhouettes(const Scene& scene, const Fallen& fallen, View& view)
+{
+    std::vector<BodyLoad> loads(fallen.bodies.size());
+    scene.read_loads(fallen.bodies, {}, StridedSpan<BodyLoad>(loads));
+    for (std::size_t i = 0; i < fallen.bodies.size(); ++i) {
+        const CapsuleDefinition capsule = capsule_of(fallen.shape->rig.bodies[i], fallen.bodies[i], 0);
+        const BodyState state = scene.state(fallen.bodies[i]);
+        const Vec3<double> end = rotate(state.orientation, convert<double>(capsule.to));
+        const Vec2<double> at{state.position.x, state.position.y}, along{end.x, end.y};
+        const auto radius = static_cast<double>(capsule.radius);
+        const double around = 6.283185307179586 * radius + 4 * std::sqrt(dot(end, end));
+        view.shapes.push_back({at - along, at + along, radius,
+                               static_cast<double>(loads[i].normal_force) / around, view.people.size()});
+    }
+    const Vec3<double> centre = centre_of(scene, fallen);
+    view.people.push_back({centre.x, centre.y});
+}
+
 void add_drifts(const Scene& scene, const Fallen& fallen, std::vector<double>& drifts)
 {
     for (const RigJoint& joint : fallen.shape->rig.joints) {

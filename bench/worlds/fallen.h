@@ -8,6 +8,7 @@
 
 #include "motley/motley.h"
 #include "worlds/rig.h"
+#include "worlds/view.h"
 
 namespace motley::bench {
 
@@ -54,6 +55,8 @@ struct Momenta {
 /// The person's body becomes the first of the shape and the others are added, all moving as one rigid body with the momenta
 /// that the person had. The person is planar without a disc, or a particle, its centre about as high as that of the first box.
 Fallen fall(Scene& scene, BodyId body, const FallenShape& shape, std::uint32_t number);
+/// Appends the person and the capsules, each with the pressure of what touches it, the floor included.
+void add_silhouettes(const Scene& scene, const Fallen& fallen, View& view);
 /// Appends how far each joint has come apart, m.
 void add_drifts(const Scene& scene, const Fallen& fallen, std::vector<double>& drifts);
 /// Pushes those who have just fallen: adds `rate`, rad/s, about a level axis through where they stand on the floor.

@@ -4,6 +4,7 @@
 #include "worlds/scenes/corridor.h"
 #include "worlds/scenes/door_closes.h"
 #include "worlds/scenes/evacuation.h"
+#include "worlds/scenes/flow.h"
 #include "worlds/scenes/lean.h"
 #include "worlds/scenes/level_of_detail.h"
 #include "worlds/scenes/open_crowd.h"
@@ -65,6 +66,12 @@ std::vector<SceneEntry> all_scenes()
          10,
          make<OpenCrowd>,
          {.density = true, .steering = true, .listed = true, .found = true}},
+        {"flow",
+         "N people follow flow fields among pillars from block to block",
+         10000,
+         10,
+         make<Flow>,
+         {.density = true, .steering = true, .torsos = true, .listed = true, .found = true}},
         {"evacuation",
          "everybody leaves a room by a door of 1.2 m",
          400,

@@ -35,10 +35,11 @@ void DiscPipeline::find(SceneCore& scene, float dt)
         if (leaving_.size() <= few && discs.late.size() + 4 * leaving_.size() <= discs.count / 2 + 64) {
             if (leaving_.empty()) return;
             discs.is_stale = true;
-            finder_.find_late(scene, leaving_, dt);
-            place_resting(scene, wall_ends_, discs.bands[0]);
-            discs.is_stale = false;
-            return;
+            if (finder_.find_late(scene, leaving_, dt)) {
+                place_resting(scene, wall_ends_, discs.bands[0]);
+                discs.is_stale = false;
+                return;
+            }
         }
     }
     // Should memory run out on the way, the next step searches again.

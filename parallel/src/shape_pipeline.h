@@ -19,6 +19,8 @@ class ShapePipeline {
     /// Before a step of dt seconds: returns the host's contacts, and behind them those of capsules, if there are any.
     /// Valid until the next call.
     std::span<const Contact> join(SceneCore& scene, std::span<const Contact> hosts, float dt);
+    /// What the surfaces of the contacts of capsules do, in their order; empty if all are the default.
+    [[nodiscard]] std::span<const ContactSurface<float>> surfaces() const { return surfaces_; }
     /// What is wrong with the keys of the host's list, or empty.
     [[nodiscard]] static std::string wrong_key(const SceneCore& scene, std::span<const Contact> hosts);
     /// After a step that is done: the scene remembers what was found. Allocates nothing.
@@ -31,8 +33,10 @@ class ShapePipeline {
     ShapePairs pairs_;
     ShapeContacts contacts_;
     std::vector<Contact> all_;
+    std::vector<ContactSurface<float>> surfaces_;
     std::size_t hosts_ = 0;  ///< of `all_`, those of the host's list
 
+    void find_surfaces(const SceneCore& scene);
     void find_pairs(SceneCore& scene, double dt);
 };
 

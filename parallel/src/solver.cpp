@@ -72,9 +72,14 @@ std::string text_of(const std::exception_ptr& thrown) noexcept
     return {};
 }
 
-/// Contacts of discs are solved by sweeps, as often as the settings say.
-void refuse_what_discs_cannot(const SceneCore& scene, const SolverSettings& settings)
+/// Contacts of discs are solved by sweeps, as often as the settings say, and so are those with belts and with walls of
+/// bounded force.
+void refuse_what_sweeps_must_solve(const SceneCore& scene, const SolverSettings& settings)
 {
+    if (settings.method == Method::direct && scene.shapes.is_in_use() &&
+        std::ranges::any_of(scene.discs.segments, &WallSegment::has_own_surface))
+        refuse("SolverSettings.method",
+               "direct, in a scene with capsules and a wall with surface_speed or max_force", "another one");
     if (!scene.discs.is_in_use()) return;
     if (settings.method == Method::direct)
         refuse("SolverSettings.method", "direct, in a scene with discs",
@@ -214,7 +219,7 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> ho
     if (!(dt >= 0 && dt <= 1)) refuse("step.dt", dt, "0 to 1 (s)");
     if (hosts.size() > INT32_MAX)
         refuse("step.contacts.size()", static_cast<double>(hosts.size()), "at most 2^31 - 1");
-    refuse_what_discs_cannot(scene, asked);
+    refuse_what_sweeps_must_solve(scene, asked);
     const auto began = std::chrono::steady_clock::now();
     pick_settings();
     const std::exception_ptr late = runner.with_workers(runs_alone(host_scene, hosts), [&] {
@@ -222,6 +227,7 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> ho
         clock.enter(Stage::intake);
         if (scene.discs.wants_sorting) scene.sort_disc_rows();
         const std::span<const Contact> contacts = shapes.join(scene, hosts, dt);
+        layout.intake.surfaces = shapes.surfaces();
         take_in(scene, contacts, report);
         if (report.error.empty()) report.error = ShapePipeline::wrong_key(scene, hosts);
         if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);

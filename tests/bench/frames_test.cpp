@@ -59,16 +59,13 @@ struct PressedPeople {
     static constexpr double places[] = {0, 1, 1.4, 2.6, 3};
     Scene scene;
     Crowd crowd;
+    Solver solver{stiff()};
 
     PressedPeople()
     {
         for (const double x : places) crowd.add(scene, {}, {x, 0});
         crowd.walls.push_back({{-1, -1}, {4, -1}});
         const auto force = static_cast<float>(FrameWriter::full_pressure * 2 / 3 * 2 * pi * radius);
-        // Stiff contacts, so that nobody moves by as much as a pixel.
-        SolverSettings settings;
-        settings.contact_hertz = 1e6F;
-        Solver solver(settings);
         for (int step = 0; step < 60; ++step) {
             push(1, force);
             push(2, -force);
@@ -84,12 +81,19 @@ struct PressedPeople {
     }
 
   private:
+    /// Stiff contacts, so that nobody moves by as much as a pixel.
+    static SolverSettings stiff()
+    {
+        SolverSettings settings;
+        settings.contact_hertz = 1e6F;
+        return settings;
+    }
     void push(std::size_t i, float force) { scene.set_force(crowd.agents[i].body, {force, 0, 0}, {}); }
 };
 
 /// The view: half a metre around everything, 900 pixels along x; and around that 20 pixels, with 58 more on the right for
 /// each scale.
-struct View {
+struct Pixels {
     static constexpr double pixels_a_metre = 900 / (5 + 2 * 0.5);
     static constexpr int width = 900 + 2 * 20 + 2 * 58, height = 300 + 2 * 20;
     static int x(double world) { return static_cast<int>(20 + (world + 1.5) * pixels_a_metre); }
@@ -106,27 +110,27 @@ TEST(Frames, HaveTheSizePlacesAndColoursOfTheScene)
     const TemporaryFolder folder;
     PressedPeople people;
     FrameWriter writer(folder.path.string());
-    writer.write(people.crowd, people.scene);
+    writer.write(view_of(people.crowd, people.scene), people.solver.executor());
     const ReadPicture picture((folder.path / "frame-00000.png").string());
-    ASSERT_EQ(picture.width, View::width);
-    ASSERT_EQ(picture.height, View::height);
+    ASSERT_EQ(picture.width, Pixels::width);
+    ASSERT_EQ(picture.height, Pixels::height);
     const auto person = [&](std::size_t i) {
-        return picture.at(View::x(PressedPeople::places[i]), View::y(0));
+        return picture.at(Pixels::x(PressedPeople::places[i]), Pixels::y(0));
     };
     expect_near(person(0), {70, 120, 180}, 0, "free: blue");
     // The force is known to a few percent, as two discs settle, and the colour runs 130 values in a third of the scale.
     for (const std::size_t i : {1U, 2U}) expect_near(person(i), {250, 210, 90}, 8, "two thirds: yellow");
     for (const std::size_t i : {3U, 4U}) expect_near(person(i), {205, 40, 45}, 0, "beyond the scale: red");
     // A disc ends at its radius, in a darker edge.
-    const int edge = static_cast<int>(PressedPeople::radius * View::pixels_a_metre);
-    expect_near(picture.at(View::x(0), View::y(0) - edge + 3), {70, 120, 180}, 0, "inside");
-    expect_near(picture.at(View::x(0), View::y(0) - edge - 2), {250, 250, 248}, 0, "outside");
-    expect_near(picture.at(View::x(-0.5), View::y(-1)), {50, 50, 55}, 0, "the wall");
+    const int edge = static_cast<int>(PressedPeople::radius * Pixels::pixels_a_metre);
+    expect_near(picture.at(Pixels::x(0), Pixels::y(0) - edge + 3), {70, 120, 180}, 0, "inside");
+    expect_near(picture.at(Pixels::x(0), Pixels::y(0) - edge - 2), {250, 250, 248}, 0, "outside");
+    expect_near(picture.at(Pixels::x(-0.5), Pixels::y(-1)), {50, 50, 55}, 0, "the wall");
     expect_near(picture.at(2, 2), {250, 250, 248}, 0, "the background");
     // The scales at the right edge, of people and left of it of walls: red at the top, blue at the bottom.
-    for (const int bar : {View::width - 10 - 44 - 7, View::width - 10 - 58 - 44 - 7}) {
+    for (const int bar : {Pixels::width - 10 - 44 - 7, Pixels::width - 10 - 58 - 44 - 7}) {
         expect_near(picture.at(bar, 20 + 24 + 1), {205, 40, 45}, 4, "top of a scale");
-        expect_near(picture.at(bar, View::height - 20 - 2), {70, 120, 180}, 4, "bottom of a scale");
+        expect_near(picture.at(bar, Pixels::height - 20 - 2), {70, 120, 180}, 4, "bottom of a scale");
     }
 }
 
@@ -153,7 +157,7 @@ TEST(Frames, WallsHaveTheColourOfTheirPressureMetreByMetre)
     }
     crowd.observe(scene, solver.executor());
     FrameWriter writer(folder.path.string());
-    writer.write(crowd, scene);
+    writer.write(view_of(crowd, scene), solver.executor());
     const ReadPicture picture((folder.path / "frame-00000.png").string());
     // 900 pixels for the wall and half a metre on each side of it; the disc lies over the middle of its metre.
     const auto colour_at = [&](double x) {
@@ -169,14 +173,38 @@ TEST(Frames, AreNumberedAndKeepTheViewOfTheFirst)
     const TemporaryFolder folder;
     PressedPeople people;
     FrameWriter writer(folder.path.string());
-    writer.write(people.crowd, people.scene);
+    writer.write(view_of(people.crowd, people.scene), people.solver.executor());
     people.crowd.positions[0].y = 3;  // out of the view of the first frame
-    writer.write(people.crowd, people.scene);
+    writer.write(view_of(people.crowd, people.scene), people.solver.executor());
     const ReadPicture second((folder.path / "frame-00001.png").string());
-    ASSERT_EQ(second.width, View::width);
-    ASSERT_EQ(second.height, View::height);
-    expect_near(second.at(View::x(0), View::y(0)), {250, 250, 248}, 0, "nobody is there any more");
-    expect_near(second.at(View::x(3), View::y(0)), {205, 40, 45}, 0, "the others have not moved");
+    ASSERT_EQ(second.width, Pixels::width);
+    ASSERT_EQ(second.height, Pixels::height);
+    expect_near(second.at(Pixels::x(0), Pixels::y(0)), {250, 250, 248}, 0, "nobody is there any more");
+    expect_near(second.at(Pixels::x(3), Pixels::y(0)), {205, 40, 45}, 0, "the others have not moved");
+}
+
+/// Three people on one square metre and one on another: cells have the colours of three and of one to the square metre.
+TEST(Frames, SquareMetresHaveTheColourOfTheirDensity)
+{
+    const TemporaryFolder folder;
+    bench::View view;
+    view.people = {{0.2, 0.2}, {0.8, 0.2}, {0.8, 0.8}, {2.9, 0.9}};
+    for (std::size_t i = 0; i < view.people.size(); ++i)
+        view.shapes.push_back({view.people[i], view.people[i], 0.05, 0, i});
+    view.walls = {{{0, 0}, {3, 0}}, {{3, 0}, {3, 1}}};
+    FrameWriter writer(folder.path.string(), FrameColour::density);
+    Solver solver{SolverSettings{}};
+    writer.write(view, solver.executor());
+    const ReadPicture picture((folder.path / "frame-00000.png").string());
+    const auto at = [&](double x, double y) {
+        constexpr double scale = 900.0 / 4;
+        return picture.at(static_cast<int>(20 + (x + 0.5) * scale),
+                          static_cast<int>(picture.height - 20 - (y + 0.5) * scale));
+    };
+    // Three eighths of the scale: an eighth of the way from the second colour to the third.
+    expect_near(at(0.5, 0.5), {136, 192, 160}, 2, "three on a square metre");
+    expect_near(at(1.5, 0.5), {250, 250, 248}, 0, "nobody");
+    expect_near(at(2.5, 0.5), {89, 146, 176}, 2, "one");
 }
 
 TEST(Frames, AFolderThatCannotBeMadeIsNamed)

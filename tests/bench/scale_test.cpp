@@ -9,12 +9,18 @@ namespace {
 
 TEST(Scale, EverySizeHasItsFigures)
 {
-    const ScaleResult result =
-        measure_scale({.people = {200, 800}, .rounds = 1, .solver = {.threads = 1}, .progress = false});
-    ASSERT_EQ(result.sizes.size(), 2U);
+    const ScaleResult result = measure_scale({.people = {1000, 2000},
+                                              .densities = {5},
+                                              .rounds = 1,
+                                              .solver = {.threads = 2, .alone_below = 0},
+                                              .progress = false});
+    ASSERT_EQ(result.sizes.size(), 4U);
+    for (const Mark& mark : result.marks) EXPECT_TRUE(mark.passes()) << mark.name << ": " << mark.value;
     for (const ScaleResult::Size& size : result.sizes) {
         // At 5 people per m2 a person touches, or is within the margin of, about two others.
         const auto people = static_cast<double>(size.people);
+        // A body, half a dozen numbers of the host, and a contact.
+        EXPECT_GT(size.bytes / people, 300);
         EXPECT_GT(size.contacts, 0.3 * people);
         EXPECT_LT(size.contacts, 3 * people);
         // Times of which one is inside the other, whatever the clock says.
@@ -26,7 +32,10 @@ TEST(Scale, EverySizeHasItsFigures)
         EXPECT_LT(size.sweep_bytes_per_second * size.sweep_seconds, 136);
         EXPECT_GT(size.triad_bytes_per_second, 0);
     }
-    EXPECT_EQ(result.sizes[1].people, 800);
+    EXPECT_EQ(result.sizes[1].people, 1000);
+    EXPECT_EQ(result.sizes[1].threads, 2);
+    EXPECT_EQ(result.sizes[1].state_hash, result.sizes[0].state_hash);
+    EXPECT_NE(result.sizes[2].state_hash, result.sizes[0].state_hash);
     EXPECT_NE(table_of(result).find("of triad"), std::string::npos);
 }
 

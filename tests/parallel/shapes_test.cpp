@@ -347,20 +347,6 @@ TEST(Shapes, TheHostsContactsActBesideThem)
     EXPECT_EQ(scene.shape_contacts().size(), 1U);
 }
 
-TEST(Shapes, CapsulesPassOneWayWalls)
-{
-    Scene scene;
-    const Vec2<double> ends[] = {{1, -5}, {1, 5}};
-    scene.add_wall({.points = ends, .one_way = true});
-    BodyDefinition thrown{.model = BodyModel::planar, .mass = 5};
-    thrown.linear_velocity = {2, 0, 0};
-    const BodyId ball = scene.add_body(thrown);
-    scene.add_capsule({.body = ball, .radius = 0.1F});
-    Solver solver(SolverSettings{});
-    run(solver, scene, 60);
-    EXPECT_NEAR(scene.state(ball).position.x, 2, 1e-5);
-}
-
 /// A kinematic platform lifts what lies on it.
 TEST(Shapes, APlatformLiftsWhatLiesOnIt)
 {

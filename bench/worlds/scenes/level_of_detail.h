@@ -114,6 +114,26 @@ class LevelOfDetail final : public BenchScene {
         for (const Lying& lying : fallen_) add_drifts(scene, lying.fallen, drifts_);
     }
 
+    /// The fallen below, with the people who stand as discs above them.
+    [[nodiscard]] std::optional<View> view() const override
+    {
+        View view;
+        const Vec2<double> corners[] = {{0, 0}, {side_, 0}, {side_, side_}, {0, side_}};
+        for (std::size_t i = 0; i < 4; ++i) view.walls.push_back({corners[i], corners[(i + 1) % 4]});
+        for (const Lying& lying : fallen_) add_silhouettes(scene, lying.fallen, view);
+        std::vector<BodyLoad> loads(bodies_.size());
+        scene.read_loads(bodies_, {}, StridedSpan<BodyLoad>(loads));
+        constexpr auto radius = static_cast<double>(standing.radius);
+        for (std::size_t i = 0; i < people_.size(); ++i) {
+            if (has_fallen(people_[i].level)) continue;
+            const Vec2<double> at{positions_[i].x, positions_[i].y};
+            view.shapes.push_back({at, at, radius,
+                                   static_cast<double>(loads[i].normal_force) / (6.283185307179586 * radius),
+                                   view.people.size()});
+            view.people.push_back(at);
+        }
+        return view;
+    }
     [[nodiscard]] std::vector<Figure> figures() const override
     {
         std::vector<Figure> all;

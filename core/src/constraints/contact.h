@@ -5,7 +5,8 @@
 //
 // n: normal; p: surface points; r: arms to the contact point; mu: friction coefficient. The normal and the arms stay as
 // they were when the step began, so J is constant and the separation follows from the displacement delta since then,
-// C = C_0 + J delta: exact for discs and balls, with an error of second order in the rotation for other shapes.
+// C = C_0 + J delta: exact for discs and balls, with an error of second order in the rotation for other shapes. The
+// surface of a may run along the tangents and bound lambda_n: see contact_surface.h.
 #pragma once
 
 #include <type_traits>
@@ -38,7 +39,8 @@ struct ContactMemory {
 };
 
 /// What a contact does in addition to keeping bodies apart; each kind does what the one before does. Smooth contacts
-/// have no friction rows, and only bouncing ones store the speed of the impact.
+/// have no friction rows, and only bouncing ones store the speed of the impact and what their surface does, as few
+/// contacts have either.
 enum class Touch { smooth, rough, bouncing };
 
 template <Touch touch>
@@ -87,8 +89,15 @@ struct ContactKind : ConstraintTraits {
     template <class Real, BodyKind a, BodyKind b>
     using RoughRow = std::conditional_t<is_planar_pair(a, b), PlanarSweep<Real>, SpatialSweep<Real>>;
     template <class Real, BodyKind a, BodyKind b>
+    using Tangent = std::conditional_t<is_planar_pair(a, b), Real, Vec2<Real>>;
+    template <class Real, BodyKind a, BodyKind b>
+    struct BouncingSweep : RoughRow<Real, a, b> {
+        Tangent<Real, a, b> surface_speed;  ///< of a's surface along the tangents, m/s
+        Real most_force;                    ///< N, along the normal
+    };
+    template <class Real, BodyKind a, BodyKind b>
     struct BouncingRow {
-        RoughRow<Real, a, b> in_sweep;
+        BouncingSweep<Real, a, b> in_sweep;
         Real restitution, approach, acceleration;  ///< see opening_speed
     };
     template <class Real, BodyKind a, BodyKind b>
@@ -111,8 +120,6 @@ struct ContactKind : ConstraintTraits {
         Tangent tangent;
         Real peak;  ///< the largest normal impulse of the step, decides restitution
     };
-    template <class Real, BodyKind a, BodyKind b>
-    using Tangent = std::conditional_t<is_planar_pair(a, b), Real, Vec2<Real>>;
     template <class Real, BodyKind a, BodyKind b>
     using Impulse =
         std::conditional_t<smooth, SmoothImpulse<Real>,
@@ -175,6 +182,11 @@ struct ContactKind : ConstraintTraits {
                 const Vector t2 = cross(row.normal, row.tangent);
                 impulse.tangent = {warm * dot(row.tangent, memory.friction), warm * dot(t2, memory.friction)};
             }
+            if constexpr (has_restitution) {
+                const ContactSurface<Real> surface = start.surface();
+                row.surface_speed = along_tangents<Real>(row, to_space<Vector>(surface.velocity));
+                row.most_force = surface.most_force;
+            }
         }
         return whole;
     }
@@ -214,9 +226,10 @@ struct ContactKind : ConstraintTraits {
         if constexpr (!smooth) solve_friction<Real>(row, impulse, a, b);
 
         constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
-        const Real wanted = contact_impulse(step, on_fixed ? step.static_contact : step.contact,
-                                            row.separation + moved<Real>(row, a, b), speed<Real>(row, a, b),
-                                            normal_effective_mass<Real>(row, a, b), impulse.normal);
+        Real wanted = contact_impulse(step, on_fixed ? step.static_contact : step.contact,
+                                      row.separation + moved<Real>(row, a, b), speed<Real>(row, a, b),
+                                      normal_effective_mass<Real>(row, a, b), impulse.normal);
+        if constexpr (has_restitution) wanted = minimum(wanted, Real(step.substep) * row.most_force);
         push_normal<Real>(row, wanted, impulse, a, b);
     }
 
@@ -227,10 +240,12 @@ struct ContactKind : ConstraintTraits {
         const auto& row = in_sweep(whole);
         const Real opening = opening_speed(whole.restitution, whole.approach, whole.acceleration,
                                            row.separation, row.separation + moved<Real>(row, a, b));
-        const Real wanted =
+        const Real free =
             impulse.normal - normal_effective_mass<Real>(row, a, b) * (speed<Real>(row, a, b) - opening);
-        const auto bounces = (whole.approach < Real(-step.restitution_threshold)) & (impulse.peak > Real(0));
-        push_normal<Real>(row, select(bounces, maximum(wanted, Real(0)), impulse.normal), impulse, a, b);
+        const Real wanted = minimum(maximum(free, Real(0)), Real(step.substep) * row.most_force);
+        const auto bounces = (whole.restitution > Real(0)) & (impulse.peak > Real(0)) &
+                             (whole.approach < Real(-step.restitution_threshold));
+        push_normal<Real>(row, select(bounces, wanted, impulse.normal), impulse, a, b);
     }
 
     /// A position solve: moves the bodies along J^T until `projection_rate` of the penetration is gone.
@@ -334,6 +349,16 @@ struct ContactKind : ConstraintTraits {
         push<Real>(row, change, a, b);
     }
 
+    /// The components of a vector along the tangents.
+    template <class Real, class Row, class Vector>
+    static auto along_tangents(const Row& row, const Vector& v)
+    {
+        if constexpr (requires { row.tangent; }) {
+            return Vec2<Real>{dot(row.tangent, v), dot(cross(row.normal, row.tangent), v)};
+        } else {
+            return dot(tangent_of(row.normal), v);
+        }
+    }
     template <class Real, class Row, class Impulse, class A, class B>
     static void solve_friction(const Row& row, Impulse& impulse, A& a, B& b)
     {
@@ -342,7 +367,11 @@ struct ContactKind : ConstraintTraits {
         if constexpr (requires { row.tangent; }) {
             const Vec3<Real> t2 = cross(row.normal, row.tangent);
             const Vec2<Real> old = impulse.tangent;
-            const Real slip1 = dot(row.tangent, slip), slip2 = dot(t2, slip);
+            Real slip1 = dot(row.tangent, slip), slip2 = dot(t2, slip);
+            if constexpr (has_restitution) {
+                slip1 = slip1 - row.surface_speed.x;
+                slip2 = slip2 - row.surface_speed.y;
+            }
             const Vec2<Real>& effective_mass = row.tangent_effective_mass;
             const Real first = old.x - effective_mass.x * slip1;
             impulse.tangent = bounded_impulse(Vec2<Real>{first, old.y - effective_mass.y * slip2},
@@ -354,7 +383,9 @@ struct ContactKind : ConstraintTraits {
         } else {
             const Vec2<Real> t = tangent_of(row.normal);
             const Real effective_mass = effective_mass_along(t, point_response(a, row.arm_a, b, row.arm_b));
-            const Real free = impulse.tangent - effective_mass * dot(t, slip);
+            Real along = dot(t, slip);
+            if constexpr (has_restitution) along = along - row.surface_speed;
+            const Real free = impulse.tangent - effective_mass * along;
             const Real held = maximum(minimum(free, bound), -bound);
             const Vec2<Real> push = (held - impulse.tangent) * t;
             impulse.tangent = held;

@@ -47,6 +47,7 @@
 #include <concepts>
 #include <type_traits>
 
+#include "maths/contact_surface.h"
 #include "maths/equality_row.h"
 #include "maths/step_constants.h"
 #include "maths/tension.h"
@@ -119,6 +120,9 @@ concept StepStart = requires(const Start& start, const LaneBody<Real, a>& body_a
     {
         start.acceleration(body_a, body_b)  // of b relative to a by forces and gravity alone, m/s2
         } -> std::same_as<Vec3<Real>>;
+    {
+        start.surface()  // of body a, of contacts that bounce
+        } -> std::same_as<ContactSurface<Real>>;
 };
 
 /// What JointStore requires of a joint type.

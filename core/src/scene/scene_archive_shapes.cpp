@@ -1,5 +1,6 @@
 // Checks that capsules and half-spaces, as read from a file, are such as a host could have added.
 #include <cmath>
+#include <cstdlib>
 
 #include "scene/archive_checks.h"
 #include "scene/scene_archive.h"
@@ -56,6 +57,8 @@ void SceneArchive::check_capsules(const SceneCore& scene)
     demand(shapes.walls_met.size() == shapes.contacts.size() &&
                shapes.contacts.size() <= scene.contacts.current().count,
            "contacts of capsules that were not solved");
+    for (const WallMet& met : shapes.walls_met)
+        demand(std::abs(met.side) <= 1, "a capsule on no side of a wall");
     for (const Contact& contact : shapes.contacts) demand(is_finite(contact), "a contact that is nowhere");
 }
 

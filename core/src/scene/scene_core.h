@@ -108,7 +108,7 @@ struct SceneCore {
         const std::span<const ContactImpulse> impulses = shape_impulses();
         for (std::size_t i = 0; i < impulses.size(); ++i) {
             const Contact& contact = shapes.contacts[i];
-            const WallId wall = shapes.walls_met[i];
+            const WallId wall = shapes.walls_met[i].wall;
             if (!bodies.is_alive(contact.body_a) || !bodies.is_alive(contact.body_b)) continue;
             if (wall == WallId{} || discs.is_alive(wall)) work(contact, impulses[i], wall);
         }

@@ -114,7 +114,7 @@ WallId SceneCore::put_wall(const WallDefinition& wall)
     for (std::size_t i = 0; i < count; ++i)
         discs.segments.push_back({wall.points[i], wall.points[(i + 1) % wall.points.size()], body,
                                   wall.friction, wall.category, wall.mask, slot, wall.surface_speed,
-                                  wall.max_force, wall.one_way ? 1U : 0U});
+                                  wall.max_force, wall.one_way ? 1U : 0U, static_cast<std::uint32_t>(i)});
     for (std::size_t i = discs.segments.size() - count; i < discs.segments.size(); ++i)
         wake_near(discs.segments[i], touching_distance);
     discs.is_stale = true;

@@ -44,7 +44,17 @@ struct WallSegment {
     std::uint32_t wall = 0;                         ///< slot
     float surface_speed = 0, max_force = INFINITY;  ///< as in WallDefinition
     std::uint32_t is_one_way = 0;
-    std::uint32_t unused = 0;  ///< so that files have no undefined bytes
+    std::uint32_t number = 0;  ///< among the segments of its wall
+
+    /// Whether contacts must be told what the surface does.
+    [[nodiscard]] bool has_own_surface() const { return surface_speed != 0 || max_force < INFINITY; }
+};
+
+/// A segment by its wall and its number there, which stay when other walls are removed. The null handle: no wall.
+struct WallMet {
+    WallId wall{};
+    std::uint32_t number = 0;
+    std::int32_t side = 0;  ///< of what met it: 1: left; -1: right; 0: at an end of the segment, or not known
 };
 
 /// A disc near a wall.
@@ -153,6 +163,10 @@ struct DiscStore {
     {
         const std::uint32_t slot = segments[segment].wall;
         return {slot, walls[slot].generation};
+    }
+    [[nodiscard]] WallMet met(std::size_t segment) const
+    {
+        return {wall_of(segment), segments[segment].number};
     }
     [[nodiscard]] bool is_alive(WallId wall) const
     {

@@ -57,7 +57,7 @@ struct ShapeStore {
     static constexpr std::uint32_t first_given_group = std::uint32_t{1} << 31;
     /// The contacts that were found in the last step. The contact cache has them behind those of the host's list.
     std::vector<Contact> contacts;
-    std::vector<WallId> walls_met;  ///< of each of them, the wall that it is with; null: with no wall
+    std::vector<WallMet> walls_met;  ///< of each of them, the wall that it is with
     /// Token of this set of shapes, and of what else may meet them: null after a change, made by the next step, shared by
     /// copies of the scene.
     std::shared_ptr<const char> version;

@@ -3,16 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "motley/core/invalid_input.h"
 #include "scene/wall_ends.h"
 #include "stores/disc_fields.h"
 
 namespace motley {
 namespace {
-
-/// A disc lists at most so many that come after it in a strip. Equal discs beside each other have fewer than ten; of a
-/// million at one spot each then pushes some, and not all others at once.
-constexpr std::size_t most_later_neighbours = 32;
 
 /// m: discs further apart than this start without the impulse that they had.
 constexpr double still_touching = 0.005;
@@ -63,6 +61,7 @@ void DiscFinder::open(SceneCore& scene, int workers)
     make_room_for_workers(workers);
     discs.late.clear();
     discs.late_reach = discs.late_drift = 0;
+    found_in_all_.store(0, std::memory_order_relaxed);
     const auto bands = static_cast<std::size_t>(strips.band_count()) + 1;
     if (discs.bands.size() < bands) discs.bands.resize(bands);
     discs.band_count = bands;
@@ -115,8 +114,9 @@ void DiscFinder::make_room_for_pairs(DiscStore& discs)
     for_each_disc_class([&](auto c) {
         if constexpr (!is_wall(c.value)) {
             using Fields = DiscFieldsOf<c.value>;
+            // Not as much as band 0, which has all pairs of discs that reach far.
             std::size_t most = 0;
-            for (std::size_t band = 0; band < discs.band_count; ++band)
+            for (std::size_t band = 1; band < discs.band_count; ++band)
                 most = std::max(most, static_cast<std::size_t>(
                                           discs.bands[band].blocks[static_cast<std::size_t>(c.value)].count));
             if (most == 0) return;
@@ -160,10 +160,8 @@ void DiscFinder::place_segments(const DiscStore& discs)
         segments_[0].push_back(segment);
         const std::int32_t low = strips.strip_at(std::min(segment.from.y, segment.to.y) - reach);
         const std::int32_t high = strips.strip_at(std::max(segment.from.y, segment.to.y) + reach);
-        for (std::int32_t band = 0; band < strips.band_count(); ++band) {
-            if (strips.first_strip(band) <= high && low < strips.first_strip(band + 1))
-                segments_[static_cast<std::size_t>(band) + 1].push_back(segment);
-        }
+        for (std::size_t band = band_of(low); band <= band_of(high); ++band)
+            segments_[band].push_back(segment);
     }
 }
 
@@ -208,6 +206,15 @@ void DiscFinder::begin_fillers(DiscBand& band, Worker& worker, std::size_t numbe
         begin(worker.resting_fillers[i], band.resting[i]);
     });
     if (!goes_on) band.half_awake = 0;
+}
+
+/// Memory might not hold the contacts of a large crowd on one spot.
+void DiscFinder::count_pairs(const DiscStore& discs, std::size_t more)
+{
+    const std::size_t most = (std::size_t{1} << 21) + 24 * discs.count;
+    if (found_in_all_.fetch_add(more, std::memory_order_relaxed) + more > most)
+        refuse("pairs of " + std::to_string(discs.count) + " discs that may touch",
+               "more than " + std::to_string(most), "fewer: discs that are not all in one place");
 }
 
 /// The pairs of a strip with itself and with the next one, in order.
@@ -363,6 +370,7 @@ void DiscFinder::find_in_strips(SceneCore& scene, std::size_t band, Worker& work
     const PlacedDisc* const zero = strips.discs().data() + base;  // there may be none
     for (std::int32_t strip = first; strip < last; ++strip) {
         list_pairs(strip, worker.pairs);
+        count_pairs(scene.discs, worker.pairs.size());
         for (const Pair& pair : worker.pairs)
             add_pair(scene, found, worker, strips.disc(pair.a), strips.disc(pair.b),
                      carried_of(strips.disc(pair.a), strips.disc(pair.b)), pair.a - base, pair.b - base);
@@ -394,8 +402,9 @@ void DiscFinder::find_wide(SceneCore& scene, Worker& worker)
         const auto try_pair = [&](const PlacedDisc& other) {
             const double along = other.along - me.along, across = other.across - me.across;
             const double near = static_cast<double>(other.reach + me.reach);
-            if (along * along + across * across < near * near)
-                add_pair(scene, found, worker, me, other, carried_of(me, other), me.row, other.row);
+            if (along * along + across * across >= near * near) return;
+            count_pairs(scene.discs, 1);
+            add_pair(scene, found, worker, me, other, carried_of(me, other), me.row, other.row);
         };
         for (std::size_t v = w + 1; v < wide.size(); ++v) try_pair(wide[v]);
         const double reach = static_cast<double>(me.reach) + static_cast<double>(strips.most_reach());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -28,14 +29,16 @@ class DiscFinder {
     }
     /// Then there is space for the contacts of every band, for so many workers...
     void open(SceneCore& scene, int workers);
-    /// ...and the contacts of every band are found; band 0 has those of discs that reach far.
+    /// ...and the contacts of every band are found; band 0 has those of discs that reach far. Refuses far more pairs than
+    /// discs.
     void find(SceneCore& scene, std::size_t band, int worker);
     /// After that: room for more pairs, so that a step to come seldom allocates, and whether the rows should be sorted.
     static void make_room_for_pairs(DiscStore& discs);
     [[nodiscard]] static bool are_rows_scattered(const DiscStore& discs);
     /// Between searches of all discs: gives the discs in these rows of planar bodies new anchors and skins, and adds
-    /// the contacts that they may have now to band 0. The rows may be in any order; they are sorted.
-    void find_late(SceneCore& scene, std::span<std::uint32_t> rows, float dt);
+    /// the contacts that they may have now to band 0. The rows may be in any order; they are sorted. Returns false where
+    /// people are so close that a search of all discs takes less, and must now be made.
+    bool find_late(SceneCore& scene, std::span<std::uint32_t> rows, float dt);
     /// Makes space for so many workers.
     /// Each worker gets the room of the one that has most: which bands a worker gets is not the same in every search.
     void make_room_for_workers(int workers);
@@ -44,6 +47,9 @@ class DiscFinder {
     void divide(SceneCore& scene, std::size_t band, int worker);
 
   private:
+    /// A disc lists at most so many that come after it in a strip. Equal discs beside each other have fewer than ten; of a
+    /// million at one spot each then pushes some, and not all others at once.
+    static constexpr std::size_t most_later_neighbours = 32;
     struct Pair {
         std::uint32_t a, b;  ///< places in the order of the strips
     };
@@ -63,11 +69,13 @@ class DiscFinder {
         }
     };
     std::shared_ptr<const char> self_ =
-        std::make_shared<const char>('\0');  ///< its address names this finder
-    std::uint64_t searches_ = 0;             ///< the last one is that of the strips
-    std::vector<std::uint32_t> places_;      ///< of each row in the strips; empty until they are asked for
-    std::vector<std::uint64_t> fresh_;       ///< contacts that find_late() has added
-    std::vector<std::uint8_t> is_new_;       ///< by row: it has a new anchor in this call of find_late()
+        std::make_shared<const char>('\0');     ///< its address names this finder
+    std::uint64_t searches_ = 0;                ///< the last one is that of the strips
+    std::vector<std::uint32_t> places_;         ///< of each row in the strips; empty until they are asked for
+    std::vector<std::uint64_t> fresh_;          ///< contacts that find_late() has added
+    std::vector<std::uint8_t> is_new_;          ///< by row: it has a new anchor in this call of find_late()
+    std::size_t looked_at_ = 0;                 ///< discs in this call of find_late()
+    std::atomic<std::size_t> found_in_all_{0};  ///< pairs in this search of all discs
     struct PlacedSegment {
         Vec2<double> from, to;  ///< in the frame of the strips
         std::uint32_t index;
@@ -88,6 +96,7 @@ class DiscFinder {
     [[nodiscard]] std::size_t band_of(std::int32_t strip) const;
     void find_in_strips(SceneCore& scene, std::size_t band, Worker& worker);
     void find_wide(SceneCore& scene, Worker& worker);
+    void count_pairs(const DiscStore& discs, std::size_t more);
     void list_pairs(std::int32_t strip, std::vector<Pair>& pairs) const;
     void add_pair(SceneCore& scene, DiscBand& band, Worker& worker, const PlacedDisc& a, const PlacedDisc& b,
                   const CarriedImpulses::Impulse& impulse, std::uint32_t number_a,

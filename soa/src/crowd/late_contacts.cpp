@@ -57,7 +57,7 @@ void DiscFinder::make_strips_of(SceneCore& scene)
         places_[placed[place].row] = static_cast<std::uint32_t>(place);
 }
 
-void DiscFinder::find_late(SceneCore& scene, std::span<std::uint32_t> rows, float dt)
+bool DiscFinder::find_late(SceneCore& scene, std::span<std::uint32_t> rows, float dt)
 {
     make_strips_of(scene);
     DiscStore& discs = scene.discs;
@@ -65,11 +65,20 @@ void DiscFinder::find_late(SceneCore& scene, std::span<std::uint32_t> rows, floa
               [&](std::uint32_t a, std::uint32_t b) { return places_[a] < places_[b]; });
     fresh_.clear();
     begin_fillers(discs.bands[0], workers_[0], scene.bodies.rows(BodyKind::planar).size(), true);
-    for (const std::uint32_t row : rows) find_late_of(scene, row, dt);
+    looked_at_ = 0;
+    bool is_sparse = true;
+    for (const std::uint32_t row : rows) {
+        const std::size_t before = fresh_.size();
+        find_late_of(scene, row, dt);
+        is_sparse = looked_at_ <= 16 * strips.discs().size() + 4096 &&
+                    fresh_.size() - before <= 2 * most_later_neighbours;
+        if (!is_sparse) break;
+    }
     workers_[0].finish();
     for (const std::uint32_t row : rows) is_new_[row] = 0;
     std::sort(fresh_.begin(), fresh_.end());
     merge_into(discs.late, fresh_);
+    return is_sparse;
 }
 
 void DiscFinder::find_late_of(SceneCore& scene, std::uint32_t row, float dt)
@@ -102,6 +111,7 @@ void DiscFinder::find_late_pairs(SceneCore& scene, const PlacedDisc& me)
     DiscStore& discs = scene.discs;
     const DiscAnchor& was = discs.found_at[me.row];
     const auto try_pair = [&](const PlacedDisc& placed) {
+        ++looked_at_;
         if (placed.row == me.row) return;
         const DiscAnchor& anchor = discs.anchors[placed.row];
         const Vec2<double> at = strips.to_strips(anchor);

@@ -105,6 +105,23 @@ struct Kernels {
             return free_acceleration(context.step, bundle.arrays_b, bundle.offsets_b, b) -
                    free_acceleration(context.step, bundle.arrays_a, bundle.offsets_a, a);
         }
+        [[nodiscard]] ContactSurface<Lanes> surface() const
+        {
+            ContactSurface<Lanes> surface;
+            if (data.surfaces == nullptr) return surface;
+            alignas(64) float fields[4][Lanes_width];
+            for (int lane = 0; lane < Lanes_width; ++lane) {
+                const std::int32_t i = bundle.constraint[lane] - data.first_surface;
+                const ContactSurface<float> own = i < 0 ? ContactSurface<float>{} : data.surfaces[i];
+                fields[0][lane] = own.velocity.x;
+                fields[1][lane] = own.velocity.y;
+                fields[2][lane] = own.velocity.z;
+                fields[3][lane] = own.most_force;
+            }
+            surface.velocity = {load_lanes(fields[0]), load_lanes(fields[1]), load_lanes(fields[2])};
+            surface.most_force = load_lanes(fields[3]);
+            return surface;
+        }
     };
 
     /// The bodies at the end of a step, each loaded when a type asks for it.

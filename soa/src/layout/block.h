@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "maths/contact_surface.h"
 #include "maths/step_constants.h"
 #include "motley/soa/isa.h"
 #include "scene/joint_pose.h"
@@ -54,6 +55,9 @@ struct ConstraintData {
         nullptr;  ///< by constraint, the sum over all substeps: a Wrench for joints, for contacts as in memory_out
     std::int64_t step_stride = 0;               ///< floats
     const WorldPoints* world_points = nullptr;  ///< by constraint; null for types without
+    /// Of contacts from `first_surface` on; those before it, or all if it is null, have the default surface.
+    const ContactSurface<float>* surfaces = nullptr;
+    std::int32_t first_surface = 0;
 };
 
 /// Rows of one kind as the kernels see them.

@@ -50,6 +50,11 @@ std::uint32_t fingerprint(BodyId body)
     return body.slot ^ (body.generation * 0x9E3779B9U);
 }
 
+bool is_default(const ContactSurface<float>& surface)
+{
+    return dot(surface.velocity, surface.velocity) == 0 && surface.most_force == INFINITY;
+}
+
 bool is_planar(BodyRow a, BodyRow b)
 {
     return (a.kind() == BodyKind::planar && (b.kind() == BodyKind::planar || b.kind() == BodyKind::fixed)) ||
@@ -79,7 +84,8 @@ void ContactIntake::mark_bad(std::size_t index)
 }
 
 /// Fills in the rows of the bodies and the type. Returns whether the contact is good.
-bool ContactIntake::place(const BodyStore& bodies, const Contact& contact, Placement& placement)
+bool ContactIntake::place(const BodyStore& bodies, std::size_t index, const Contact& contact,
+                          Placement& placement) const
 {
     if (!bodies.is_alive(contact.body_a) || !bodies.is_alive(contact.body_b)) return false;
     const BodyRow a = bodies.row_of(contact.body_a), b = bodies.row_of(contact.body_b);
@@ -87,9 +93,11 @@ bool ContactIntake::place(const BodyStore& bodies, const Contact& contact, Place
     placement.a = a;
     placement.b = b;
     placement.in_patch = placement.in_figure = false;
-    placement.type = static_cast<std::uint8_t>(contact.restitution != 0 ? Touch::bouncing
-                                               : contact.friction != 0  ? Touch::rough
-                                                                        : Touch::smooth);
+    const bool has_own_surface =
+        !surfaces.empty() && index >= first_surface() && !is_default(surfaces[index - first_surface()]);
+    placement.type = static_cast<std::uint8_t>(contact.restitution != 0 || has_own_surface ? Touch::bouncing
+                                               : contact.friction != 0                     ? Touch::rough
+                                                                                           : Touch::smooth);
     return numbers_are_good(contact) && contact.body_a != contact.body_b &&
            !(a.kind() == BodyKind::fixed && b.kind() == BodyKind::fixed) &&
            !(is_planar(a, b) && contact.normal.z != 0);
@@ -121,7 +129,7 @@ void ContactIntake::check_and_match(SceneCore& scene, std::span<const Contact> c
             scene.bodies.prefetch(contacts[i + ahead].body_b);
         }
         placements[i].constraint = static_cast<std::int32_t>(i);
-        placements[i].is_bad = !place(scene.bodies, contact, placements[i]);
+        placements[i].is_bad = !place(scene.bodies, i, contact, placements[i]);
         if (placements[i].is_bad) {
             mark_bad(i);
             // If it is skipped, it gets fixed bodies, and keeps its place in the list and its key.

@@ -33,11 +33,16 @@ class ContactIntake {
 
     /// The number of contacts that failed the checks.
     [[nodiscard]] std::int64_t bad_contacts() const { return bad_contacts_.load(std::memory_order_relaxed); }
+    /// The first contact of the list whose surface is in `surfaces`.
+    [[nodiscard]] std::size_t first_surface() const { return count_ - surfaces.size(); }
     /// Whether one of the good contacts has restitution.
     [[nodiscard]] bool bounces() const { return bounces_.load(std::memory_order_relaxed); }
     /// Names the first contact whose key is repeated; empty when there is none. Runs on the calling thread.
     [[nodiscard]] static std::string repeated_key(std::span<const Contact> contacts);
 
+    /// What the surfaces of the last contacts of the list do; those before them, or all, have the default. Set before
+    /// begin().
+    std::span<const ContactSurface<float>> surfaces;
     AlignedVector<Placement> placements;  ///< with the colour of the step before, or no_colour
     Patches patches;
     std::vector<std::int32_t>
@@ -51,7 +56,8 @@ class ContactIntake {
     std::atomic<bool> bounces_{false};
 
     void mark_bad(std::size_t index);
-    static bool place(const BodyStore& bodies, const Contact& contact, Placement& placement);
+    bool place(const BodyStore& bodies, std::size_t index, const Contact& contact,
+               Placement& placement) const;
     void remember(ContactCache& cache, std::uint32_t i, std::uint32_t before);
 };
 

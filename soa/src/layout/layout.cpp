@@ -321,6 +321,10 @@ void Layout::point_at_data(SceneCore& scene, std::span<const Contact> list)
         contact.memory_stride = sizeof(ContactImpulse) / sizeof(float);
         contact.step_out = &scene.contacts.staged().step_impulses[0].normal;
         contact.step_stride = contact.memory_stride;
+        if (!intake.surfaces.empty()) {
+            contact.surfaces = intake.surfaces.data();
+            contact.first_surface = static_cast<std::int32_t>(intake.first_surface());
+        }
     }
     for (int type = 0; type < contact_type_count; ++type) data_[static_cast<std::size_t>(type)] = contact;
     scene.joints->for_each([&](auto& store, int type) {

@@ -20,7 +20,8 @@ Quat<double> orientation_of(const BodyRows& rows, BodyRow where)
     if (quads_of(where.kind()) == 2) return convert<double>(rows.orientation[where.row()]);
     if (where.kind() == BodyKind::particle) return {0, 0, 0, 1};
     constexpr double turn = 6.283185307179586;
-    const double yaw = std::remainder(static_cast<double>(rows.pose[where.row()].yaw), turn);
+    double yaw = static_cast<double>(rows.pose[where.row()].yaw);
+    if (std::abs(yaw) > turn / 2) yaw = std::remainder(yaw, turn);
     const SineCosine<double> half = sine_cosine(yaw / 2);
     return {0, 0, half.sine, half.cosine};
 }
@@ -56,6 +57,8 @@ PlacedCapsule placed(const SceneCore& scene, const Capsule& capsule, double dt)
     PlacedCapsule placed;
     placed.axis = {convert<double>(rows.pose[where.row()].position) + rotate(orientation, from),
                    rotate(orientation, to - from)};
+    placed.middle = placed.axis.at(0.5);
+    placed.half = 0.5 * length_of(placed.axis.along);
     placed.radius = static_cast<double>(capsule.radius);
     placed.goes = dt * (speeds.linear + speeds.angular * (arm + placed.radius));
     placed.is_flat = where.kind() == BodyKind::planar;
@@ -80,6 +83,7 @@ PlacedCapsule placed_disc(const SceneCore& scene, std::uint32_t planar_row, cons
     const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
     PlacedCapsule placed;
     placed.axis.from = convert<double>(rows.pose[planar_row].position);
+    placed.middle = placed.axis.from;
     placed.radius = static_cast<double>(disc.radius);
     placed.goes = dt * speeds_of(rows, {BodyKind::planar, planar_row}).linear;
     placed.is_flat = true;

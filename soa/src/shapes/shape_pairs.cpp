@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "crowd/disc_strips.h"
+#include "motley/core/invalid_input.h"
 #include "queries/line_of_sight.h"
 #include "queries/radix_sort.h"
 #include "scene/wall_ends.h"
@@ -34,7 +36,7 @@ double distance(const Axis& a, const Axis& b)
 /// The skin of what goes so far within a step: enough for some steps.
 double skin_of(double goes)
 {
-    constexpr double least = 0.03, steps_ahead = 4;  // m; steps
+    constexpr double least = 0.06, steps_ahead = 4;  // m; steps
     return least + steps_ahead * goes;
 }
 
@@ -78,27 +80,42 @@ void ShapePairs::place(const SceneCore& scene, std::int64_t chunk)
     const auto first = static_cast<std::size_t>(chunk * capsules_a_chunk);
     const std::size_t last = std::min(count_, first + static_cast<std::size_t>(capsules_a_chunk));
     bool any_leaves = anchors_.size() < last;
+    double fastest = 0;
     for (std::size_t i = first; i < last; ++i) {
         placed_[i] = placed(scene, scene.shapes.capsules[i], dt_);
+        fastest = std::max(fastest, placed_[i].goes);
         any_leaves = any_leaves || leaves(placed_[i], anchors_[i]);
     }
     found_[static_cast<std::size_t>(chunk)].leaves = any_leaves;
+    found_[static_cast<std::size_t>(chunk)].fastest = fastest;
 }
 
 void ShapePairs::place_discs(const SceneCore& scene, std::int64_t chunk)
 {
     const BodyRows& planar = scene.bodies.rows(BodyKind::planar);
     bool any_leaves = std::min(disc_anchors_.size(), disc_slots_.size()) < disc_rows_;
+    double fastest = 0;
     for_each_row_of_chunk(chunk, static_cast<std::uint32_t>(disc_rows_), [&](std::uint32_t row) {
+        const double goes = dt_ * speed_of(&planar.velocity[std::size_t{4} * row]);
+        fastest = std::max(fastest, goes);
         if (any_leaves) return;
         const DiscAnchor& anchor = disc_anchors_[row];
         any_leaves = disc_slots_[row] != planar.slot[row];
         if (any_leaves || anchor.skin < 0) return;
-        const double goes = dt_ * speed_of(&planar.velocity[std::size_t{4} * row]);
         any_leaves =
             !(distance(in_plane(planar.pose[row].position), anchor.at) + goes + step_slack <= anchor.skin);
     });
     found_[static_cast<std::size_t>(chunk)].discs_leave = any_leaves;
+    found_[static_cast<std::size_t>(chunk)].fastest_disc = fastest;
+}
+
+void ShapePairs::find_fastest()
+{
+    fastest_ = walls_go_;
+    for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk)
+        fastest_ = std::max(fastest_, found_[static_cast<std::size_t>(chunk)].fastest);
+    for (std::int64_t chunk = 0; chunk < disc_chunk_count(); ++chunk)
+        fastest_ = std::max(fastest_, found_[static_cast<std::size_t>(chunk)].fastest_disc);
 }
 
 bool ShapePairs::are_current(const SceneCore& scene) const
@@ -112,6 +129,7 @@ bool ShapePairs::are_current(const SceneCore& scene) const
     for (std::int64_t chunk = 0; chunk < disc_chunk_count(); ++chunk) {
         if (found_[static_cast<std::size_t>(chunk)].discs_leave) return false;
     }
+    if (!wall_ends_.empty() && !(fastest_ <= blow_skin_)) return false;
     for (std::size_t end = 0; end < wall_ends_.size(); ++end) {
         if (!(distance(wall_ends_[end], wall_anchors_[end]) + walls_go_ + step_slack <= wall_skin_))
             return false;
@@ -151,6 +169,7 @@ void ShapePairs::choose_plane()
 void ShapePairs::begin(const SceneCore& scene)
 {
     shape_version_.reset();  // should memory run out on the way, the next step finds pairs again
+    found_in_all_.store(0, std::memory_order_relaxed);
     resize_with_room(anchors_, count_);
     resize_with_room(centres_, count_);
     for (std::size_t i = 0; i < count_; ++i) {
@@ -167,6 +186,7 @@ void ShapePairs::begin(const SceneCore& scene)
     resize_with_room(disc_slots_, disc_rows_);
     wall_anchors_ = wall_ends_;
     wall_skin_ = skin_of(walls_go_);
+    blow_skin_ = skin_of(fastest_);
     list_joined(scene);
 }
 
@@ -203,7 +223,7 @@ void ShapePairs::for_each_near(const Box& box, const Work& work) const
         return apart ? BoxShare::none : BoxShare::some;
     };
     tree_.visit(judge, [&](std::uint32_t first, std::uint32_t last, bool) {
-        for (std::uint32_t i = first; i < last; ++i) work(order_[i]);
+        for (std::uint32_t place = first; place < last; ++place) work(place);
         return true;
     });
 }
@@ -221,33 +241,56 @@ bool ShapePairs::may_meet(const SceneCore& scene, std::uint32_t a, std::uint32_t
     return do_meet(one.surface, other.surface);
 }
 
-void ShapePairs::find_capsules(const SceneCore& scene, std::uint32_t capsule, Found& found) const
+/// The pairs of capsules at places `first` to `last` - 1 of the order with those behind them. They are near each other, so
+/// that one visit to the tree serves all.
+void ShapePairs::find_capsules(const SceneCore& scene, std::size_t first, std::size_t last,
+                               Found& found) const
 {
-    const PlacedCapsule& own = placed_[capsule];
-    const double reach = own.radius + anchors_[capsule].skin;
-    for_each_near(box_of(capsule), [&](std::uint32_t other) {
-        if (other <= capsule) return;  // the other one finds it
-        if (!may_meet(scene, capsule, other)) return;
-        const PlacedCapsule& near = placed_[other];
-        const bool is_flat = own.is_flat || near.is_flat;
-        const double apart =
-            is_flat ? distance(flattened(own.axis), flattened(near.axis)) : distance(own.axis, near.axis);
-        if (apart > reach + near.radius + anchors_[other].skin) return;
-        if (!are_joined(scene.shapes.capsules[capsule].body, scene.shapes.capsules[other].body))
-            found.capsules.push_back({capsule, other});
+    Box box;
+    for (std::size_t i = first; i < last; ++i) box.include(box_of(order_[i]));
+    found.near.clear();
+    for_each_near(box, [&](std::uint32_t place) {
+        if (place > first) found.near.push_back(place);
     });
+    for (std::size_t i = first; i < last; ++i) {
+        const std::uint32_t capsule = order_[i];
+        const PlacedCapsule& own = placed_[capsule];
+        const double reach = own.radius + anchors_[capsule].skin;
+        for (const std::uint32_t place : found.near) {
+            if (place <= i) continue;  // the other one finds it
+            const std::uint32_t other = order_[place];
+            const PlacedCapsule& near = placed_[other];
+            const double within = reach + near.radius + anchors_[other].skin;
+            if (!may_be_within(own, near, within) || !may_meet(scene, capsule, other)) continue;
+            const bool is_flat = own.is_flat || near.is_flat;
+            const double apart =
+                is_flat ? distance(flattened(own.axis), flattened(near.axis)) : distance(own.axis, near.axis);
+            if (apart > within) continue;
+            if (!are_joined(scene.shapes.capsules[capsule].body, scene.shapes.capsules[other].body))
+                found.capsules.push_back({std::min(capsule, other), std::max(capsule, other)});
+        }
+    }
 }
 
-void ShapePairs::find_discs(const SceneCore& scene, std::int64_t chunk, Found& found) const
+bool ShapePairs::are_too_many(std::size_t before, const std::vector<ShapePair>& pairs)
 {
+    const auto more = static_cast<std::int64_t>(pairs.size() - before);
+    return found_in_all_.fetch_add(more, std::memory_order_relaxed) + more > most_pairs();
+}
+
+void ShapePairs::find_discs(const SceneCore& scene, std::int64_t chunk, Found& found)
+{
+    bool stops = false;
     for_each_row_of_chunk(chunk, static_cast<std::uint32_t>(disc_rows_), [&](std::uint32_t row) {
         const DiscAnchor& anchor = disc_anchors_[row];
-        if (anchor.skin < 0) return;
+        if (anchor.skin < 0 || stops) return;
+        const std::size_t before = found.discs.size();
         const std::uint32_t slot = disc_slots_[row];
         const DiscShape& disc = *scene.discs.shape_of(slot);
         const double reach = static_cast<double>(disc.radius) + anchor.skin;
         const Vec2<double> wide{reach, reach};
-        for_each_near({anchor.at - wide, anchor.at + wide, 0}, [&](std::uint32_t capsule) {
+        for_each_near({anchor.at - wide, anchor.at + wide, 0}, [&](std::uint32_t place) {
+            const std::uint32_t capsule = order_[place];
             const Capsule& other = scene.shapes.capsules[capsule];
             const Axis centre{{anchor.at.x, anchor.at.y, 0}, {}};
             if (distance(flattened(placed_[capsule].axis), centre) >
@@ -257,21 +300,23 @@ void ShapePairs::find_discs(const SceneCore& scene, std::int64_t chunk, Found& f
             if (are_joined(scene.bodies.id_of_slot(slot), other.body)) return;
             found.discs.push_back({capsule, slot});
         });
+        stops = are_too_many(before, found.discs);
     });
 }
 
 /// Walls are few; a chunk looks only at its own share of them.
-void ShapePairs::find_walls(const SceneCore& scene, std::int64_t chunk, Found& found) const
+void ShapePairs::find_walls(const SceneCore& scene, std::int64_t chunk, Found& found)
 {
     const auto chunks = static_cast<std::size_t>(chunk_count());
     for (auto i = static_cast<std::size_t>(chunk); i < scene.discs.segments.size(); i += chunks) {
         const WallSegment& segment = scene.discs.segments[i];
-        if (segment.is_one_way != 0) continue;
         const Vec2<double> from = wall_ends_[2 * i], to = wall_ends_[2 * i + 1];
         const Axis axis{{from.x, from.y, 0}, {to.x - from.x, to.y - from.y, 0}};
+        const double skin = wall_skin_ + blow_skin_;
         const LineOfSight line{from, to};
+        const std::size_t before = found.walls.size();
         const auto judge = [&](const Box& box, std::uint32_t) {
-            const Vec2<double> wide{wall_skin_, wall_skin_};
+            const Vec2<double> wide{skin, skin};
             return line.enters({box.low - wide, box.high + wide, 0}) < no_meeting ? BoxShare::some
                                                                                   : BoxShare::none;
         };
@@ -281,12 +326,13 @@ void ShapePairs::find_walls(const SceneCore& scene, std::int64_t chunk, Found& f
                 const PlacedCapsule& near = placed_[capsule];
                 const Capsule& own = scene.shapes.capsules[capsule];
                 if (!near.can_move || !do_meet(own.surface, segment)) continue;
-                if (distance(flattened(near.axis), axis) > near.radius + anchors_[capsule].skin + wall_skin_)
+                if (distance(flattened(near.axis), axis) > near.radius + anchors_[capsule].skin + skin)
                     continue;
                 found.walls.push_back({capsule, static_cast<std::uint32_t>(i)});
             }
             return true;
         });
+        if (are_too_many(before, found.walls)) return;
     }
 }
 
@@ -296,13 +342,18 @@ void ShapePairs::find(const SceneCore& scene, std::int64_t chunk)
     found.capsules.clear();
     found.walls.clear();
     found.discs.clear();
-    const auto first = static_cast<std::size_t>(chunk * capsules_a_chunk);
-    // In the order of the curve, so that neighbours are looked for one after another.
-    for (std::size_t i = first; i < std::min(count_, first + static_cast<std::size_t>(capsules_a_chunk)); ++i)
-        find_capsules(scene, order_[i], found);
+    const auto begin = static_cast<std::size_t>(chunk * capsules_a_chunk);
+    const std::size_t end = std::min(count_, begin + static_cast<std::size_t>(capsules_a_chunk));
+    constexpr std::size_t at_once = 8;
+    for (std::size_t first = begin; first < end; first += at_once) {
+        const std::size_t before = found.capsules.size();
+        find_capsules(scene, first, std::min(end, first + at_once), found);
+        if (are_too_many(before, found.capsules)) return;
+    }
     if (chunk < chunk_count()) find_walls(scene, chunk, found);
     if (chunk < disc_chunk_count()) find_discs(scene, chunk, found);
     for (std::vector<ShapePair>* pairs : {&found.capsules, &found.walls, &found.discs}) keep_room(*pairs);
+    keep_room(found.near);
 }
 
 void ShapePairs::sort(std::vector<ShapePair>& pairs)
@@ -313,6 +364,9 @@ void ShapePairs::sort(std::vector<ShapePair>& pairs)
 
 void ShapePairs::collect(SceneCore& scene)
 {
+    if (found_in_all_.load(std::memory_order_relaxed) > most_pairs())
+        refuse("pairs of " + std::to_string(count_) + " capsules that may touch",
+               "more than " + std::to_string(most_pairs()), "fewer: capsules that are not all in one place");
     capsules_.clear();
     walls_.clear();
     discs_.clear();

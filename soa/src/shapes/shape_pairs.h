@@ -5,12 +5,13 @@
 // on when pairs were found last nor on who found them, and a scene need not remember them.
 //
 // The calls of one stage for different chunks may run on different threads, after all calls of the stage before:
-//   1. place(chunk), place_discs(chunk), then are_current(); if not:
+//   1. place(chunk), place_discs(chunk), then find_fastest() and are_current(); if not:
 //   2. begin(), then anchor_discs(chunk)
 //   3. find(chunk), then collect()
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -39,11 +40,15 @@ class ShapePairs {
     void place(const SceneCore& scene, std::int64_t chunk);
     [[nodiscard]] std::int64_t disc_chunk_count() const;
     void place_discs(const SceneCore& scene, std::int64_t chunk);
+    /// What is placed goes at most so far within the step, m: a blow may make anybody that fast.
+    void find_fastest();
+    [[nodiscard]] double fastest() const { return fastest_; }
     [[nodiscard]] bool are_current(const SceneCore& scene) const;
     void begin(const SceneCore& scene);
     void anchor_discs(const SceneCore& scene, std::int64_t chunk);
     void find(const SceneCore& scene, std::int64_t chunk);
-    /// Puts what the chunks found in order.
+    /// Puts what the chunks found in order. Refuses far more pairs than shapes, as of a crowd on one spot, whose contacts
+    /// memory might not hold; find() has then stopped early.
     void collect(SceneCore& scene);
 
     /// Where capsules and wall ends are now.
@@ -69,7 +74,9 @@ class ShapePairs {
     /// What one chunk found.
     struct Found {
         std::vector<ShapePair> capsules, walls, discs;
+        std::vector<std::uint32_t> near;           ///< places in the order: space for find_capsules()
         bool leaves = false, discs_leave = false;  ///< whether a shape may leave its skin in this step
+        double fastest = 0, fastest_disc = 0;      ///< m: how far any of them goes
     };
     double dt_ = 0;
     std::size_t count_ = 0, disc_rows_ = 0;
@@ -79,7 +86,8 @@ class ShapePairs {
     std::vector<std::uint32_t> disc_slots_;  ///< by row: whose anchor it is
     std::vector<Vec2<double>> wall_ends_, wall_anchors_;
     double walls_go_ = 0, wall_skin_ = -1;
-    std::vector<std::uint64_t> joined_;  ///< pairs of bodies that joints connect, by slots, sorted
+    double fastest_ = 0, blow_skin_ = -1;  ///< m: fastest(), and how far a blow may throw what is near a wall
+    std::vector<std::uint64_t> joined_;    ///< pairs of bodies that joints connect, by slots, sorted
     std::shared_ptr<const char> shape_version_, joint_version_;
     /// The plane of the tree, by two of the coordinates: x and y where anything is met as seen from above, else those along
     /// which the capsules are spread furthest.
@@ -88,6 +96,7 @@ class ShapePairs {
     CurveOrder order_;
     BoxTree tree_;  ///< over capsules with their skins, in that order
     std::vector<Found> found_;
+    std::atomic<std::int64_t> found_in_all_{0};
     std::vector<ShapePair> capsules_, walls_, discs_, spare_;
 
     static bool leaves(const PlacedCapsule& placed, const Anchor& anchor);
@@ -97,15 +106,22 @@ class ShapePairs {
         return {dot(plane_[0], at), dot(plane_[1], at)};
     }
     [[nodiscard]] Box box_of(std::uint32_t capsule) const;
+    /// Calls work(place) for the places in the order of the capsules whose boxes may meet this one.
     template <class Work>
     void for_each_near(const Box& box, const Work& work) const;
     void list_joined(const SceneCore& scene);
     /// Whether two capsules meet each other, but for joints between their bodies.
     [[nodiscard]] bool may_meet(const SceneCore& scene, std::uint32_t a, std::uint32_t b) const;
     [[nodiscard]] bool are_joined(BodyId a, BodyId b) const;
-    void find_capsules(const SceneCore& scene, std::uint32_t capsule, Found& found) const;
-    void find_discs(const SceneCore& scene, std::int64_t chunk, Found& found) const;
-    void find_walls(const SceneCore& scene, std::int64_t chunk, Found& found) const;
+    void find_capsules(const SceneCore& scene, std::size_t first, std::size_t last, Found& found) const;
+    [[nodiscard]] std::int64_t most_pairs() const
+    {
+        return (std::int64_t{1} << 22) + 16 * static_cast<std::int64_t>(count_ + disc_rows_);
+    }
+    /// Counts what a chunk has found since it had `before` pairs. Returns whether there are too many in all.
+    bool are_too_many(std::size_t before, const std::vector<ShapePair>& pairs);
+    void find_discs(const SceneCore& scene, std::int64_t chunk, Found& found);
+    void find_walls(const SceneCore& scene, std::int64_t chunk, Found& found);
     void sort(std::vector<ShapePair>& pairs);
 };
 

@@ -40,13 +40,14 @@ struct WallDefinition {
     float friction = 0;  ///< as DiscDefinition::friction
     std::uint32_t category = 1;
     std::uint32_t mask = UINT32_MAX;
-    /// A turnstile: discs pass from the right of the wall to its left, seen from the first point towards the last, and
+    /// A turnstile: discs and capsules pass from the right of the wall to its left, seen from the first point towards the last, and
     /// are held there once they are past it.
     bool one_way = false;
     /// m/s, -1e6 to 1e6: the surface runs along the wall, from the first point towards the last, as that of a moving belt
-    /// does. It takes discs along by friction, so a wall without friction has none.
+    /// does. It takes discs and capsules along by friction, so a wall without friction has none.
     float surface_speed = 0;
-    /// N, above 0: the most with which the wall pushes a disc along the normal. Who pushes harder passes.
+    /// N, above 0: the most with which the wall pushes a disc or a capsule along the normal. Who pushes harder passes. The
+    /// points at which a capsule lies along a straight piece share it equally.
     float max_force = INFINITY;
 };
 

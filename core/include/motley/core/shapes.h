@@ -22,8 +22,8 @@ struct ShapeId {
 /// body may have any number of them.
 ///
 /// Capsules meet each other, half-spaces, walls and discs. A planar body reaches from the floor to the sky: what it meets,
-/// it meets as seen from above, and is pushed in the plane. So do walls, however they are tilted. Capsules take no notice
-/// of one-way walls, and of other walls not of WallDefinition::surface_speed and max_force.
+/// it meets as seen from above, and is pushed in the plane. So do walls, however they are tilted. One-way walls, belts and
+/// walls of bounded force are the same to a capsule as to a disc; the last two are not for Method::direct.
 ///
 /// Two capsules touch if each has a category bit that the other one's mask has, unless they are of one body, of bodies
 /// that a joint connects, or of one group. Contacts have the geometric mean of both coefficients of friction and the
