@@ -31,6 +31,7 @@ DialGrid grid_of(const Dials& dials)
     grid.relaxations = {s.relaxations};
     grid.hertz = {s.contact_hertz > 0 ? s.joint_hertz : 0};
     grid.exact = {s.exact_joints ? 1 : 0};
+    grid.exact_contacts = {s.exact_contacts ? 1 : 0};
     grid.threads = {1, 2};
     return grid;
 }

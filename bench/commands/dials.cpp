@@ -37,7 +37,11 @@ void expand_method(const DialGrid& grid, Method method, const SolverOptions& sol
                                 s.tolerance = tolerance;
                                 for (const int exact : soft ? grid.exact : std::vector<int>{0}) {
                                     s.exact_joints = exact != 0;
-                                    all.push_back({s, solver});
+                                    for (const int contacts :
+                                         soft&& relaxation > 0 ? grid.exact_contacts : std::vector<int>{0}) {
+                                        s.exact_contacts = contacts != 0;
+                                        all.push_back({s, solver});
+                                    }
                                 }
                             }
                         }
@@ -89,6 +93,7 @@ std::string label_of(const Dials& dials)
         label = fmt::format("direct {}, {}", s.substeps, name_of(s.drift_correction));
     }
     if (s.exact_joints) label += ", exact";
+    if (s.exact_contacts) label += ", exact contacts";
     if (!s.warm_start) label += ", cold";
     if (s.tolerance > 0) label += fmt::format(", tolerance {:g}", s.tolerance);
     if (dials.solver.threads != 1) label += fmt::format(", {} threads", dials.solver.threads);

@@ -87,6 +87,8 @@ struct SweepCommand {
         dial("--hertz", grid.hertz,
              "soft_step: stiffness of joints; contacts have half of it; 0: as by default");
         dial("--exact", grid.exact, "soft_step: joints solved all at once: 1, 0 or both: 0,1");
+        dial("--exact-contacts", grid.exact_contacts,
+             "soft_step: contacts of an island solved all at once: 1, 0 or both: 0,1");
         dial("--warm-start", grid.warm_starts, "1, 0 or both: 0,1");
         dial("--tolerance", grid.tolerances, "m/s at which an island's sweeps end; 0: never");
         dial("--threads", grid.threads, "threads");

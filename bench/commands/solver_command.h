@@ -58,6 +58,8 @@ struct SolverCommand {
                        "soft_step: stiffness of joints, as far as a substep can follow")
             ->capture_default_str();
         app.add_flag("--exact", settings.exact_joints, "soft_step: joints solved all at once");
+        app.add_flag("--exact-contacts", settings.exact_contacts,
+                     "contacts of an island solved all at once; not of discs");
         app.add_option("--isa", isa,
                        "scalar, sse2, avx2, avx512 or neon; default: MOTLEY_ISA, else the widest here");
         app.add_option("--threads", solver.threads, "threads, the caller's counted")

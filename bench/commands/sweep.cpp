@@ -106,6 +106,7 @@ class RigSubject {
         // Nets have more loops than exact_joints can close; four-bars, with four joints for three bodies, do not.
         const bool has_trees = !rig_.joints.empty() && 2 * rig_.joints.size() <= 3 * rig_.bodies.size();
         if (dials.settings.exact_joints && !has_trees) return {};
+        if (dials.settings.exact_contacts && !rig_.collides) return {};
         return [this, dials] {
             const auto engine = make_motley_engine(rig_, dials.settings, dials.solver);
             return run_rig(rig_, *engine, times_);
@@ -136,7 +137,8 @@ class CrowdSubject {
     }
     [[nodiscard]] std::function<Run()> candidate(const Dials& dials) const
     {
-        if (dials.settings.method == Method::direct || dials.settings.exact_joints) return {};
+        const SolverSettings& s = dials.settings;
+        if (s.method == Method::direct || s.exact_joints || s.exact_contacts) return {};
         return [this, dials] {
             RunOptions run;
             run.agents = options_.agents;

@@ -22,6 +22,7 @@ struct DialGrid {
     std::vector<DriftCorrection> drift_corrections{DriftCorrection::baumgarte, DriftCorrection::projection};
     std::vector<int> warm_starts{1};  ///< 0 or 1
     std::vector<int> exact{0, 1};     ///< SolverSettings::exact_joints, of soft_step and scenes of joints
+    std::vector<int> exact_contacts{0, 1};  ///< of soft_step with relaxation, and scenes of listed contacts
     std::vector<float> tolerances{0};
     std::vector<int> threads{1};
     std::vector<Isa> isas{};  ///< empty: the widest here

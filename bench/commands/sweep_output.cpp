@@ -28,19 +28,21 @@ const char* name_of(DriftCorrection drift)
 std::string csv_of(const SweepResult& result)
 {
     std::string text =
-        "scene,engine,label,method,substeps,iterations,relaxations,exact_joints,joint_hertz,drift_correction,"
+        "scene,engine,label,method,substeps,iterations,relaxations,exact_joints,exact_contacts,joint_hertz,"
+        "drift_correction,"
         "warm_start,tolerance,"
         "threads,isa,ms_per_step,error,worst,on_front,note\n";
     for (const SweepPoint& p : result.points) {
         text += fmt::format("{},{},\"{}\",", result.scene, p.engine, p.label);
         if (p.dials) {
             const SolverSettings& s = p.dials->settings;
-            text += fmt::format(
-                "{},{},{},{},{:d},{:g},{},{:d},{:g},{},{},", name_of(s.method), s.substeps, s.iterations,
-                s.relaxations, s.exact_joints, s.joint_hertz, name_of(s.drift_correction), s.warm_start,
-                s.tolerance, p.dials->solver.threads, isa_name(p.dials->solver.isa.value_or(default_isa())));
+            text +=
+                fmt::format("{},{},{},{},{:d},{:d},{:g},{},{:d},{:g},{},{},", name_of(s.method), s.substeps,
+                            s.iterations, s.relaxations, s.exact_joints, s.exact_contacts, s.joint_hertz,
+                            name_of(s.drift_correction), s.warm_start, s.tolerance, p.dials->solver.threads,
+                            isa_name(p.dials->solver.isa.value_or(default_isa())));
         } else {
-            text += ",,,,,,,,,,,";
+            text += ",,,,,,,,,,,,";
         }
         text += fmt::format("{:.6g},{:.6g},{:.6g},{:d},{}\n", p.seconds * 1e3, p.error, p.worst, p.on_front,
                             p.note);
@@ -72,6 +74,7 @@ std::string json_of(const SweepResult& result)
                               {"iterations", s.iterations},
                               {"relaxations", s.relaxations},
                               {"exact_joints", s.exact_joints},
+                              {"exact_contacts", s.exact_contacts},
                               {"joint_hertz", s.joint_hertz},
                               {"drift_correction", name_of(s.drift_correction)},
                               {"warm_start", s.warm_start},

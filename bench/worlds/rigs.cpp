@@ -9,6 +9,7 @@ namespace motley::bench {
 namespace {
 
 constexpr const char* apart = "joint separation, rms (m)";
+constexpr const char* moved = "movement from rest, rms (m)";
 constexpr const char* off = "distance from the true position, rms (m)";
 
 constexpr RigEntry entries[] = {
@@ -33,7 +34,10 @@ constexpr RigEntry entries[] = {
     {"double-pendulum", "pairs of rods on hinges, starting level, for two seconds", off, 1000, 0, 2, true,
      make_double_pendulum},
     {"four-bar", "parallelograms on four hinges: redundant loops", off, 999, 0, 10, true, make_four_bar},
-    {"pyramid", "a pyramid of boxes at rest", "movement from rest, rms (m)", 55, 0, 5, false, make_pyramid},
+    {"pyramid", "a pyramid of boxes at rest", moved, 55, 0, 5, false, make_pyramid},
+    {"tower", "boxes on each other, up to 1 mm aside", moved, 50, 0, 10, true, make_tower<1>},
+    {"tower-loaded", "the same under a box of 1,000 kg", moved, 10, 0, 10, true, make_tower<1000>},
+    {"bricks", "a wall of bricks without mortar", moved, 100, 0, 5, false, make_bricks},
 };
 
 }  // namespace

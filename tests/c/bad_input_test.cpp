@@ -378,7 +378,7 @@ TEST(CStructs, AnOlderHostsStructKeepsTheDefaultsOfWhatItDoesNotKnow)
 TEST(CStructs, HaveTheSizesThatHostsWereBuiltWith)
 {
     static_assert(sizeof(void*) == 8);
-    EXPECT_EQ(sizeof(motley_body_definition), 136U);
+    EXPECT_EQ(sizeof(motley_body_definition), 144U);
     EXPECT_EQ(sizeof(motley_body_change), 40U);
     EXPECT_EQ(sizeof(motley_body_state), 88U);
     EXPECT_EQ(sizeof(motley_disc_definition), 24U);
@@ -411,7 +411,7 @@ TEST(CStructs, HaveTheSizesThatHostsWereBuiltWith)
     EXPECT_EQ(sizeof(motley_contact_impulse), 16U);
     EXPECT_EQ(sizeof(motley_body_load), 24U);
     EXPECT_EQ(sizeof(motley_step_measures), 168U);
-    EXPECT_EQ(sizeof(motley_step_report), 1520U);
+    EXPECT_EQ(sizeof(motley_step_report), 1544U);
     EXPECT_EQ(sizeof(motley_near_person), 16U);
     EXPECT_EQ(sizeof(motley_wall_hit), 16U);
     EXPECT_EQ(sizeof(motley_contact_pair), 24U);

@@ -67,13 +67,14 @@ namespace {
 using testing::allocations;
 
 /// The number of allocations in 20 steps after 200 steps of warming up.
-long allocations_of_warm_steps(int threads, float tolerance = 0)
+long allocations_of_warm_steps(int threads, float tolerance = 0, bool exact_contacts = false)
 {
     testing::MixedScene mixed;
     SolverSettings settings;
     settings.gravity = {0, -9.81F, 0};
     settings.tolerance = tolerance;
     settings.measures = tolerance > 0;
+    settings.exact_contacts = exact_contacts;
     Solver solver(settings, {.threads = threads, .alone_below = 0});
     for (int step = 0; step < 200; ++step) solver.step(mixed.scene, 1.0F / 60, mixed.contacts());
     const std::vector<Contact> contacts = mixed.contacts();
@@ -291,6 +292,10 @@ TEST(Allocation, AWarmStepOnOneThreadAllocatesNothing)
 TEST(Allocation, AWarmStepOnTwoThreadsAllocatesNothing)
 {
     EXPECT_EQ(allocations_of_warm_steps(2), 0);
+}
+TEST(Allocation, AWarmStepWithExactContactsAllocatesNothing)
+{
+    EXPECT_EQ(allocations_of_warm_steps(2, 0, true), 0);
 }
 TEST(Allocation, ContactsThatComeAndGoAllocateNothing)
 {

@@ -41,11 +41,13 @@ std::vector<Way> ways()
     SolverSettings sleepy = soft;
     sleepy.sleep_speed = 0.2F;
     sleepy.sleep_after = 0;
+    SolverSettings contacts = soft;
+    contacts.exact_contacts = true;
     SolverSettings direct = soft;
     direct.method = Method::direct;
     direct.substeps = 1;
     return {{"soft", soft, 1},       {"soft", soft, 2},     {"exact", exact, 2},
-            {"careful", careful, 2}, {"sleepy", sleepy, 2}, {"direct", direct, 1}};
+            {"careful", careful, 2}, {"sleepy", sleepy, 2}, {"contacts", contacts, 2}, {"direct", direct, 1}};
 }
 
 /// The first contacts of a list. A step with few contacts comes first, so that everything grows in the next one.

@@ -31,8 +31,9 @@ std::vector<Way> ways()
 {
     SolverSettings soft;
     soft.gravity = {0, -9.81F, 0};
-    SolverSettings exact = soft, measured = soft, impulse = soft;
+    SolverSettings exact = soft, contacts = soft, measured = soft, impulse = soft;
     exact.exact_joints = true;
+    contacts.exact_contacts = true;
     measured.measures = true;
     impulse.method = Method::sequential_impulse;
     impulse.iterations = 4;
@@ -40,6 +41,7 @@ std::vector<Way> ways()
     projected.drift_correction = DriftCorrection::projection;
     return {{"soft_step", soft},
             {"exact joints", exact},
+            {"exact contacts", contacts},
             {"with measures", measured},
             {"Baumgarte", impulse},
             {"projection", projected}};

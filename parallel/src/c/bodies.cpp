@@ -23,7 +23,8 @@ struct Mirror<motley_body_definition, BodyDefinition> : Pair<motley_body_definit
     static constexpr auto fields =
         std::tuple(MOTLEY_FIELD(model), MOTLEY_FIELD(motion), MOTLEY_FIELD(position),
                    MOTLEY_FIELD(orientation), MOTLEY_FIELD(yaw), MOTLEY_FIELD(linear_velocity),
-                   MOTLEY_FIELD(angular_velocity), MOTLEY_FIELD(mass), MOTLEY_FIELD(inertia));
+                   MOTLEY_FIELD(angular_velocity), MOTLEY_FIELD(mass), MOTLEY_FIELD(inertia),
+                   MOTLEY_FIELD(linear_damping), MOTLEY_FIELD(angular_damping));
 };
 template <>
 struct Mirror<motley_body_change, BodyChange> : Pair<motley_body_change, BodyChange> {
@@ -155,6 +156,11 @@ motley_status motley_scene_set_mass(motley_scene* scene, motley_body_id body, fl
 {
     return call(__func__,
                 [&] { scene_of(scene).set_mass(as<BodyId>(body), mass, as<Sym3<float>>(inertia)); });
+}
+
+motley_status motley_scene_set_damping(motley_scene* scene, motley_body_id body, float linear, float angular)
+{
+    return call(__func__, [&] { scene_of(scene).set_damping(as<BodyId>(body), linear, angular); });
 }
 
 motley_status motley_scene_change_body(motley_scene* scene, motley_body_id body,

@@ -2,6 +2,7 @@
 // the Jacobian itself.
 #pragma once
 
+#include <cmath>
 #include <cstring>
 #include <type_traits>
 
@@ -20,8 +21,10 @@ struct ContactDirections {
     static constexpr int most = 3;
     ContactDirection of[most];  ///< the normal, and the tangents if there is friction
     int count = 1;
-    double separation = 0;  ///< m, when the step began
-    double friction = 0;    ///< coefficient
+    double separation = 0;             ///< m, when the step began
+    double friction = 0;               ///< coefficient
+    double surface_speed[2] = {0, 0};  ///< of a's surface along the tangents, m/s
+    double most_force = HUGE_VAL;      ///< N, along the normal
 };
 
 namespace detail {
@@ -79,6 +82,10 @@ ContactDirections directions_of(const float* stream)
         all.of[0] = {n, in_double(row.lever_a), in_double(row.lever_b)};
     } else {
         all.friction = static_cast<double>(row.friction);
+        constexpr bool planar = !requires
+        {
+            row.tangent;
+        };
         const Vec3<double> arm_a = in_double(row.arm_a), arm_b = in_double(row.arm_b);
         const auto along = [&](const Vec3<double>& d) {
             return ContactDirection{d, cross(arm_a, d), cross(arm_b, d)};
@@ -92,6 +99,12 @@ ContactDirections directions_of(const float* stream)
         } else {
             all.of[1] = along(in_double(Type::tangent_of(row.normal)));
             all.count = 2;
+        }
+        if constexpr (Type::has_restitution) {
+            all.most_force = static_cast<double>(row.most_force);
+            const Vec3<double> along_tangents = in_double(row.surface_speed);
+            all.surface_speed[0] = planar ? along_tangents.z : along_tangents.x;
+            all.surface_speed[1] = planar ? 0 : along_tangents.y;
         }
     }
     return all;

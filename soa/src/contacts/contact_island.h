@@ -1,24 +1,27 @@
-// All contacts of an island, solved at once: bodies that contacts connect, such as a tower or a queue.
+// All contacts of an island, solved at once. An island is what contacts connect, such as a tower or a queue.
 //
 // Sweeps hand an impulse on from body to body, and a queue of n people wants about n^2 of them. Here a guess is made of
 // which contacts push and which of them stick (the active set), these are solved as equations, and the guess is mended
-// until the impulses agree with it: a primal-dual active set method (M. Hintermueller, K. Ito, K. Kunisch 2002), begun
-// with the impulses of the last sweep, as subspace minimisation begins (M. Silcowitz, S. Niebe, K. Erleben 2010).
+// until the impulses agree with it: a primal-dual active set method (M. Hintermueller, K. Ito, K. Kunisch 2002) that
+// begins with the guess of the step before, as subspace minimisation begins with what sweeps found (M. Silcowitz,
+// S. Niebe, K. Erleben 2010). One guess is enough while contacts stay as they were.
 //
 //   minimise 1/2 dv^T M dv + sum over active rows of rho / (2 K) (J (v + dv) - aim)^2
-//   lambda += -rho / K (J (v + dv) - aim)
+//   lambda -= rho / K (J (v + dv) - aim)
 //
 // M: mass matrix; J: a row; K = J M^-1 J^T its response; aim: the speed that the row wants. Four contacts between two
-// faces are more than six equations, so J M^-1 J^T is singular; this form is not. rho = 1e8 leaves 1e-8 of a row's
-// error even where a tower of fifty boxes leans, whose softest mode responds 1e-6 as much as one contact does.
+// faces are more than six equations, so J M^-1 J^T is singular; this matrix is not. A solve leaves about 1 / (rho s) of
+// an error in a mode that responds s times as much as a single contact, and is repeated while that is worth while. A
+// tower of fifty boxes leans with s = 1e-6. Where rows contradict each other, an impulse grows by rho times what they
+// contradict each other by: a larger rho would make that of rounding.
 //
 // Unknowns are scaled: dv = W s with W W^T = M^-1, so that masses of any ratio are alike and a body that cannot turn
 // needs no special case. The matrix is I + sum rho / K j j^T, with j = W^T J^T, in blocks of two bodies; its factor is
 // as sparse as the contacts are (block_factor.h).
 //
-// Friction that slides is not an equation: it keeps its direction and follows the normal impulse. Between guesses one
-// sweep lets it turn. Coulomb's law has no energy to be minimised, so whether a guess is better is judged by the
-// residual: what one more sweep would change.
+// Friction that slides is no equation: it keeps its direction and follows the normal impulse. Between guesses one sweep
+// lets it turn. Coulomb's law minimises no energy, so whether a guess is better is judged by the residual: what one more
+// sweep would change.
 #pragma once
 
 #include <cstdint>
@@ -31,17 +34,12 @@
 
 namespace motley {
 
-/// Where a contact lies in its block, and which bodies of the island it touches; -1: a body that does not move.
+/// Where a contact lies in its block, how many rows it has, and which bodies of the island it touches; -1: a body that
+/// does not move.
 struct IslandContact {
     const SweepChunk* chunk;  ///< valid for the step
     std::int32_t rows, block, lane;
     std::int32_t a, b;
-};
-
-/// What a solve of islands achieved.
-struct IslandResult {
-    double residual = 0;  ///< m/s: the most that one more sweep would change the speed of a row
-    int factors = 0;      ///< matrices factored
 };
 
 /// `size`: degrees of freedom of a body, 3 for planar bodies or particles alone, else 6.
@@ -55,63 +53,84 @@ class ContactIsland {
     /// Reads the contacts' rows and impulses.
     void begin();
     /// Solves all rows for the present velocities and displacements of the bodies, and changes velocities and impulses.
-    /// With `relaxes` penetration asks for no speed.
-    IslandResult solve(const KernelContext& context, bool relaxes);
+    /// What sweeps have done to the impulses since the last solve is taken back. With `relaxes` penetration asks for no
+    /// speed. Returns the residual that is left, m/s.
+    double solve(const KernelContext& context, bool relaxes);
 
   private:
-    enum class State : std::uint8_t { apart, slides, sticks };
+    enum class State : std::uint8_t {
+        apart,
+        gives_way,  ///< pushes as hard as its surface may (contact_surface.h)
+        slides,     ///< pushes; friction is at its bound, or there is none
+        sticks
+    };
     struct Row {
-        double a[size], b[size];    ///< W^T J^T of each body
-        double response;            ///< K
-        double lambda, aim, start;  ///< start: J v before this solve
+        double a[size], b[size];  ///< W^T J^T of each body
+        double response;          ///< K
+        double lambda, aim;
+        double start;  ///< J v before this solve
     };
     struct Contact {
         std::int32_t a, b, first_row, rows;
         std::int32_t block;  ///< of the pair in the factor; -1 if one of them does not move
-        bool a_is_later;
+        bool a_is_later;     ///< in the order of elimination
         double friction;
+        double most;  ///< N s, of the normal impulse
     };
     struct Body {
         BodyRow row;
         double linear;      ///< square root of 1/m
         double angular[6];  ///< lower triangle of the root of I^-1: xx, yx, yy, zx, zy, zz
     };
+    struct Residual {
+        double energy = 0, speed = 0;  ///< J, and m/s
+    };
     std::vector<Body> bodies_;
     std::vector<IslandContact> places_;
     std::vector<Contact> contacts_;
-    std::vector<Row> rows_;
-    std::vector<double> s_, step_;  ///< `size` numbers a body: dv = W s; and the next change of s
     std::vector<ContactDirections> directions_;
-    std::vector<double> impulses_;  ///< as they were stored last
-    std::vector<double> kept_;      ///< before a step
-    std::vector<double> best_;      ///< of those that were tried
-    std::vector<double> change_;    ///< of impulses
-    std::vector<State> guess_, factored_;
+    std::vector<Row> rows_;
+    std::vector<double> impulses_;            ///< by row, as they were stored last
+    std::vector<double> speeds_;              ///< by row: J v
+    std::vector<double> predicted_, change_;  ///< by row: J v and the change of lambda by a step
+    std::vector<double> best_;                ///< by row: the best lambda that was tried
+    std::vector<double> s_, step_;            ///< `size` numbers a body: dv = W s; and the next change of s
+    std::vector<State> guess_, factored_;     ///< the present guess, and that of the matrix
     bool is_sparse_ = false;
     bool has_rows_ = false;
     bool has_guess_ = false;  ///< guess_ solved these contacts
     bool has_factor_ = false;
+    std::vector<BodyEdge> edges_;
     Elimination order_;
     BlockFactor<size> factor_;
-    std::vector<BodyEdge> edges_;
 
+    // contact_island_rows.cpp: from bodies and blocks, and back.
     bool load_bodies(const KernelContext& context);
     void load_rows();
     void load_speeds(const KernelContext& context, bool relaxes);
     void store(const KernelContext& context);
-    void sweep();
+
+    [[nodiscard]] Row* rows_of(const Contact& contact);
+    [[nodiscard]] const Row* rows_of(const Contact& contact) const;
+    [[nodiscard]] double along(const Contact& contact, const Row& row, const std::vector<double>& s) const;
     [[nodiscard]] double speed(const Contact& contact, const Row& row) const;
-    void push(const Contact& contact, const Row& row, double impulse);
+    void refresh_speeds();
+    /// Gives a row another impulse, and the bodies what follows.
+    void set(const Contact& contact, Row& row, double lambda);
+    void sweep();
+    [[nodiscard]] Residual residual() const;
     [[nodiscard]] State guess_of(const Contact& contact) const;
-    void factor(IslandResult& result);
+    template <class Visit>
+    void for_each_active(const Visit& visit);
+    void release();
+    void hold_in_cone(const Contact& contact);
+    void factor();
     void find_step();
     bool mend_guess();
-    void apply(double share);
-    struct Residual {
-        double energy = 0, speed = 0;  ///< J, and m/s
-    };
-    [[nodiscard]] Residual residual() const;
-    void improve(double tolerance, IslandResult& result);
+    void begin_to_slide(const Contact& contact);
+    [[nodiscard]] State mended(std::size_t contact) const;
+    void apply_step();
+    void improve(double tolerance);
 };
 
 }  // namespace motley

@@ -130,9 +130,9 @@ void ExactContacts::solve(const KernelContext& context, std::int64_t i, bool rel
 {
     Island& island = *islands_[static_cast<std::size_t>(i)];
     if (island.is_left_out) return;
-    const IslandResult result =
+    const double left =
         island.is_flat ? island.flat.solve(context, relaxes) : island.spatial.solve(context, relaxes);
-    island.residual = std::max(island.residual, result.residual);
+    island.residual = std::max(island.residual, left);
 }
 
 double ExactContacts::residual() const

@@ -45,6 +45,10 @@ typedef struct motley_body_definition {
     /// principal moments that obey the triangle inequality A + B >= C, and xx, yy and zz from 1e-20 to 1e20.
     /// planar: only zz is read, 1e-20 to 1e20. particle: not read. Default the identity.
     motley_sym3f inertia;
+    /// 1/s, 0 to 1e6; read of dynamic bodies only: the medium slows the body by the force -mass * linear_damping *
+    /// velocity and the torque -inertia * angular_damping * angular velocity. A particle has no angular damping. Default 0.
+    float linear_damping;
+    float angular_damping;
 } motley_body_definition;
 MOTLEY_DECLARE_DEFAULT(body_definition)
 
@@ -110,6 +114,8 @@ motley_status motley_scene_set_force(motley_scene* scene, motley_body_id body, m
 /// lays out all joints anew.
 motley_status motley_scene_set_mass(motley_scene* scene, motley_body_id body, float mass,
                                     motley_sym3f inertia);
+/// Changes the damping (1/s, each 0 to 1e6) of a dynamic body: see motley_body_definition.linear_damping.
+motley_status motley_scene_set_damping(motley_scene* scene, motley_body_id body, float linear, float angular);
 /// Gives a dynamic body another model in place. Its handle, user data, joints, mass, position and linear velocity stay,
 /// and its angular momentum as far as the new model has it. A planar body that becomes rigid is turned by its yaw about
 /// z; a rigid one that becomes planar gives up its tilt. Refuses static, kinematic and contained bodies, a body with a

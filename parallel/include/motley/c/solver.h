@@ -48,6 +48,9 @@ typedef struct motley_solver_settings {
     /// Solves locks between rigid bodies all at once, exactly at any mass ratio, where they connect the bodies as a tree
     /// with few loops. Costs about one to two sweeps more a substep. Default 0.
     motley_bool exact_joints;
+    /// Solves the contacts of an island all at once after each sweep, where the island is sparse, as towers, queues and
+    /// small heaps are; one substep is then enough. Default 0.
+    motley_bool exact_contacts;
     motley_bool warm_start;  ///< start from the accumulated impulses of the last substep; default 1
     /// m/s, 0 to 1e9; 0, which is the default: off. Above 0 the sweeps over an island end within a substep once none of its
     /// constraints would change a speed by more than this; `iterations` and `relaxations` are then upper bounds.
@@ -187,6 +190,9 @@ typedef struct motley_step_report {
     /// with exact_joints: locks that are swept nevertheless, beside light bodies
     int64_t exact_joints_refused;
     motley_body_id first_light_body;  ///< such a light body, if there is one
+    int64_t exact_contact_islands;    ///< with exact_contacts: islands that were solved at once
+    int64_t exact_contacts_refused;   ///< with exact_contacts: islands too dense for it, which were swept
+    double exact_contacts_residual;   ///< m/s: the most that one more sweep would have changed a speed by
     int32_t colours;                  ///< colours in use, the overflow not counted
     int64_t overflow;                 ///< constraints that got no colour and were solved one after another
     int64_t blocks;                   ///< blocks of 16 lanes
