@@ -5,7 +5,8 @@
 namespace motley::bench {
 namespace {
 
-constexpr double margin = 0.02;  ///< m: a pair with a gap up to this becomes a contact
+constexpr double margin = 0.02;     ///< m: a pair with a gap up to this becomes a contact
+constexpr double overhang = 0.005;  ///< m: a corner so little beside a face touches the face's edge
 constexpr float friction = 0.6F;
 
 double part(const Vec3<double>& v, int axis)
@@ -67,10 +68,15 @@ void BoxContacts::corners_in_face(int box, int other, std::uint64_t key)
         if (separation > margin || separation < -0.25) continue;
         const Vec3<double> at = local(world);
         bool inside = true;
-        for (int k = 0; k < 3; ++k)
-            inside = inside && (k == axis || std::abs(part(at, k)) <= part(h, k) + 1e-4);
+        Vec3<double> point = world;
+        for (int k = 0; k < 3; ++k) {
+            const double beside = std::abs(part(at, k)) - part(h, k);
+            if (k == axis || beside <= 0) continue;
+            inside = inside && beside <= overhang;
+            point = point - (part(at, k) > 0 ? beside : -beside) * face.axes[k];
+        }
         if (inside)
-            add(bodies_[j], bodies_[i], face.centre, mine.centre, world, convert<float>(out), separation,
+            add(bodies_[j], bodies_[i], face.centre, mine.centre, point, convert<float>(out), separation,
                 key * 8 + static_cast<std::uint64_t>(corner));
     }
 }

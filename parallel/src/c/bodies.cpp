@@ -20,11 +20,10 @@ static_assert(static_cast<int>(BodyMotion::static_body) == MOTLEY_STATIC_BODY);
 template <>
 struct Mirror<motley_body_definition, BodyDefinition> : Pair<motley_body_definition, BodyDefinition> {
     static constexpr const char* name = "motley_body_definition";
-    static constexpr auto fields =
-        std::tuple(MOTLEY_FIELD(model), MOTLEY_FIELD(motion), MOTLEY_FIELD(position),
-                   MOTLEY_FIELD(orientation), MOTLEY_FIELD(yaw), MOTLEY_FIELD(linear_velocity),
-                   MOTLEY_FIELD(angular_velocity), MOTLEY_FIELD(mass), MOTLEY_FIELD(inertia),
-                   MOTLEY_FIELD(linear_damping), MOTLEY_FIELD(angular_damping));
+    static constexpr auto fields = std::tuple(
+        MOTLEY_FIELD(model), MOTLEY_FIELD(motion), MOTLEY_FIELD(position), MOTLEY_FIELD(orientation),
+        MOTLEY_FIELD(yaw), MOTLEY_FIELD(linear_velocity), MOTLEY_FIELD(angular_velocity), MOTLEY_FIELD(mass),
+        MOTLEY_FIELD(inertia), MOTLEY_FIELD(linear_damping), MOTLEY_FIELD(angular_damping));
 };
 template <>
 struct Mirror<motley_body_change, BodyChange> : Pair<motley_body_change, BodyChange> {

@@ -37,12 +37,13 @@ struct Mirror<motley_solver_settings, SolverSettings> : Pair<motley_solver_setti
     static constexpr const char* name = "motley_solver_settings";
     static constexpr auto fields = std::tuple(
         MOTLEY_FIELD(method), MOTLEY_FIELD(substeps), MOTLEY_FIELD(iterations), MOTLEY_FIELD(relaxations),
-        MOTLEY_FIELD(exact_joints), MOTLEY_FIELD(exact_contacts), MOTLEY_FIELD(warm_start), MOTLEY_FIELD(tolerance),
-        MOTLEY_FIELD(budget_ms), MOTLEY_FIELD(measures), MOTLEY_FIELD(bad_contacts), MOTLEY_FIELD(gravity),
-        MOTLEY_FIELD(contact_hertz), MOTLEY_FIELD(contact_damping_ratio), MOTLEY_FIELD(push_out_speed),
-        MOTLEY_FIELD(joint_hertz), MOTLEY_FIELD(joint_damping_ratio), MOTLEY_FIELD(restitution_threshold),
-        MOTLEY_FIELD(drift_correction), MOTLEY_FIELD(baumgarte), MOTLEY_FIELD(projections),
-        MOTLEY_FIELD(penetration_slop), MOTLEY_FIELD(sleep_speed), MOTLEY_FIELD(sleep_after));
+        MOTLEY_FIELD(exact_joints), MOTLEY_FIELD(exact_contacts), MOTLEY_FIELD(warm_start),
+        MOTLEY_FIELD(tolerance), MOTLEY_FIELD(budget_ms), MOTLEY_FIELD(measures), MOTLEY_FIELD(bad_contacts),
+        MOTLEY_FIELD(gravity), MOTLEY_FIELD(contact_hertz), MOTLEY_FIELD(contact_damping_ratio),
+        MOTLEY_FIELD(push_out_speed), MOTLEY_FIELD(joint_hertz), MOTLEY_FIELD(joint_damping_ratio),
+        MOTLEY_FIELD(restitution_threshold), MOTLEY_FIELD(drift_correction), MOTLEY_FIELD(baumgarte),
+        MOTLEY_FIELD(projections), MOTLEY_FIELD(penetration_slop), MOTLEY_FIELD(sleep_speed),
+        MOTLEY_FIELD(sleep_after));
 };
 template <>
 struct Mirror<motley_contact, Contact> : Pair<motley_contact, Contact> {
@@ -76,12 +77,12 @@ struct Mirror<motley_step_report, StepReport> : Pair<motley_step_report, StepRep
         MOTLEY_FIELD(shape_contacts), MOTLEY_FIELD(contacts_skipped), MOTLEY_FIELD(joints),
         MOTLEY_FIELD(joints_in_lockstep), MOTLEY_FIELD(exact_joints_refused), MOTLEY_FIELD(first_light_body),
         MOTLEY_FIELD(exact_contact_islands), MOTLEY_FIELD(exact_contacts_refused),
-        MOTLEY_FIELD(exact_contacts_residual), MOTLEY_FIELD(colours), MOTLEY_FIELD(overflow), MOTLEY_FIELD(blocks), MOTLEY_FIELD(lane_occupancy),
-        MOTLEY_FIELD(bytes_per_constraint), MOTLEY_FIELD(sweeps), MOTLEY_FIELD(substeps),
-        MOTLEY_FIELD(iterations), MOTLEY_FIELD(over_budget), MOTLEY_FIELD(islands),
-        MOTLEY_FIELD(islands_above_tolerance), MOTLEY_FIELD(measures), MOTLEY_FIELD(direct_violation),
-        MOTLEY_FIELD(direct_unsolved), MOTLEY_FIELD(bodies_asleep), MOTLEY_FIELD(bodies_contained),
-        MOTLEY_FIELD(first_contained), MOTLEY_FIELD(seconds));
+        MOTLEY_FIELD(exact_contacts_residual), MOTLEY_FIELD(colours), MOTLEY_FIELD(overflow),
+        MOTLEY_FIELD(blocks), MOTLEY_FIELD(lane_occupancy), MOTLEY_FIELD(bytes_per_constraint),
+        MOTLEY_FIELD(sweeps), MOTLEY_FIELD(substeps), MOTLEY_FIELD(iterations), MOTLEY_FIELD(over_budget),
+        MOTLEY_FIELD(islands), MOTLEY_FIELD(islands_above_tolerance), MOTLEY_FIELD(measures),
+        MOTLEY_FIELD(direct_violation), MOTLEY_FIELD(direct_unsolved), MOTLEY_FIELD(bodies_asleep),
+        MOTLEY_FIELD(bodies_contained), MOTLEY_FIELD(first_contained), MOTLEY_FIELD(seconds));
 };
 
 }  // namespace motley::c
