@@ -18,7 +18,7 @@ constexpr std::array<double, extreme_way_count> all(double bound)
     return {bound, bound, bound, bound, bound};
 }
 
-// The bounds are in this order: soft_step, exact_joints, baumgarte, projection, direct.
+// The bounds are in this order: soft_step, exact, baumgarte, projection, direct.
 constexpr ExtremeCase cases[] = {
     {"tip of 1e-6 kg",
      "hanging, pushed at 3 m/s: whips, and holds",
@@ -107,12 +107,12 @@ constexpr ExtremeCase cases[] = {
     {"1 t on a ball of 1 kg",
      "10 s: sinks, in radii; soft: by 2 F / (m w^2) of each contact",
      "r",
-     {1.4, 1.4, no_claim, no_claim, 1e-2},
+     {1.4, 1e-2, no_claim, no_claim, 1e-2},
      heavy_on_light<3>},
     {"1e6 kg on a ball of 1 kg",
      "likewise",
      "r",
-     {no_claim, no_claim, no_claim, no_claim, 1e-2},
+     {no_claim, 1e-2, no_claim, no_claim, 1e-2},
      heavy_on_light<6>},
     {"every contact twice, a micrometre apart", "a cube rests on them, and does not start to spin", "rad/s",
      all(1e-3), twin_points},
@@ -125,7 +125,7 @@ constexpr ExtremeCase cases[] = {
     {"tower of 200 balls",
      "5 s: the top sinks, in radii",
      "r",
-     {no_claim, no_claim, no_claim, no_claim, 0.1},
+     {no_claim, 0.1, no_claim, no_claim, 0.1},
      tower},
     {"10,000 bounces with restitution 1", "energy at each top stays (1,000 bounces of direct)", "%", all(1.0),
      bounces},
@@ -147,14 +147,14 @@ constexpr ExtremeCase cases[] = {
 
 const char* name_of(ExtremeWay way)
 {
-    static constexpr const char* names[] = {"soft_step", "exact joints", "Baumgarte", "projection", "direct"};
+    static constexpr const char* names[] = {"soft_step", "exact", "Baumgarte", "projection", "direct"};
     return names[static_cast<int>(way)];
 }
 
 SolverSettings settings_of(ExtremeWay way)
 {
     SolverSettings settings;
-    settings.exact_joints = way == ExtremeWay::exact_joints;
+    settings.exact_joints = settings.exact_contacts = way == ExtremeWay::exact;
     if (way == ExtremeWay::direct) {
         settings.method = Method::direct;
         settings.drift_correction = DriftCorrection::projection;

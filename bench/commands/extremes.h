@@ -12,7 +12,13 @@
 namespace motley::bench {
 
 /// The ways to solve that each case is run under.
-enum class ExtremeWay { soft_step, exact_joints, baumgarte, projection, direct };
+enum class ExtremeWay {
+    soft_step,
+    exact,  ///< soft_step with exact joints and contacts
+    baumgarte,
+    projection,
+    direct
+};
 inline constexpr int extreme_way_count = 5;
 const char* name_of(ExtremeWay way);
 /// The default settings of a way, without gravity.

@@ -34,7 +34,7 @@ TEST_P(Extremes, HaveTheSameFiguresOnEveryInstructionSet)
     for (const std::string_view longest : {"an hour without weight", "10,000 bounces with restitution 1"}) {
         if (extreme().name == longest) GTEST_SKIP() << "the same step hundreds of thousands of times";
     }
-    for (const ExtremeWay way : {ExtremeWay::soft_step, ExtremeWay::exact_joints, ExtremeWay::projection}) {
+    for (const ExtremeWay way : {ExtremeWay::soft_step, ExtremeWay::exact, ExtremeWay::projection}) {
         const double scalar = extreme().figure({way, {.isa = Isa::scalar}});
         for (const Isa isa : available_isas())
             EXPECT_EQ(extreme().figure({way, {.isa = isa}}), scalar)
