@@ -263,17 +263,23 @@ TEST(Figures, CopiesWithGearsKeepTheBitsOfOrdinarySweeps)
 /// limits and is driven.
 std::vector<SixDofDefinition> arm_joints(std::span<const BodyId> bodies)
 {
-    SixDofDefinition hang{bodies[0], bodies[1]};
+    SixDofDefinition hang;
+    hang.body_a = bodies[0];
+    hang.body_b = bodies[1];
     hang.frame_b.position = {0, 0.5F, 0};
     hang.rotation[1] = AxisSetup::limited(-0.4F, 0.3F);
-    SixDofDefinition shoulder{bodies[1], bodies[2]};
+    SixDofDefinition shoulder;
+    shoulder.body_a = bodies[1];
+    shoulder.body_b = bodies[2];
     shoulder.frame_a.position = {0.35F, 0, 0};
     shoulder.frame_b.position = {-0.35F, 0, 0};
     shoulder.rotations = SixDofRotation::euler;
     shoulder.rotation[0] = AxisSetup::limited(-0.5F, 0.5F);
     shoulder.rotation[1] = AxisSetup::free();
     shoulder.rotation[2] = AxisSetup::limited(-0.2F, 1);
-    SixDofDefinition elbow{bodies[2], bodies[3]};
+    SixDofDefinition elbow;
+    elbow.body_a = bodies[2];
+    elbow.body_b = bodies[3];
     elbow.frame_a.position = {0.3F, 0, 0};
     elbow.frame_b.position = {-0.3F, 0, 0};
     elbow.position[0] = AxisSetup::limited(0, 0.1F);
@@ -342,7 +348,9 @@ TEST(Figures, ARefusedJointOfSixDegreesOfFreedomLeavesTheFigureAsItWas)
 {
     Figure figure = armed();
     const std::size_t joints = figure.joint_count();
-    SixDofDefinition bad{figure.add_body(box({}, 1)), figure.add_body(box({1, 0, 0}, 1))};
+    SixDofDefinition bad;
+    bad.body_a = figure.add_body(box({}, 1));
+    bad.body_b = figure.add_body(box({1, 0, 0}, 1));
     bad.rotation[0].lower = -1;  // locks are added first, and this is refused after them
     bad.rotation[0].upper = std::nanf("");
     EXPECT_THROW(figure.add_six_dof(bad), InvalidInput);
