@@ -13,6 +13,9 @@ constexpr double rho = 1e5;
 constexpr double rounding_speed = 1e-6;
 /// The residual that is good enough, m/s for each m/s of the contacts, which are taken to be 1 m/s fast at least.
 constexpr double good_enough = 5e-6;
+/// Residuals below so many times that are swept first, and how often.
+constexpr double nearly = 4;
+constexpr int most_sweeps = 2;
 /// Solves with one matrix, guesses between two sweeps, and sweeps.
 constexpr int most_repeats = 8, most_guesses = 4, most_rounds = 6;
 
@@ -335,10 +338,10 @@ void ContactIsland<size>::apply_step()
         Friction pull{rows[1].lambda + change_[first + 1],
                       contact.rows > 2 ? rows[2].lambda + change_[first + 2] : 0};
         const double bound = contact.friction * normal;
-        constexpr double nearly = 0.999;  // of the bound: it slid before
+        constexpr double at_bound = 0.999;  // it slid before
         const bool slides = guess_[i] == State::slides && before > 0;
-        pull = slides && pull.length() > nearly * contact.friction * before ? pull.scaled_to(bound)
-                                                                            : pull.within(bound);
+        pull = slides && pull.length() > at_bound * contact.friction * before ? pull.scaled_to(bound)
+                                                                              : pull.within(bound);
         set(contact, rows[1], pull.x);
         if (contact.rows > 2) set(contact, rows[2], pull.y);
     }
@@ -397,11 +400,16 @@ double ContactIsland<size>::solve(const KernelContext& context, bool relaxes)
     const double tolerance = good_enough * scale;
     refresh_speeds();
     double left = residual().speed;
+    const auto sweep_once = [&] {
+        sweep();
+        refresh_speeds();
+        left = residual().speed;
+    };
+    // What is nearly solved needs no matrix.
+    for (int sweeps = 0; sweeps < most_sweeps && left > tolerance && left < nearly * tolerance; ++sweeps)
+        sweep_once();
     for (int round = 0; round < most_rounds && left > tolerance; ++round) {
-        if (round > 0) {
-            sweep();
-            refresh_speeds();
-        }
+        if (round > 0) sweep_once();
         improve(tolerance);
         refresh_speeds();
         left = residual().speed;

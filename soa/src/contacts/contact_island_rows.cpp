@@ -31,33 +31,27 @@ Vec3<double> vector_at(const float* quad)
 {
     return {static_cast<double>(quad[0]), static_cast<double>(quad[1]), static_cast<double>(quad[2])};
 }
-/// The velocity of a body.
+/// The quads of a body as a motion.
+Motion motion_of(BodyKind kind, const float* quads)
+{
+    if (kind == BodyKind::particle) return {vector_at(quads), {0, 0, 0}};
+    if (kind == BodyKind::planar) {
+        return {{static_cast<double>(quads[0]), static_cast<double>(quads[1]), 0},
+                {0, 0, static_cast<double>(quads[2])}};
+    }
+    return {vector_at(quads), vector_at(quads + 4)};
+}
 Motion velocity_of(const KernelContext& context, BodyRow body)
 {
-    const float* v = quad_of(context.bodies[static_cast<int>(body.kind())].velocity, body);
-    switch (body.kind()) {
-        case BodyKind::particle:
-            return {vector_at(v), {0, 0, 0}};
-        case BodyKind::planar:
-            return {{static_cast<double>(v[0]), static_cast<double>(v[1]), 0},
-                    {0, 0, static_cast<double>(v[2])}};
-        default:
-            return {vector_at(v), vector_at(v + 4)};
-    }
+    return motion_of(body.kind(), quad_of(context.bodies[static_cast<int>(body.kind())].velocity, body));
 }
 /// How a body has moved since the step began, to first order in its rotation.
 Motion displacement_of(const KernelContext& context, BodyRow body)
 {
-    const float* d = quad_of(context.bodies[static_cast<int>(body.kind())].delta, body);
-    switch (body.kind()) {
-        case BodyKind::particle:
-            return {vector_at(d), {0, 0, 0}};
-        case BodyKind::planar:
-            return {{static_cast<double>(d[0]), static_cast<double>(d[1]), 0},
-                    {0, 0, static_cast<double>(d[2])}};
-        default:
-            return {vector_at(d), 2.0 * vector_at(d + 4)};
-    }
+    Motion moved = motion_of(body.kind(), quad_of(context.bodies[static_cast<int>(body.kind())].delta, body));
+    // The rotation of a body in space is a quaternion.
+    if (quads_of(body.kind()) == 2) moved.angular = 2.0 * moved.angular;
+    return moved;
 }
 ContactDirections directions_of(const IslandContact& place)
 {
