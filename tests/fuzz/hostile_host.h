@@ -254,6 +254,7 @@ class HostileHost {
         const std::uint8_t sleep = byte();
         if (sleep & 1) settings.sleep_speed = number();
         if (sleep & 2) settings.sleep_after = number();
+        settings.exact_contacts = sleep & 4;
         solver_.set_settings(settings);
     }
 
