@@ -59,7 +59,7 @@ struct SolverCommand {
             ->capture_default_str();
         app.add_flag("--exact", settings.exact_joints, "soft_step: joints solved all at once");
         app.add_flag("--exact-contacts", settings.exact_contacts,
-                     "contacts of an island solved all at once; not of discs");
+                     "contacts of an island solved all at once, where it is sparse");
         app.add_option("--isa", isa,
                        "scalar, sse2, avx2, avx512 or neon; default: MOTLEY_ISA, else the widest here");
         app.add_option("--threads", solver.threads, "threads, the caller's counted")

@@ -195,9 +195,9 @@ float PlanRunner::exact_rate(ConstraintKernels::Sweep ConstraintKernels::*kernel
     return kernel == &ConstraintKernels::solve ? layout_.context.step.exact_rate : 0;
 }
 
-void PlanRunner::find_contact_islands(const SceneCore& scene)
+void PlanRunner::find_contact_islands(const SceneCore& scene, float dt)
 {
-    exact_contacts_.find_islands(scene.bodies, layout_.sweeps());
+    exact_contacts_.find_islands(scene.bodies, layout_.sweeps(), layout_.discs(), dt);
 }
 
 void PlanRunner::begin_exact_contacts(const Step& step)

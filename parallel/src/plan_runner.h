@@ -32,7 +32,7 @@ class PlanRunner {
         StepReport& report;
     };
     /// With SolverSettings::exact_contacts: finds the islands of contacts, and makes space to solve them.
-    void find_contact_islands(const SceneCore& scene);
+    void find_contact_islands(const SceneCore& scene, float dt);
     /// Runs the stages of `plan`. Figures that touch no other moving body run `figure_plan`, in which no stages are fused.
     void run(const Plan& plan, const Plan& figure_plan, const Step& step, StepClock& clock);
 

@@ -239,6 +239,7 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> ho
         discs.find(scene, dt);
         discs.divide(scene);
         layout.list_discs(scene);
+        if (settings.exact_contacts) plan_runner.find_contact_islands(scene, dt);
         layout.point_at(scene, step_constants(settings, dt, scene.last_substep));
         plan_step(scene);
         clock.leave();
@@ -305,9 +306,7 @@ void Solver::Impl::lay_out(SceneCore& scene, std::span<const Contact> contacts, 
                                     {.figures = use_of_figures(scene),
                                      .tells_apart = tells_blocks_apart(scene),
                                      .adds_up = settings.substeps > 1});
-    if (!report.error.empty()) return;
-    sweeper.make_room();
-    if (settings.exact_contacts) plan_runner.find_contact_islands(scene);
+    if (report.error.empty()) sweeper.make_room();
 }
 
 /// Plans what this step does, in which order, and what of it is fused.

@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "disc_crowd.h"
 #include "rig.h"
 
 namespace motley {
@@ -242,6 +243,47 @@ TEST(ExactContacts, ALeaningRowBearsWhatIsBehind)
     }
 }
 
+/// The same of discs, whose contacts the library finds, and with friction.
+TEST(ExactContacts, ALeaningRowOfDiscsBearsWhatIsBehind)
+{
+    constexpr double force = 50;
+    constexpr int count = 100;
+    for (const float friction : {0.0F, 0.3F}) {
+        Scene scene;
+        std::vector<BodyId> people;
+        std::vector<DiscDefinition> discs;
+        for (int i = 0; i < count; ++i) {
+            BodyDefinition person;
+            person.model = BodyModel::planar;
+            person.position = {0.2 + 0.4 * i, 0, 0};
+            person.mass = 80;
+            people.push_back(scene.add_body(person));
+            discs.push_back({.radius = 0.2F, .friction = friction});
+        }
+        scene.set_discs(people, StridedSpan<const DiscDefinition>(discs));
+        const Vec2<double> ends[] = {{0, -5}, {0, 5}};
+        scene.add_wall({.points = ends});
+        Solver solver(exact({0, 0, 0}));
+        double worst = 0;
+        for (int step = 0; step < 120; ++step) {
+            for (const BodyId body : people)
+                scene.set_force(body, {-static_cast<float>(force), 0, 0}, {0, 0, 0});
+            const StepReport report = solver.step(scene, dt);
+            ASSERT_EQ(report.status, StepStatus::done) << report.error;
+            EXPECT_EQ(report.exact_contact_islands, 1);
+            if (step < 30) continue;
+            std::vector<BodyLoad> loads(people.size());
+            scene.read_loads(people, {}, StridedSpan<BodyLoad>(loads));
+            for (int k = 0; k < count; ++k) {
+                // Each is pushed from behind and by what is in front.
+                const double borne = static_cast<double>(loads[static_cast<std::size_t>(k)].normal_force);
+                worst = std::max(worst, std::abs(borne - (2 * (count - k) - 1) * force) / (count * force));
+            }
+        }
+        EXPECT_LT(worst, 1e-2) << "friction " << friction;
+    }
+}
+
 /// A stack on a slope of 30 degrees: tan 30 is 0.577.
 TEST(ExactContacts, AStackHoldsOnASlopeUpToTheAngleOfFriction)
 {
@@ -432,6 +474,39 @@ TEST(ExactContacts, HaveEqualBitsOnEveryInstructionSetAndNumberOfThreads)
                     << isa_name(isa) << ", " << threads << " threads";
             }
         }
+    }
+}
+
+TEST(ExactContacts, OfDiscsHaveEqualBitsAndKeepMomentum)
+{
+    const auto run = [](const SolverOptions& options, Vec3<double>& gained) {
+        testing::DiscCrowd crowd(
+            {.people = 200, .friction = 0.4F, .speed = 1, .spacing = 0.41, .walls = false});
+        const auto momentum = [&] {
+            const SceneErrors errors = crowd.scene.errors();
+            return Vec3<double>{errors.momentum[0], errors.momentum[1], errors.momentum[2]};
+        };
+        gained = -1.0 * momentum();
+        Solver solver(exact({0, 0, 0}), options);
+        std::vector<std::uint64_t> all;
+        bool any = false;
+        for (int step = 0; step < 30; ++step) {
+            const StepReport report = solver.step(crowd.scene, dt);
+            EXPECT_EQ(report.status, StepStatus::done) << report.error;
+            any = any || report.exact_contact_islands > 0;
+            all.push_back(crowd.scene.state_hash());
+        }
+        EXPECT_TRUE(any);
+        gained = gained + momentum();
+        return all;
+    };
+    Vec3<double> gained;
+    const auto scalar = run({.isa = Isa::scalar}, gained);
+    EXPECT_LT(length(gained), 0.02);  // of 200 people of 60 to 100 kg at 1 m/s, N s: rounding
+    for (const Isa isa : available_isas()) {
+        for (const int threads : {1, 3})
+            EXPECT_EQ(run({.threads = threads, .alone_below = 0, .isa = isa}, gained), scalar)
+                << isa_name(isa) << ", " << threads << " threads";
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "constraints/contact.h"
 #include "kernels/kernel_table.h"
+#include "maths/disc_contact.h"
 
 namespace motley {
 
@@ -110,6 +111,36 @@ ContactDirections directions_of(const float* stream)
     return all;
 }
 
+/// The same of discs, whose normals pass through their centres; a wall's body turns about its own.
+template <bool is_rough, BodyKind a>
+ContactDirections directions_of_discs(const float* stream)
+{
+    const auto whole =
+        row_of_lane<typename DiscContactKind<is_rough>::template Row<float, a, BodyKind::planar>>(stream);
+    const auto& row = whole.in_sweep;
+    ContactDirections all;
+    all.separation = static_cast<double>(whole.start_separation);
+    const Vec3<double> n = in_double(row.normal), t{-n.y, n.x, 0};
+    constexpr bool on_wall = a == BodyKind::fixed;
+    Vec3<double> arm_a{0, 0, 0};
+    if constexpr (on_wall) {
+        arm_a = in_double(row.arm_a);
+        all.most_force = static_cast<double>(row.most_force);
+    }
+    all.of[0] = {n, cross(arm_a, n), {0, 0, 0}};
+    if constexpr (is_rough) {
+        if constexpr (on_wall) {
+            all.surface_speed[0] = static_cast<double>(row.surface_speed);
+        } else {
+            arm_a = static_cast<double>(row.arm_a) * n;
+        }
+        all.friction = static_cast<double>(row.friction);
+        all.of[1] = {t, cross(arm_a, t), {0, 0, -static_cast<double>(row.arm_b)}};
+        all.count = 2;
+    }
+    return all;
+}
+
 using ReadDirections = ContactDirections (*)(const float* stream);
 
 template <class Type, BodyKind a>
@@ -149,8 +180,21 @@ ReadDirections reader_of(BodyKind a, BodyKind b)
 
 }  // namespace detail
 
+using detail::ReadDirections;
+
+/// What reads the rows of contacts of discs: with friction or not, with each other or a wall.
+inline ReadDirections reader_of_discs(bool rough, bool wall)
+{
+    if (wall) {
+        return rough ? detail::directions_of_discs<true, BodyKind::fixed>
+                     : detail::directions_of_discs<false, BodyKind::fixed>;
+    }
+    return rough ? detail::directions_of_discs<true, BodyKind::planar>
+                 : detail::directions_of_discs<false, BodyKind::planar>;
+}
+
 /// What reads the rows of a contact type and pair of bodies.
-inline detail::ReadDirections reader_of_contacts(int type, BodyKind a, BodyKind b)
+inline ReadDirections reader_of_contacts(int type, BodyKind a, BodyKind b)
 {
     switch (static_cast<Touch>(type)) {
         case Touch::smooth:

@@ -12,10 +12,10 @@ constexpr double rho = 1e5;
 /// m/s: smaller speeds and residuals are rounding.
 constexpr double rounding_speed = 1e-6;
 /// The residual that is good enough, m/s for each m/s of the contacts, which are taken to be 1 m/s fast at least.
-constexpr double good_enough = 5e-6;
+constexpr double good_enough = 2e-6;
 /// Residuals below so many times that are swept first, and how often.
-constexpr double nearly = 4;
-constexpr int most_sweeps = 2;
+constexpr double nearly = 5;
+constexpr int most_sweeps = 3;
 /// Solves with one matrix, guesses between two sweeps, and sweeps.
 constexpr int most_repeats = 8, most_guesses = 4, most_rounds = 6;
 

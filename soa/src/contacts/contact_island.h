@@ -38,6 +38,8 @@ namespace motley {
 /// does not move.
 struct IslandContact {
     const SweepChunk* chunk;  ///< valid for the step
+    ReadDirections read;
+    float* peak;  ///< largest normal impulse of the step, where restitution asks for it; else null
     std::int32_t rows, block, lane;
     std::int32_t a, b;
 };

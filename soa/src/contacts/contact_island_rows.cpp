@@ -57,8 +57,7 @@ ContactDirections directions_of(const IslandContact& place)
 {
     const SweepChunk& chunk = *place.chunk;
     const std::int64_t floats = std::int64_t{chunk.kernels->row_floats} * block_lanes;
-    return reader_of_contacts(chunk.type, chunk.kind_a,
-                              chunk.kind_b)(chunk.streams.rows + floats * place.block + place.lane);
+    return place.read(chunk.streams.rows + floats * place.block + place.lane);
 }
 float* impulses_of(const IslandContact& place)
 {
@@ -271,10 +270,7 @@ void ContactIsland<size>::store(const KernelContext& context)
             impulses[k * block_lanes] = static_cast<float>(rows_[r].lambda);
             impulses_[r] = static_cast<double>(impulses[k * block_lanes]);
         }
-        if (static_cast<Touch>(place.chunk->type) == Touch::bouncing) {
-            float& peak = impulses[contact.rows * block_lanes];
-            peak = std::max(peak, impulses[0]);
-        }
+        if (place.peak != nullptr) *place.peak = std::max(*place.peak, impulses[0]);
     }
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Body& body = bodies_[i];

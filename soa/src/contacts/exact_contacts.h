@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "layout/batches.h"
@@ -18,9 +19,10 @@ class ExactContacts {
     ExactContacts();
     ~ExactContacts();
 
-    /// Finds the islands of a step: its listed contacts, and those of capsules. Makes all space that is needed to solve
-    /// them.
-    void find_islands(const BodyStore& bodies, const SweepLists& sweeps);
+    /// Finds the islands of a step of dt seconds: its listed contacts, those of capsules, and those of discs near each
+    /// other. Makes all space that is needed to solve them.
+    void find_islands(const BodyStore& bodies, const SweepLists& sweeps, std::span<const SweepChunk> discs,
+                      float dt);
     [[nodiscard]] std::int64_t islands() const { return count_; }
     /// Islands that are left to the sweeps.
     [[nodiscard]] std::int64_t left_out() const { return left_out_; }
@@ -34,7 +36,9 @@ class ExactContacts {
     [[nodiscard]] double residual() const;
 
   private:
+    struct Found;
     struct Island;
+    std::vector<Found> contacts_;
     BodySets sets_;
     std::vector<std::int32_t> island_of_;           ///< by root
     std::vector<std::int32_t> local_;               ///< number in its island, by BodySets::number

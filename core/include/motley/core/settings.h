@@ -57,9 +57,9 @@ struct SolverSettings {
     bool exact_joints = false;
     /// soft_step and sequential_impulse: contacts of an island, which are bodies that contacts connect, are solved all at
     /// once after each sweep, rigidly and in double, so that towers, queues and presses are right in every step: 50 boxes
-    /// stand, and of 300 people who lean each bears what is behind. For listed contacts and those of capsules; not for
-    /// discs, which are swept. The islands must be sparse, as chains, stacks and small heaps are; large packs are left to
-    /// the sweeps (StepReport::exact_contacts_refused). Joints are swept beside. Where contacts stay as they were, it
+    /// stand, and of 300 people who lean each bears what is behind. Islands must be sparse, as chains, stacks and small
+    /// heaps are; large packs are left to the sweeps (StepReport::exact_contacts_refused). Joints are swept beside, and
+    /// Manifolds are among them. Where contacts stay as they were, it
     /// costs about ten sweeps; one substep is then enough for what four are taken else.
     bool exact_contacts = false;
     bool warm_start = true;  ///< start from the accumulated impulses of the last substep
