@@ -46,8 +46,8 @@ std::vector<Way> ways()
     SolverSettings direct = soft;
     direct.method = Method::direct;
     direct.substeps = 1;
-    return {{"soft", soft, 1},       {"soft", soft, 2},     {"exact", exact, 2},
-            {"careful", careful, 2}, {"sleepy", sleepy, 2}, {"contacts", contacts, 2}, {"direct", direct, 1}};
+    return {{"soft", soft, 1},     {"soft", soft, 2},         {"exact", exact, 2},  {"careful", careful, 2},
+            {"sleepy", sleepy, 2}, {"contacts", contacts, 2}, {"direct", direct, 1}};
 }
 
 /// The first contacts of a list. A step with few contacts comes first, so that everything grows in the next one.

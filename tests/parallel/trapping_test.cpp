@@ -39,12 +39,8 @@ std::vector<Way> ways()
     impulse.iterations = 4;
     SolverSettings projected = impulse;
     projected.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft},
-            {"exact joints", exact},
-            {"exact contacts", contacts},
-            {"with measures", measured},
-            {"Baumgarte", impulse},
-            {"projection", projected}};
+    return {{"soft_step", soft},         {"exact joints", exact}, {"exact contacts", contacts},
+            {"with measures", measured}, {"Baumgarte", impulse},  {"projection", projected}};
 }
 
 /// The floating-point flags that a step raised.

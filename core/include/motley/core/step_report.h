@@ -76,7 +76,7 @@ struct StepReport {
     /// without a fixed body in which a body with two or more locks has less than 1/2,000 of the mass of another: solved
     /// exactly in float, these would not keep momentum.
     std::int64_t exact_joints_refused = 0;
-    BodyId first_light_body{};        ///< such a light body, if there is one
+    BodyId first_light_body{};  ///< such a light body, if there is one
     /// With SolverSettings::exact_contacts: islands whose contacts are solved at once, those that are left to the sweeps
     /// because their matrix would be too dense, and the most that one more sweep would change a speed by, m/s.
     std::int64_t exact_contact_islands = 0, exact_contacts_refused = 0;
