@@ -83,15 +83,14 @@ bool may_touch(const BodyStore& bodies, const IslandContact& contact, BodyRow a,
     return apart < near + (speed(a) + speed(b)) * dt;
 }
 
-/// Calls visit(chunk, block, lane, body a, body b) for each contact of a chunk.
+/// Calls visit(block, lane, body a, body b) for each contact of a chunk.
 template <class Visit>
 void for_each_lane(const SweepChunk& chunk, const Visit& visit)
 {
     for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
         const BlockBodies& bodies = chunk.streams.bodies[block];
         for (std::int32_t lane = 0; lane < chunk.streams.counts[block]; ++lane)
-            visit(chunk, block, lane, body_at(chunk.kind_a, bodies.a[lane]),
-                  body_at(chunk.kind_b, bodies.b[lane]));
+            visit(block, lane, body_at(chunk.kind_a, bodies.a[lane]), body_at(chunk.kind_b, bodies.b[lane]));
     }
 }
 
@@ -105,19 +104,17 @@ void ExactContacts::find_islands(const BodyStore& bodies, const SweepLists& swee
     for (const auto& chunks : sweeps.lists) {
         for (const SweepChunk& chunk : chunks) {
             if (chunk.type >= contact_type_count) continue;
-            for_each_lane(
-                chunk, [&](const SweepChunk&, std::int32_t block, std::int32_t lane, BodyRow a, BodyRow b) {
-                    contacts_.push_back({listed(chunk, block, lane), a, b});
-                });
+            for_each_lane(chunk, [&](std::int32_t block, std::int32_t lane, BodyRow a, BodyRow b) {
+                contacts_.push_back({listed(chunk, block, lane), a, b});
+            });
         }
     }
     for (const SweepChunk& chunk : discs) {
-        for_each_lane(
-            chunk, [&](const SweepChunk&, std::int32_t block, std::int32_t lane, BodyRow a, BodyRow b) {
-                const IslandContact contact = of_discs(chunk, block, lane);
-                if (a.kind() == BodyKind::fixed || may_touch(bodies, contact, a, b, static_cast<double>(dt)))
-                    contacts_.push_back({contact, a, b});
-            });
+        for_each_lane(chunk, [&](std::int32_t block, std::int32_t lane, BodyRow a, BodyRow b) {
+            const IslandContact contact = of_discs(chunk, block, lane);
+            if (a.kind() == BodyKind::fixed || may_touch(bodies, contact, a, b, static_cast<double>(dt)))
+                contacts_.push_back({contact, a, b});
+        });
     }
     sets_.reset([&](BodyKind kind) { return bodies.rows(kind).size(); });
     for (const Found& found : contacts_) sets_.tie(found.a, found.b);
