@@ -15,6 +15,7 @@ void PlanRunner::run(const Plan& plan, const Plan& figure_plan, const Step& step
     layout_.context.replay = plan.replays_warm_starts ? Replay::next_time : Replay::nothing;
     layout_.context.discs_are_measured =
         step.settings.method == Method::soft_step && step.settings.relaxations > 0;
+    sweeper_.leave_out_contacts(step.settings.exact_contacts && exact_contacts_.left_out() == 0);
     int of_substep = -1;
     for_each_stage(plan, [&](const PlanStage& stage, int substep) {
         if (substep != of_substep) solves_in_substep_ = 0;
@@ -22,7 +23,6 @@ void PlanRunner::run(const Plan& plan, const Plan& figure_plan, const Step& step
         clock.enter(stage_of(stage.operation));
         run_stage(stage, substep, plan, figure_plan, step);
     });
-    sweeper_.leave_out_contacts(false);
     // Each substep has a warm start, replayed or swept.
     step.report.sweeps += plan.substeps;
 }
@@ -205,7 +205,6 @@ void PlanRunner::begin_exact_contacts(const Step& step)
     sweeper_.begin_islands(exact_contacts_);
     step.report.exact_contacts_refused = exact_contacts_.left_out();
     step.report.exact_contact_islands = exact_contacts_.islands() - exact_contacts_.left_out();
-    sweeper_.leave_out_contacts(exact_contacts_.left_out() == 0);
 }
 
 /// What is solved at once after a sweep: the trees of exact joints, then the islands of exact contacts.

@@ -92,8 +92,8 @@ bool Sweeper::is_left_out(const SweepChunk& chunk, ConstraintKernels::Sweep Cons
            layout_.context.measure == Measure::nothing;
 }
 
-void Sweeper::run_listed(std::span<const SweepChunk> chunks,
-                         ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
+void Sweeper::run_unless_left_out(std::span<const SweepChunk> chunks,
+                                  ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
     for (const SweepChunk& chunk : chunks) {
         if (!is_left_out(chunk, kernel))
@@ -105,11 +105,11 @@ void Sweeper::sweep_beside_patches(ConstraintKernels::Sweep ConstraintKernels::*
 {
     // The overflow runs first and in order, so that the constraints of the colours are solved last.
     const SweepLists& sweeps = layout_.sweeps();
-    run_listed(sweeps.of_colour(overflow_colour), kernel, at_least);
+    run_unless_left_out(sweeps.of_colour(overflow_colour), kernel, at_least);
     for (int colour = 0; colour < parallel_colours; ++colour) {
         const std::span<const SweepChunk> chunks = sweeps.of_colour(colour);
         runner_.run(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t i) {
-            run_listed(chunks.subspan(static_cast<std::size_t>(i), 1), kernel, at_least);
+            run_unless_left_out(chunks.subspan(static_cast<std::size_t>(i), 1), kernel, at_least);
         });
     }
 }
@@ -118,7 +118,7 @@ void Sweeper::sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel,
 {
     const SweepLists& sweeps = layout_.sweeps();
     runner_.run(static_cast<std::int64_t>(sweeps.patches.size()),
-                [&](std::int64_t patch) { run_listed(sweeps.of_patch(patch), kernel, at_least); });
+                [&](std::int64_t patch) { run_unless_left_out(sweeps.of_patch(patch), kernel, at_least); });
 }
 
 void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)

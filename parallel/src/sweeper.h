@@ -47,10 +47,10 @@ class Sweeper {
     void prepare_touched_trees();
     void begin_touched_trees();
     void solve_touched_trees(float rate);
-    /// ExactContacts::begin and solve of every island. Sweeps of solve and relax then leave out all contacts, if this is
-    /// asked for.
+    /// ExactContacts::begin and solve of every island.
     void begin_islands(ExactContacts& contacts);
     void solve_islands(ExactContacts& contacts, bool relaxes);
+    /// Whether sweeps of solve and relax leave out the contacts of the list and of capsules from now on.
     void leave_out_contacts(bool leave_out) { leaves_out_contacts_ = leave_out; }
     /// Adds the displacements of a step to the poses. Returns how many bodies had to be contained because their state
     /// is not finite, and sets the lowest slot among them.
@@ -67,8 +67,8 @@ class Sweeper {
 
     [[nodiscard]] bool is_left_out(const SweepChunk& chunk,
                                    ConstraintKernels::Sweep ConstraintKernels::*kernel) const;
-    void run_listed(std::span<const SweepChunk> chunks, ConstraintKernels::Sweep ConstraintKernels::*kernel,
-                    int at_least);
+    void run_unless_left_out(std::span<const SweepChunk> chunks,
+                             ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
 
     void sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel);
     void sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);

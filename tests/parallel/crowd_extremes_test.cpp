@@ -25,6 +25,19 @@ double seconds_since(std::chrono::steady_clock::time_point began)
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 }
 
+std::vector<BodyId> people_on_one_spot(Scene& scene, int count)
+{
+    const std::vector<BodyDefinition> bodies(static_cast<std::size_t>(count), person_at(3, 4));
+    std::vector<BodyId> people(bodies.size());
+    scene.add_bodies(bodies, people);
+    return people;
+}
+/// Across the shoulders, along y.
+CapsuleDefinition torso_of(BodyId body)
+{
+    return {.body = body, .from = {0, -0.11F, 0}, .to = {0, 0.11F, 0}, .radius = 0.12F};
+}
+
 struct Extent {
     Vec2<double> low{1e300, 1e300}, high{-1e300, -1e300};
     bool is_finite = true;
@@ -49,10 +62,8 @@ TEST(CrowdExtremes, AMillionPeopleOnOneSpotAreRefusedByTheirPairs)
     if (testing::long_run(10) < 10) GTEST_SKIP() << "a smaller crowd accesses the same memory";
     constexpr int count = 1'000'000;
     Scene scene;
-    std::vector<BodyDefinition> bodies(count, person_at(3, 4));
-    std::vector<BodyId> people(bodies.size());
-    scene.add_bodies(bodies, people);
-    scene.set_discs(people, std::vector<DiscDefinition>(bodies.size()));
+    const std::vector<BodyId> people = people_on_one_spot(scene, count);
+    scene.set_discs(people, std::vector<DiscDefinition>(people.size()));
     Solver solver(SolverSettings{}, {.threads = 2});
     const std::uint64_t hash = scene.state_hash();
     for (int attempt = 0; attempt < 2; ++attempt) {
@@ -81,10 +92,8 @@ TEST(CrowdExtremes, ThousandsOnOneSpotPart)
 {
     constexpr int count = testing::long_run(5000);
     Scene scene;
-    std::vector<BodyDefinition> bodies(count, person_at(3, 4));
-    std::vector<BodyId> people(bodies.size());
-    scene.add_bodies(bodies, people);
-    scene.set_discs(people, std::vector<DiscDefinition>(bodies.size()));
+    const std::vector<BodyId> people = people_on_one_spot(scene, count);
+    scene.set_discs(people, std::vector<DiscDefinition>(people.size()));
     Solver solver(SolverSettings{}, {.threads = 2});
     for (int step = 0; step < 60; ++step) {
         const auto began = std::chrono::steady_clock::now();
@@ -107,12 +116,9 @@ TEST(CrowdExtremes, TorsosOnOneSpotAreRefusedByTheirPairs)
     if (testing::long_run(10) < 10) GTEST_SKIP() << "a smaller crowd accesses the same memory";
     constexpr int count = 100'000;
     Scene scene;
-    std::vector<BodyDefinition> bodies(count, person_at(3, 4));
-    std::vector<BodyId> people(bodies.size());
-    scene.add_bodies(bodies, people);
+    const std::vector<BodyId> people = people_on_one_spot(scene, count);
     std::vector<CapsuleDefinition> capsules;
-    for (const BodyId body : people)
-        capsules.push_back({.body = body, .from = {0, -0.11F, 0}, .to = {0, 0.11F, 0}, .radius = 0.12F});
+    for (const BodyId body : people) capsules.push_back(torso_of(body));
     std::vector<ShapeId> shapes(capsules.size());
     scene.add_capsules(capsules, shapes);
     Solver solver(SolverSettings{}, {.threads = 2});
@@ -140,8 +146,7 @@ TEST(CrowdExtremes, HundredsOfTorsosOnOneSpotPart)
         std::vector<BodyId> people;
         for (int i = 0; i < testing::long_run(500); ++i) {
             people.push_back(scene.add_body(person_at(3, 4)));
-            scene.add_capsule(
-                {.body = people.back(), .from = {0, -0.11F, 0}, .to = {0, 0.11F, 0}, .radius = 0.12F});
+            scene.add_capsule(torso_of(people.back()));
         }
         Solver solver(SolverSettings{}, {.threads = threads});
         for (int step = 0; step < 5; ++step) {
@@ -263,8 +268,7 @@ class WildRoom {
         if (!is_torso)
             return scene.set_disc(people.back(),
                                   {.radius = 0.2F, .friction = people.size() % 3 == 0 ? 0.3F : 0.0F});
-        scene.add_capsule(
-            {.body = people.back(), .from = {0, -0.11F, 0}, .to = {0, 0.11F, 0}, .radius = 0.12F});
+        scene.add_capsule(torso_of(people.back()));
     }
 };
 

@@ -59,6 +59,7 @@ SolverSettings SolverSettings::resolved() const
     SolverSettings settings = *this;
     const bool sweeps_rigidly = method == Method::sequential_impulse;
     if (iterations == 0) settings.iterations = sweeps_rigidly ? 8 : 1;
+    settings.exact_contacts = exact_contacts && method != Method::direct;
     if (drift_correction == DriftCorrection::by_method)
         settings.drift_correction =
             sweeps_rigidly && !exact_joints ? DriftCorrection::projection : DriftCorrection::baumgarte;

@@ -182,9 +182,6 @@ void BlockFactor<size>::make_room(const Elimination& order)
     const auto bodies = static_cast<std::size_t>(order.bodies());
     diagonal_.resize(bodies * numbers);
     below_.resize(static_cast<std::size_t>(order.blocks()) * numbers);
-    place_of_body_.resize(bodies);
-    for (std::int32_t body = 0; body < order.bodies(); ++body)
-        place_of_body_[static_cast<std::size_t>(body)] = order.place_of(body);
 }
 
 template <int size>
@@ -198,9 +195,9 @@ void BlockFactor<size>::begin()
 }
 
 template <int size>
-void BlockFactor<size>::add(std::int32_t body, const double* a, double weight)
+void BlockFactor<size>::add(std::int32_t place, const double* a, double weight)
 {
-    double* block = diagonal_.data() + std::int64_t{place_of_body_[static_cast<std::size_t>(body)]} * numbers;
+    double* block = diagonal_.data() + std::int64_t{place} * numbers;
     for (int i = 0; i < size; ++i) {
         const double scaled = weight * a[i];
         for (int j = 0; j <= i; ++j) block[i * size + j] += scaled * a[j];

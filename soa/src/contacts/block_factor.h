@@ -16,7 +16,6 @@ namespace motley {
 /// Two bodies that touch each other, by their numbers in the island.
 struct BodyEdge {
     std::int32_t a, b;
-    friend bool operator==(const BodyEdge&, const BodyEdge&) = default;
 };
 
 /// The order of elimination of an island's bodies, and where the factor has blocks.
@@ -62,8 +61,8 @@ class BlockFactor {
     void make_room(const Elimination& order);
     /// Starts with the identity.
     void begin();
-    /// Adds weight * a a^T to the block of a body on the diagonal.
-    void add(std::int32_t body, const double* a, double weight);
+    /// Adds weight * a a^T to the block on the diagonal of the body at a place.
+    void add(std::int32_t place, const double* a, double weight);
     /// Adds weight * a b^T to block `block` of the bodies' pair, a of the one that is eliminated later.
     void add_between(std::int32_t block, const double* a, const double* b, double weight);
     void factor(const Elimination& order);
@@ -72,7 +71,6 @@ class BlockFactor {
 
   private:
     std::vector<double> diagonal_, below_;  ///< by place; by block
-    std::vector<std::int32_t> place_of_body_;
 };
 
 }  // namespace motley

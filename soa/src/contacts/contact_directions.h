@@ -3,12 +3,11 @@
 #pragma once
 
 #include <cmath>
-#include <cstring>
-#include <type_traits>
+#include <cstddef>
 
 #include "constraints/contact.h"
 #include "kernels/kernel_table.h"
-#include "maths/disc_contact.h"
+#include "stores/disc_fields.h"
 
 namespace motley {
 
@@ -50,23 +49,10 @@ inline Vec3<double> in_double(NoLever)
     return {0, 0, 0};
 }
 
-/// A row consists of floats only; field i of a lane is at stream[16 i + lane].
-template <class Row>
-Row row_of_lane(const float* stream)
-{
-    constexpr auto fields = sizeof(Row) / sizeof(float);
-    float values[fields];
-    for (std::size_t i = 0; i < fields; ++i) values[i] = stream[i * block_lanes];
-    static_assert(std::is_trivially_copyable_v<Row>);
-    Row row;
-    std::memcpy(&row, values, sizeof(Row));
-    return row;
-}
-
 template <class Type, BodyKind a, BodyKind b>
-ContactDirections directions_of(const float* stream)
+ContactDirections directions_of(const float* rows, std::size_t block, std::size_t lane)
 {
-    const auto whole = row_of_lane<typename Type::template Row<float, a, b>>(stream);
+    const auto whole = load_lane<typename Type::template Row<float, a, b>>(rows, block, lane);
     const auto& row = [&]() -> const auto&
     {
         if constexpr (Type::has_restitution) {
@@ -112,24 +98,22 @@ ContactDirections directions_of(const float* stream)
 }
 
 /// The same of discs, whose normals pass through their centres; a wall's body turns about its own.
-template <bool is_rough, BodyKind a>
-ContactDirections directions_of_discs(const float* stream)
+template <DiscClass c>
+ContactDirections directions_of_discs(const float* rows, std::size_t block, std::size_t lane)
 {
-    const auto whole =
-        row_of_lane<typename DiscContactKind<is_rough>::template Row<float, a, BodyKind::planar>>(stream);
+    const auto whole = load_lane<typename DiscFieldsOf<c>::Row>(rows, block, lane);
     const auto& row = whole.in_sweep;
     ContactDirections all;
     all.separation = static_cast<double>(whole.start_separation);
     const Vec3<double> n = in_double(row.normal), t{-n.y, n.x, 0};
-    constexpr bool on_wall = a == BodyKind::fixed;
     Vec3<double> arm_a{0, 0, 0};
-    if constexpr (on_wall) {
+    if constexpr (is_wall(c)) {
         arm_a = in_double(row.arm_a);
         all.most_force = static_cast<double>(row.most_force);
     }
     all.of[0] = {n, cross(arm_a, n), {0, 0, 0}};
-    if constexpr (is_rough) {
-        if constexpr (on_wall) {
+    if constexpr (is_rough(c)) {
+        if constexpr (is_wall(c)) {
             all.surface_speed[0] = static_cast<double>(row.surface_speed);
         } else {
             arm_a = static_cast<double>(row.arm_a) * n;
@@ -141,7 +125,7 @@ ContactDirections directions_of_discs(const float* stream)
     return all;
 }
 
-using ReadDirections = ContactDirections (*)(const float* stream);
+using ReadDirections = ContactDirections (*)(const float* rows, std::size_t block, std::size_t lane);
 
 template <class Type, BodyKind a>
 ReadDirections reader_of(BodyKind b)
@@ -186,11 +170,11 @@ using detail::ReadDirections;
 inline ReadDirections reader_of_discs(bool rough, bool wall)
 {
     if (wall) {
-        return rough ? detail::directions_of_discs<true, BodyKind::fixed>
-                     : detail::directions_of_discs<false, BodyKind::fixed>;
+        return rough ? detail::directions_of_discs<DiscClass::rough_wall>
+                     : detail::directions_of_discs<DiscClass::smooth_wall>;
     }
-    return rough ? detail::directions_of_discs<true, BodyKind::planar>
-                 : detail::directions_of_discs<false, BodyKind::planar>;
+    return rough ? detail::directions_of_discs<DiscClass::rough_pair>
+                 : detail::directions_of_discs<DiscClass::smooth_pair>;
 }
 
 /// What reads the rows of a contact type and pair of bodies.

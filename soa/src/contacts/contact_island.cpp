@@ -9,20 +9,15 @@ namespace motley {
 namespace {
 
 constexpr double rho = 1e5;
-/// m/s: smaller speeds and residuals are rounding.
-constexpr double rounding_speed = 1e-6;
 /// The residual that is good enough, m/s for each m/s of the contacts, which are taken to be 1 m/s fast at least.
 constexpr double good_enough = 2e-6;
 /// Residuals below so many times that are swept first, and how often.
 constexpr double nearly = 5;
 constexpr int most_sweeps = 3;
+/// Another solve with the same matrix is worth while if the last one left at most this share of the residual, J.
+constexpr double worth_while = 0.8;
 /// Solves with one matrix, guesses between two sweeps, and sweeps.
 constexpr int most_repeats = 8, most_guesses = 4, most_rounds = 6;
-
-std::size_t as_index(std::int32_t i)
-{
-    return static_cast<std::size_t>(i);
-}
 
 template <int size>
 double product(const double* a, const double* b)
@@ -36,11 +31,11 @@ double product(const double* a, const double* b)
 struct Friction {
     double x = 0, y = 0;
     [[nodiscard]] double length() const { return std::sqrt(x * x + y * y); }
-    /// The same direction, `length` long.
+    /// The same direction, `wanted` N s long.
     [[nodiscard]] Friction scaled_to(double wanted) const
     {
-        const double is = length();
-        return is > 0 ? Friction{x * (wanted / is), y * (wanted / is)} : *this;
+        const double now = length();
+        return now > 0 ? Friction{x * (wanted / now), y * (wanted / now)} : *this;
     }
     [[nodiscard]] Friction within(double bound) const { return length() > bound ? scaled_to(bound) : *this; }
 };
@@ -222,8 +217,8 @@ void ContactIsland<size>::factor()
     for_each_active([&](const Contact& contact, std::size_t r) {
         const Row& row = rows_[r];
         const double weight = rho / row.response;
-        if (contact.a >= 0) factor_.add(contact.a, row.a, weight);
-        if (contact.b >= 0) factor_.add(contact.b, row.b, weight);
+        if (contact.a >= 0) factor_.add(order_.place_of(contact.a), row.a, weight);
+        if (contact.b >= 0) factor_.add(order_.place_of(contact.b), row.b, weight);
         if (contact.block < 0) return;
         if (contact.a_is_later) {
             factor_.add_between(contact.block, row.a, row.b, weight);
@@ -377,7 +372,7 @@ void ContactIsland<size>::improve(double tolerance)
                 least = left.energy;
                 keep();
             }
-            if (is_wrong || left.energy > 0.8 * last) break;
+            if (is_wrong || left.energy > worth_while * last) break;
             last = left.energy;
         }
         if (!is_wrong) break;

@@ -3,7 +3,7 @@
 // Sweeps hand an impulse on from body to body, and a queue of n people wants about n^2 of them. Here a guess is made of
 // which contacts push and which of them stick (the active set), these are solved as equations, and the guess is mended
 // until the impulses agree with it: a primal-dual active set method (M. Hintermueller, K. Ito, K. Kunisch 2002) that
-// begins with the guess of the step before, as subspace minimisation begins with what sweeps found (M. Silcowitz,
+// begins with what impulses and speeds say, as subspace minimisation begins with what sweeps found (M. Silcowitz,
 // S. Niebe, K. Erleben 2010). One guess is enough while contacts stay as they were.
 //
 //   minimise 1/2 dv^T M dv + sum over active rows of rho / (2 K) (J (v + dv) - aim)^2
@@ -34,14 +34,14 @@
 
 namespace motley {
 
-/// Where a contact lies in its block, how many rows it has, and which bodies of the island it touches; -1: a body that
-/// does not move.
+/// Where a contact lies in its block, how many rows it has, and which bodies it touches.
 struct IslandContact {
     const SweepChunk* chunk;  ///< valid for the step
     ReadDirections read;
     float* peak;  ///< largest normal impulse of the step, where restitution asks for it; else null
     std::int32_t rows, block, lane;
-    std::int32_t a, b;
+    BodyRow body_a, body_b;
+    std::int32_t a = -1, b = -1;  ///< their numbers in the island; -1: a body that does not move
 };
 
 /// `size`: degrees of freedom of a body, 3 for planar bodies or particles alone, else 6.
@@ -60,6 +60,9 @@ class ContactIsland {
     double solve(const KernelContext& context, bool relaxes);
 
   private:
+    /// m/s: smaller speeds and residuals are rounding, as those are that separations ask for.
+    static constexpr double rounding_speed = 1e-6;
+
     enum class State : std::uint8_t {
         apart,
         gives_way,  ///< pushes as hard as its surface may (contact_surface.h)
@@ -105,6 +108,8 @@ class ContactIsland {
     std::vector<BodyEdge> edges_;
     Elimination order_;
     BlockFactor<size> factor_;
+
+    static std::size_t as_index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
     // contact_island_rows.cpp: from bodies and blocks, and back.
     bool load_bodies(const KernelContext& context);

@@ -9,15 +9,8 @@
 namespace motley {
 namespace {
 
-/// m/s: a row that wants less wants nothing. Separations are rounded to about this in a substep.
-constexpr double rounding_speed = 1e-6;
 /// What the inertia of a body may turn, relative, before rows are made anew.
 constexpr double turned_inertia = 1e-5;
-
-std::size_t as_index(std::int32_t i)
-{
-    return static_cast<std::size_t>(i);
-}
 
 float* quad_of(float* rows, BodyRow body)
 {
@@ -55,9 +48,8 @@ Motion displacement_of(const KernelContext& context, BodyRow body)
 }
 ContactDirections directions_of(const IslandContact& place)
 {
-    const SweepChunk& chunk = *place.chunk;
-    const std::int64_t floats = std::int64_t{chunk.kernels->row_floats} * block_lanes;
-    return place.read(chunk.streams.rows + floats * place.block + place.lane);
+    return place.read(place.chunk->streams.rows, static_cast<std::size_t>(place.block),
+                      static_cast<std::size_t>(place.lane));
 }
 float* impulses_of(const IslandContact& place)
 {
@@ -162,10 +154,10 @@ bool ContactIsland<size>::load_bodies(const KernelContext& context)
             root_of(arrays.world_inverse_inertia + std::int64_t{8} * body.row.row(), now.angular);
         }
         const double scale = now.angular[0] + now.angular[2] + now.angular[5];
-        bool own = now.linear != body.linear;
+        bool changed = now.linear != body.linear;
         for (int i = 0; i < 6; ++i)
-            own = own || std::abs(now.angular[i] - body.angular[i]) > turned_inertia * scale;
-        if (own) {
+            changed = changed || std::abs(now.angular[i] - body.angular[i]) > turned_inertia * scale;
+        if (changed) {
             body = now;
             turned = true;
         }
@@ -218,23 +210,17 @@ void ContactIsland<size>::load_speeds(const KernelContext& context, bool relaxes
     const StepConstants& step = context.step;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const IslandContact& place = places_[i];
-        const SweepChunk& chunk = *place.chunk;
-        const BlockBodies& bodies = chunk.streams.bodies[place.block];
-        const auto row_of = [&](BodyKind kind, std::int32_t offset) {
-            return BodyRow(kind, static_cast<std::uint32_t>(offset / offsets_a_row(kind)));
-        };
-        const BodyRow a = row_of(chunk.kind_a, bodies.a[place.lane]),
-                      b = row_of(chunk.kind_b, bodies.b[place.lane]);
         const ContactDirections& all = directions_[i];
-        const Motion va = velocity_of(context, a), vb = velocity_of(context, b);
+        const Motion va = velocity_of(context, place.body_a), vb = velocity_of(context, place.body_b);
         Row* rows = rows_of(contacts_[i]);
         for (int k = 0; k < all.count; ++k) {
             rows[k].start = component_along(all.of[k], va, vb);
             rows[k].aim = k == 0 ? 0 : all.surface_speed[k - 1];
         }
         contacts_[i].most = all.most_force * static_cast<double>(step.substep);
-        const double separation = all.separation + component_along(all.of[0], displacement_of(context, a),
-                                                                   displacement_of(context, b));
+        const double separation =
+            all.separation + component_along(all.of[0], displacement_of(context, place.body_a),
+                                             displacement_of(context, place.body_b));
         double aim = 0;
         if (separation > 0) {
             aim = -separation * static_cast<double>(step.inverse_substep);

@@ -9,10 +9,6 @@
 
 namespace motley {
 
-struct ExactContacts::Found {
-    IslandContact contact;
-    BodyRow a, b;
-};
 struct ExactContacts::Island {
     bool is_flat = false;  ///< all bodies have three degrees of freedom
     bool is_left_out = false;
@@ -30,67 +26,79 @@ namespace {
 
 constexpr std::int32_t none = -1;
 
-BodyRow body_at(BodyKind kind, std::int32_t offset)
+IslandContact placed(const SweepChunk& chunk, std::int32_t block, std::int32_t lane)
 {
-    return {kind, static_cast<std::uint32_t>(offset / offsets_a_row(kind))};
+    const BlockBodies& bodies = chunk.streams.bodies[block];
+    IslandContact contact{};
+    contact.chunk = &chunk;
+    contact.block = block;
+    contact.lane = lane;
+    contact.body_a = row_at(bodies.a[lane], chunk.kind_a);
+    contact.body_b = row_at(bodies.b[lane], chunk.kind_b);
+    contact.rows = chunk.kernels->impulse_floats;
+    return contact;
+}
+float* impulses_of(const IslandContact& contact)
+{
+    const std::int64_t floats = std::int64_t{contact.chunk->kernels->impulse_floats} * block_lanes;
+    return contact.chunk->streams.impulses + floats * contact.block + contact.lane;
 }
 
 /// A contact of the list, or of a capsule.
 IslandContact listed(const SweepChunk& chunk, std::int32_t block, std::int32_t lane)
 {
-    const bool bounces = static_cast<Touch>(chunk.type) == Touch::bouncing;
-    const std::int32_t floats = chunk.kernels->impulse_floats, rows = floats - (bounces ? 1 : 0);
-    float* impulses = chunk.streams.impulses + std::int64_t{floats} * block_lanes * block + lane;
-    return {&chunk,
-            reader_of_contacts(chunk.type, chunk.kind_a, chunk.kind_b),
-            bounces ? impulses + std::int64_t{rows} * block_lanes : nullptr,
-            rows,
-            block,
-            lane,
-            none,
-            none};
+    IslandContact contact = placed(chunk, block, lane);
+    contact.read = reader_of_contacts(chunk.type, chunk.kind_a, chunk.kind_b);
+    if (static_cast<Touch>(chunk.type) == Touch::bouncing) {
+        --contact.rows;  // the last float is the peak
+        contact.peak = impulses_of(contact) + std::int64_t{contact.rows} * block_lanes;
+    }
+    return contact;
 }
 IslandContact of_discs(const SweepChunk& chunk, std::int32_t block, std::int32_t lane)
 {
-    const std::int32_t rows = chunk.kernels->impulse_floats;
-    return {
-        &chunk, reader_of_discs(rows > 1, chunk.kind_a == BodyKind::fixed), nullptr, rows, block, lane, none,
-        none};
+    IslandContact contact = placed(chunk, block, lane);
+    contact.read = reader_of_discs(contact.rows > 1, chunk.kind_a == BodyKind::fixed);
+    return contact;
+}
+
+/// m: the sum of the radii of two discs.
+double reach_of(const IslandContact& contact)
+{
+    const float* rows = contact.chunk->streams.rows;
+    const auto block = static_cast<std::size_t>(contact.block), lane = static_cast<std::size_t>(contact.lane);
+    if (contact.rows == 1) {
+        const auto row = load_lane<DiscFieldsOf<DiscClass::smooth_pair>::Row>(rows, block, lane);
+        return static_cast<double>(row.reach);
+    }
+    const auto row = load_lane<DiscFieldsOf<DiscClass::rough_pair>::Row>(rows, block, lane);
+    return static_cast<double>(row.radius_a) + static_cast<double>(row.radius_b);
 }
 
 /// m: discs that are farther apart are taken to touch within a step only as far as their speeds bring them.
 constexpr double near = 0.01;
 
 /// Whether two discs may touch within dt seconds, or pushed each other in the last step. Bands list many that do neither.
-bool may_touch(const BodyStore& bodies, const IslandContact& contact, BodyRow a, BodyRow b, double dt)
+bool may_touch(const BodyStore& bodies, const IslandContact& contact, double dt)
 {
-    const SweepChunk& chunk = *contact.chunk;
-    const std::int64_t floats = std::int64_t{chunk.kernels->impulse_floats} * block_lanes;
-    if (chunk.streams.impulses[floats * contact.block + contact.lane] > 0) return true;
+    if (*impulses_of(contact) > 0) return true;
     const BodyRows& rows = bodies.rows(BodyKind::planar);
-    const Vec3<PoseReal> between = rows.pose[b.row()].position - rows.pose[a.row()].position;
-    const auto speed = [&](BodyRow body) {
-        const float* v = rows.velocity.data() + std::int64_t{4} * body.row();
+    const std::uint32_t a = contact.body_a.row(), b = contact.body_b.row();
+    const Vec3<PoseReal> between = rows.pose[b].position - rows.pose[a].position;
+    const auto speed = [&](std::uint32_t row) {
+        const float* v = rows.velocity.data() + std::int64_t{4} * row;
         return std::hypot(static_cast<double>(v[0]), static_cast<double>(v[1]));
     };
-    // Radii are the last fields of a row.
-    const float* last = chunk.streams.rows +
-                        (std::int64_t{chunk.kernels->row_floats} * (contact.block + 1) - 1) * block_lanes +
-                        contact.lane;
-    double reach = static_cast<double>(*last);
-    if (contact.rows > 1) reach += static_cast<double>(*(last - block_lanes));
-    const double apart = std::hypot(static_cast<double>(between.x), static_cast<double>(between.y)) - reach;
-    return apart < near + (speed(a) + speed(b)) * dt;
+    const double distance = std::hypot(static_cast<double>(between.x), static_cast<double>(between.y));
+    return distance - reach_of(contact) < near + (speed(a) + speed(b)) * dt;
 }
 
-/// Calls visit(block, lane, body a, body b) for each contact of a chunk.
+/// Calls visit(block, lane) for each contact of a chunk.
 template <class Visit>
 void for_each_lane(const SweepChunk& chunk, const Visit& visit)
 {
     for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
-        const BlockBodies& bodies = chunk.streams.bodies[block];
-        for (std::int32_t lane = 0; lane < chunk.streams.counts[block]; ++lane)
-            visit(block, lane, body_at(chunk.kind_a, bodies.a[lane]), body_at(chunk.kind_b, bodies.b[lane]));
+        for (std::int32_t lane = 0; lane < chunk.streams.counts[block]; ++lane) visit(block, lane);
     }
 }
 
@@ -104,29 +112,29 @@ void ExactContacts::find_islands(const BodyStore& bodies, const SweepLists& swee
     for (const auto& chunks : sweeps.lists) {
         for (const SweepChunk& chunk : chunks) {
             if (chunk.type >= contact_type_count) continue;
-            for_each_lane(chunk, [&](std::int32_t block, std::int32_t lane, BodyRow a, BodyRow b) {
-                contacts_.push_back({listed(chunk, block, lane), a, b});
+            for_each_lane(chunk, [&](std::int32_t block, std::int32_t lane) {
+                contacts_.push_back(listed(chunk, block, lane));
             });
         }
     }
     for (const SweepChunk& chunk : discs) {
-        for_each_lane(chunk, [&](std::int32_t block, std::int32_t lane, BodyRow a, BodyRow b) {
+        for_each_lane(chunk, [&](std::int32_t block, std::int32_t lane) {
             const IslandContact contact = of_discs(chunk, block, lane);
-            if (a.kind() == BodyKind::fixed || may_touch(bodies, contact, a, b, static_cast<double>(dt)))
-                contacts_.push_back({contact, a, b});
+            if (chunk.kind_a == BodyKind::fixed || may_touch(bodies, contact, static_cast<double>(dt)))
+                contacts_.push_back(contact);
         });
     }
     sets_.reset([&](BodyKind kind) { return bodies.rows(kind).size(); });
-    for (const Found& found : contacts_) sets_.tie(found.a, found.b);
+    for (const IslandContact& contact : contacts_) sets_.tie(contact.body_a, contact.body_b);
     sets_.flatten();
     island_of_.assign(sets_.size(), none);
     local_.assign(sets_.size(), none);
     count_ = left_out_ = 0;
-    for (const Found& found : contacts_) {
-        Island& island = island_of(sets_.root(found.a.kind() == BodyKind::fixed ? found.b : found.a));
-        IslandContact contact = found.contact;
-        contact.a = number_in(island, found.a);
-        contact.b = number_in(island, found.b);
+    for (IslandContact& contact : contacts_) {
+        const bool on_fixed = contact.body_a.kind() == BodyKind::fixed;
+        Island& island = island_of(sets_.root(on_fixed ? contact.body_b : contact.body_a));
+        contact.a = number_in(island, contact.body_a);
+        contact.b = number_in(island, contact.body_b);
         island.contacts.push_back(contact);
     }
     for (std::int64_t i = 0; i < count_; ++i) {

@@ -11,6 +11,8 @@
 
 namespace motley {
 
+struct IslandContact;
+
 class ExactContacts {
   public:
     /// An island whose matrix would take more products of blocks than this is left to the sweeps.
@@ -36,9 +38,8 @@ class ExactContacts {
     [[nodiscard]] double residual() const;
 
   private:
-    struct Found;
     struct Island;
-    std::vector<Found> contacts_;
+    std::vector<IslandContact> contacts_;
     BodySets sets_;
     std::vector<std::int32_t> island_of_;           ///< by root
     std::vector<std::int32_t> local_;               ///< number in its island, by BodySets::number
