@@ -175,6 +175,16 @@ template <BodyKind kind_a, BodyKind kind_b>
     return {between[0], between[1], between[2]};
 }
 
+/// `turns` rounded to the nearest whole number, halves away from 0. From 2^52 on every double is whole already, and
+/// from 2^63 on none can be converted: a yaw so large (of a file, or of a body that spins beyond all measure) and NaN
+/// give 2^52, which leaves them to be contained.
+[[gnu::always_inline]] inline double nearest_whole(double turns)
+{
+    constexpr double most = 4503599627370496;
+    const double within = turns > -most ? (turns < most ? turns : most) : -most;
+    return static_cast<double>(static_cast<long long>(within < 0 ? within - 0.5 : within + 0.5));
+}
+
 template <BodyKind kind>
 [[gnu::noinline]] Orientation<Lanes, kind> load_orientation(const BodyArrays& arrays,
                                                             const std::int32_t* offsets)
@@ -185,10 +195,8 @@ template <BodyKind kind>
         alignas(64) float yaw[Lanes_width];
         for (int lane = 0; lane < Lanes_width; ++lane) {
             const auto angle = static_cast<double>(arrays.pose[offsets[lane] / offsets_a_row(kind)].yaw);
-            const double turns = angle * 0.15915494309189535;
-            const auto whole =
-                static_cast<double>(static_cast<long long>(turns < 0 ? turns - 0.5 : turns + 0.5));
-            yaw[lane] = static_cast<float>(angle - whole * 6.283185307179586);
+            yaw[lane] =
+                static_cast<float>(angle - nearest_whole(angle * 0.15915494309189535) * 6.283185307179586);
         }
         return {load_lanes(yaw)};
     } else {
