@@ -19,14 +19,6 @@ constexpr double worth_while = 0.8;
 /// Solves with one matrix, guesses between two sweeps, and sweeps.
 constexpr int most_repeats = 8, most_guesses = 4, most_rounds = 6;
 
-template <int size>
-double product(const double* a, const double* b)
-{
-    double sum = 0;
-    for (int i = 0; i < size; ++i) sum += a[i] * b[i];
-    return sum;
-}
-
 /// The impulses of friction along the tangents.
 struct Friction {
     double x = 0, y = 0;
@@ -58,8 +50,8 @@ template <int size>
 double ContactIsland<size>::along(const Contact& contact, const Row& row, const std::vector<double>& s) const
 {
     double sum = 0;
-    if (contact.a >= 0) sum += product<size>(row.a, s.data() + std::int64_t{contact.a} * size);
-    if (contact.b >= 0) sum += product<size>(row.b, s.data() + std::int64_t{contact.b} * size);
+    if (contact.a >= 0) sum += product(row.a, s.data() + std::int64_t{contact.a} * size);
+    if (contact.b >= 0) sum += product(row.b, s.data() + std::int64_t{contact.b} * size);
     return sum;
 }
 
@@ -118,10 +110,11 @@ void ContactIsland<size>::sweep()
     }
 }
 
-/// What one more sweep would change, each contact by itself. Of refreshed speeds.
+/// Refreshes the speeds, and returns what one more sweep would change, each contact by itself.
 template <int size>
-auto ContactIsland<size>::residual() const -> Residual
+auto ContactIsland<size>::measure() -> Residual
 {
+    refresh_speeds();
     Residual all;
     const auto add = [&](double change, double response) {
         all.energy += change * change * response;
@@ -181,32 +174,37 @@ void ContactIsland<size>::for_each_active(const Visit& visit)
     }
 }
 
-/// Gives contacts that are no equations in the guess the impulses that it says.
+/// Gives contacts that are no equations in the guess the impulses that it says. Returns whether any were others.
 template <int size>
-void ContactIsland<size>::release()
+bool ContactIsland<size>::release()
 {
+    bool any = false;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const Contact& contact = contacts_[i];
         if (guess_[i] >= State::slides) continue;
         Row* rows = rows_of(contact);
         const double normal = guess_[i] == State::gives_way ? contact.most : 0;
-        if (rows[0].lambda != normal) set(contact, rows[0], normal);
-        hold_in_cone(contact);
+        if (rows[0].lambda != normal) {
+            set(contact, rows[0], normal);
+            any = true;
+        }
+        any = hold_in_cone(contact) || any;
     }
-    refresh_speeds();
+    return any;
 }
 
-/// Shortens friction to what the normal impulse allows.
+/// Shortens friction to what the normal impulse allows. Returns whether it was more.
 template <int size>
-void ContactIsland<size>::hold_in_cone(const Contact& contact)
+bool ContactIsland<size>::hold_in_cone(const Contact& contact)
 {
-    if (contact.rows < 2) return;
+    if (contact.rows < 2) return false;
     Row* rows = rows_of(contact);
     const Friction old{rows[1].lambda, contact.rows > 2 ? rows[2].lambda : 0};
-    if (old.length() <= contact.friction * rows[0].lambda) return;
+    if (old.length() <= contact.friction * rows[0].lambda) return false;
     const Friction pull = old.scaled_to(contact.friction * rows[0].lambda);
     set(contact, rows[1], pull.x);
     if (contact.rows > 2) set(contact, rows[2], pull.y);
+    return true;
 }
 
 template <int size>
@@ -340,24 +338,25 @@ void ContactIsland<size>::apply_step()
         set(contact, rows[1], pull.x);
         if (contact.rows > 2) set(contact, rows[2], pull.y);
     }
-    refresh_speeds();
 }
 
-/// Solves for one guess after another, mending the guess, and keeps the best impulses.
+/// Solves for one guess after another, mending the guess, and keeps the best impulses. `left` is the residual now;
+/// returns that of the best.
 template <int size>
-void ContactIsland<size>::improve(double tolerance)
+auto ContactIsland<size>::improve(Residual left, double tolerance) -> Residual
 {
+    double least = left.energy;
     const auto keep = [&] {
         for (std::size_t r = 0; r < rows_.size(); ++r) best_[r] = rows_[r].lambda;
     };
     keep();
-    double least = residual().energy;
     if (!has_guess_) {
         for (std::size_t i = 0; i < contacts_.size(); ++i) guess_[i] = guess_of(contacts_[i]);
     }
     has_guess_ = false;
     for (int guesses = 1; guesses <= most_guesses && !has_guess_; ++guesses) {
-        release();
+        const bool was_mended = guesses > 1;
+        if (release() || was_mended) refresh_speeds();
         factor();
         bool is_wrong = false;
         double last = HUGE_VAL;
@@ -366,7 +365,7 @@ void ContactIsland<size>::improve(double tolerance)
             is_wrong = mend_guess();
             if (is_wrong && guesses < most_guesses) break;
             apply_step();
-            const Residual left = residual();
+            left = measure();
             has_guess_ = left.speed <= tolerance;
             if (left.energy < least) {
                 least = left.energy;
@@ -377,41 +376,38 @@ void ContactIsland<size>::improve(double tolerance)
         }
         if (!is_wrong) break;
     }
+    bool is_best = true;
     for (const Contact& contact : contacts_) {
         for (std::int32_t r = contact.first_row; r < contact.first_row + contact.rows; ++r) {
-            if (rows_[as_index(r)].lambda != best_[as_index(r)])
-                set(contact, rows_[as_index(r)], best_[as_index(r)]);
+            if (rows_[as_index(r)].lambda == best_[as_index(r)]) continue;
+            set(contact, rows_[as_index(r)], best_[as_index(r)]);
+            is_best = false;
         }
     }
+    return is_best ? left : measure();
 }
 
 template <int size>
 double ContactIsland<size>::solve(const KernelContext& context, bool relaxes)
 {
     if (load_bodies(context)) load_rows();
-    load_speeds(context, relaxes);
-    double scale = 1;
-    for (const Row& row : rows_) scale = std::max(scale, std::abs(row.start));
-    const double tolerance = good_enough * scale;
-    refresh_speeds();
-    double left = residual().speed;
+    const double tolerance = good_enough * std::max(1.0, load_speeds(context, relaxes));
+    Residual left = measure();
     const auto sweep_once = [&] {
         sweep();
-        refresh_speeds();
-        left = residual().speed;
+        left = measure();
     };
     // What is nearly solved needs no matrix.
-    for (int sweeps = 0; sweeps < most_sweeps && left > tolerance && left < nearly * tolerance; ++sweeps)
+    for (int sweeps = 0; sweeps < most_sweeps && left.speed > tolerance && left.speed < nearly * tolerance;
+         ++sweeps)
         sweep_once();
-    for (int round = 0; round < most_rounds && left > tolerance; ++round) {
+    for (int round = 0; round < most_rounds && left.speed > tolerance; ++round) {
         if (round > 0) sweep_once();
-        improve(tolerance);
-        refresh_speeds();
-        left = residual().speed;
+        left = improve(left, tolerance);
     }
     for (const Contact& contact : contacts_) hold_in_cone(contact);
     store(context);
-    return left;
+    return left.speed;
 }
 
 template class ContactIsland<3>;

@@ -70,8 +70,9 @@ class ContactIsland {
         sticks
     };
     struct Row {
-        double a[size], b[size];  ///< W^T J^T of each body
-        double response;          ///< K
+        double of_a[size], of_b[size];  ///< J of each body
+        double a[size], b[size];        ///< W^T J^T of each body
+        double response;                ///< K
         double lambda, aim;
         double start;  ///< J v before this solve
     };
@@ -79,13 +80,24 @@ class ContactIsland {
         std::int32_t a, b, first_row, rows;
         std::int32_t block;  ///< of the pair in the factor; -1 if one of them does not move
         bool a_is_later;     ///< in the order of elimination
+        double separation;   ///< m, when the step began
         double friction;
-        double most;  ///< N s, of the normal impulse
+        double most_force, most;  ///< N and N s, along the normal
+        double surface_speed[2];  ///< of a's surface along the tangents, m/s
     };
     struct Body {
         BodyRow row;
-        double linear;      ///< square root of 1/m
-        double angular[6];  ///< lower triangle of the root of I^-1: xx, yx, yy, zx, zy, zz
+        float inverse_mass = -1, inverse_inertia[6] = {};  ///< as they were read last
+        double linear = 0;                                 ///< square root of 1/m
+        double angular[6] = {};  ///< lower triangle of the root of I^-1: xx, yx, yy, zx, zy, zz
+        double velocity[size] = {}, moved[size] = {};  ///< moved: since the step began, to first order
+    };
+    /// A body that no impulse moves, such as a closing door, and what it adds to the speeds of a contact.
+    struct Carrier {
+        std::int32_t contact;
+        BodyRow body;
+        bool is_a;
+        ContactDirections directions;
     };
     struct Residual {
         double energy = 0, speed = 0;  ///< J, and m/s
@@ -93,7 +105,7 @@ class ContactIsland {
     std::vector<Body> bodies_;
     std::vector<IslandContact> places_;
     std::vector<Contact> contacts_;
-    std::vector<ContactDirections> directions_;
+    std::vector<Carrier> carriers_;
     std::vector<Row> rows_;
     std::vector<double> impulses_;            ///< by row, as they were stored last
     std::vector<double> speeds_;              ///< by row: J v
@@ -110,11 +122,18 @@ class ContactIsland {
     BlockFactor<size> factor_;
 
     static std::size_t as_index(std::int32_t i) { return static_cast<std::size_t>(i); }
+    static double product(const double* a, const double* b)
+    {
+        double sum = 0;
+        for (int i = 0; i < size; ++i) sum += a[i] * b[i];
+        return sum;
+    }
 
     // contact_island_rows.cpp: from bodies and blocks, and back.
     bool load_bodies(const KernelContext& context);
     void load_rows();
-    void load_speeds(const KernelContext& context, bool relaxes);
+    double load_speeds(const KernelContext& context, bool relaxes);
+    void take_back(std::size_t contact);
     void store(const KernelContext& context);
 
     [[nodiscard]] Row* rows_of(const Contact& contact);
@@ -125,19 +144,19 @@ class ContactIsland {
     /// Gives a row another impulse, and the bodies what follows.
     void set(const Contact& contact, Row& row, double lambda);
     void sweep();
-    [[nodiscard]] Residual residual() const;
+    [[nodiscard]] Residual measure();
     [[nodiscard]] State guess_of(const Contact& contact) const;
     template <class Visit>
     void for_each_active(const Visit& visit);
-    void release();
-    void hold_in_cone(const Contact& contact);
+    bool release();
+    bool hold_in_cone(const Contact& contact);
     void factor();
     void find_step();
     bool mend_guess();
     void begin_to_slide(const Contact& contact);
     [[nodiscard]] State mended(std::size_t contact) const;
     void apply_step();
-    void improve(double tolerance);
+    Residual improve(Residual left, double tolerance);
 };
 
 }  // namespace motley

@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <iterator>
+#include <utility>
 
 #include "contacts/contact_island.h"
 
@@ -10,42 +11,54 @@ namespace motley {
 namespace {
 
 /// What the inertia of a body may turn, relative, before rows are made anew.
-constexpr double turned_inertia = 1e-5;
+constexpr float turned_inertia = 1e-5F;
 
 float* quad_of(float* rows, BodyRow body)
 {
     return rows + std::int64_t{4} * quads_of(body.kind()) * body.row();
 }
 
-struct Motion {
-    Vec3<double> linear, angular;
-};
-Vec3<double> vector_at(const float* quad)
+/// The quads of a body as a motion: `size` numbers as the rows of an island have them. `turn`: what a number of a rotation
+/// in space stands for, 1 for a velocity and 2 for a displacement, which is a quaternion.
+template <int size>
+void read_motion(BodyKind kind, const float* quads, double turn, double* motion)
 {
-    return {static_cast<double>(quad[0]), static_cast<double>(quad[1]), static_cast<double>(quad[2])};
-}
-/// The quads of a body as a motion.
-Motion motion_of(BodyKind kind, const float* quads)
-{
-    if (kind == BodyKind::particle) return {vector_at(quads), {0, 0, 0}};
-    if (kind == BodyKind::planar) {
-        return {{static_cast<double>(quads[0]), static_cast<double>(quads[1]), 0},
-                {0, 0, static_cast<double>(quads[2])}};
+    for (int i = 0; i < 3; ++i) motion[i] = static_cast<double>(quads[i]);
+    if constexpr (size == 6) {
+        for (int i = 3; i < 6; ++i)
+            motion[i] = kind == BodyKind::rigid ? turn * static_cast<double>(quads[i + 1]) : 0;
+        if (kind == BodyKind::planar) std::swap(motion[2], motion[5]);
     }
-    return {vector_at(quads), vector_at(quads + 4)};
 }
-Motion velocity_of(const KernelContext& context, BodyRow body)
+/// J of a body with this normal and lever, in the same numbers.
+template <int size>
+void read_direction(BodyKind kind, const Vec3<double>& n, const Vec3<double>& lever, double sign, double* j)
 {
-    return motion_of(body.kind(), quad_of(context.bodies[static_cast<int>(body.kind())].velocity, body));
+    j[0] = sign * n.x;
+    j[1] = sign * n.y;
+    j[2] = sign * n.z;
+    if constexpr (size == 6) {
+        const bool turns = kind == BodyKind::rigid;
+        j[3] = turns ? sign * lever.x : 0;
+        j[4] = turns ? sign * lever.y : 0;
+        j[5] = turns ? sign * lever.z : 0;
+    }
+    if (kind == BodyKind::planar) {
+        if constexpr (size == 6) j[2] = 0;
+        j[size - 1] = sign * lever.z;
+    }
 }
-/// How a body has moved since the step began, to first order in its rotation.
-Motion displacement_of(const KernelContext& context, BodyRow body)
+/// How a body that no impulse moves carries the point of a contact along one of its directions: by its velocity or by
+/// its displacement, whose rotation in space is the vector of a quaternion (turn = 2).
+double carried(const Vec3<double>& n, const Vec3<double>& lever, const float* quads, double turn)
 {
-    Motion moved = motion_of(body.kind(), quad_of(context.bodies[static_cast<int>(body.kind())].delta, body));
-    // The rotation of a body in space is a quaternion.
-    if (quads_of(body.kind()) == 2) moved.angular = 2.0 * moved.angular;
-    return moved;
+    const auto vector_at = [&](int i) {
+        return Vec3<double>{static_cast<double>(quads[i]), static_cast<double>(quads[i + 1]),
+                            static_cast<double>(quads[i + 2])};
+    };
+    return dot(n, vector_at(0)) + turn * dot(lever, vector_at(4));
 }
+
 ContactDirections directions_of(const IslandContact& place)
 {
     return place.read(place.chunk->streams.rows, static_cast<std::size_t>(place.block),
@@ -55,10 +68,6 @@ float* impulses_of(const IslandContact& place)
 {
     const std::int64_t floats = std::int64_t{place.chunk->kernels->impulse_floats} * block_lanes;
     return place.chunk->streams.impulses + floats * place.block + place.lane;
-}
-double component_along(const ContactDirection& d, const Motion& a, const Motion& b)
-{
-    return dot(d.n, b.linear - a.linear) + dot(d.lever_b, b.angular) - dot(d.lever_a, a.angular);
 }
 
 /// The lower triangle of L L^T = the inverse inertia; axes that cannot turn give columns of zeros.
@@ -88,7 +97,11 @@ bool ContactIsland<size>::lay_out(std::span<const BodyRow> bodies, std::span<con
                                      });
     places_.clear();  // should memory run out, nothing is known in the next step
     bodies_.clear();
-    for (const BodyRow body : bodies) bodies_.push_back({body, -1, {}});
+    for (const BodyRow row : bodies) {
+        Body body{};
+        body.row = row;
+        bodies_.push_back(body);
+    }
     if (!is_known) {
         edges_.clear();
         for (const IslandContact& contact : contacts) {
@@ -101,10 +114,10 @@ bool ContactIsland<size>::lay_out(std::span<const BodyRow> bodies, std::span<con
         places_.assign(contacts.begin(), contacts.end());
         return false;
     }
+    carriers_.clear();
     std::size_t rows = 0;
     for (const IslandContact& contact : contacts) rows += static_cast<std::size_t>(contact.rows);
     contacts_.resize(contacts.size());
-    directions_.resize(contacts.size());
     guess_.resize(contacts.size());
     factored_.resize(contacts.size());
     rows_.resize(rows);
@@ -116,9 +129,18 @@ bool ContactIsland<size>::lay_out(std::span<const BodyRow> bodies, std::span<con
     std::int32_t first_row = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const IslandContact& place = contacts[i];
-        Contact& contact = contacts_[i] = {place.a, place.b, first_row, place.rows, -1, false, 0, 0};
+        Contact& contact = contacts_[i] = {};
+        contact.a = place.a;
+        contact.b = place.b;
+        contact.first_row = first_row;
+        contact.rows = place.rows;
+        contact.block = -1;
         first_row += place.rows;
-        if (place.a < 0 || place.b < 0) continue;
+        if (place.a < 0 || place.b < 0) {
+            carriers_.push_back(
+                {static_cast<std::int32_t>(i), place.a < 0 ? place.body_a : place.body_b, place.a < 0, {}});
+            continue;
+        }
         const std::int32_t a = order_.place_of(place.a), b = order_.place_of(place.b);
         contact.a_is_later = a > b;
         contact.block = order_.find_block(std::min(a, b), std::max(a, b));
@@ -130,117 +152,151 @@ template <int size>
 void ContactIsland<size>::begin()
 {
     has_rows_ = has_factor_ = has_guess_ = false;
+    auto carrier = carriers_.begin();
     for (std::size_t i = 0; i < places_.size(); ++i) {
-        directions_[i] = directions_of(places_[i]);
-        contacts_[i].friction = directions_[i].friction;
-        for (int k = 0; k < contacts_[i].rows; ++k)
-            impulses_[as_index(contacts_[i].first_row + k)] =
-                static_cast<double>(impulses_of(places_[i])[k * block_lanes]);
+        const IslandContact& place = places_[i];
+        Contact& contact = contacts_[i];
+        const ContactDirections all = directions_of(place);
+        contact.separation = all.separation;
+        contact.friction = all.friction;
+        contact.most_force = all.most_force;
+        std::copy(std::begin(all.surface_speed), std::end(all.surface_speed), contact.surface_speed);
+        for (int k = 0; k < contact.rows; ++k) {
+            const ContactDirection& d = all.of[k];
+            Row& row = rows_[as_index(contact.first_row + k)];
+            if (contact.a >= 0) read_direction<size>(place.body_a.kind(), d.n, d.lever_a, -1, row.of_a);
+            if (contact.b >= 0) read_direction<size>(place.body_b.kind(), d.n, d.lever_b, 1, row.of_b);
+            impulses_[as_index(contact.first_row + k)] =
+                static_cast<double>(impulses_of(place)[k * block_lanes]);
+        }
+        if (contact.a < 0 || contact.b < 0) (carrier++)->directions = all;
     }
 }
 
-/// Reads masses. Returns whether an inertia has turned too far for the rows there are.
+/// Reads masses and motions. Returns whether a mass has changed or an inertia has turned too far for the rows there are.
 template <int size>
 bool ContactIsland<size>::load_bodies(const KernelContext& context)
 {
-    bool turned = !has_rows_;
+    bool any_changed = !has_rows_;
     for (Body& body : bodies_) {
-        const BodyArrays& arrays = context.bodies[static_cast<int>(body.row.kind())];
-        const float* v = quad_of(arrays.velocity, body.row);
-        Body now{body.row, std::sqrt(static_cast<double>(v[3])), {}};
-        if (body.row.kind() == BodyKind::planar) {
-            now.angular[5] = std::sqrt(static_cast<double>(quad_of(arrays.delta, body.row)[3]));
-        } else if (body.row.kind() == BodyKind::rigid) {
-            root_of(arrays.world_inverse_inertia + std::int64_t{8} * body.row.row(), now.angular);
+        const BodyKind kind = body.row.kind();
+        const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
+        const float* velocity = quad_of(arrays.velocity, body.row);
+        const float* delta = quad_of(arrays.delta, body.row);
+        read_motion<size>(kind, velocity, 1, body.velocity);
+        read_motion<size>(kind, delta, 2, body.moved);
+        bool changed = velocity[3] != body.inverse_mass;
+        const float* inertia = nullptr;
+        if (kind == BodyKind::planar) {
+            changed = changed || delta[3] != body.inverse_inertia[5];
+        } else if (kind == BodyKind::rigid) {
+            inertia = arrays.world_inverse_inertia + std::int64_t{8} * body.row.row();
+            const float scale = inertia[0] + inertia[3] + inertia[5];
+            for (int i = 0; i < 6; ++i)
+                changed = changed || std::abs(inertia[i] - body.inverse_inertia[i]) > turned_inertia * scale;
         }
-        const double scale = now.angular[0] + now.angular[2] + now.angular[5];
-        bool changed = now.linear != body.linear;
-        for (int i = 0; i < 6; ++i)
-            changed = changed || std::abs(now.angular[i] - body.angular[i]) > turned_inertia * scale;
-        if (changed) {
-            body = now;
-            turned = true;
+        if (!changed) continue;
+        any_changed = true;
+        body.inverse_mass = velocity[3];
+        body.linear = std::sqrt(static_cast<double>(body.inverse_mass));
+        if (kind == BodyKind::planar) {
+            body.inverse_inertia[5] = delta[3];
+            body.angular[5] = std::sqrt(static_cast<double>(delta[3]));
+        } else if (kind == BodyKind::rigid) {
+            std::copy(inertia, inertia + 6, body.inverse_inertia);
+            root_of(inertia, body.angular);
         }
     }
-    return turned;
+    return any_changed;
 }
 
 template <int size>
 void ContactIsland<size>::load_rows()
 {
-    const auto scaled = [&](std::int32_t i, const ContactDirection& d, const Vec3<double>& lever, double sign,
-                            double* j) {
+    const auto scaled = [&](std::int32_t i, const double* of, double* j) {
         std::fill(j, j + size, 0.0);
         if (i < 0) return;
         const Body& body = bodies_[as_index(i)];
-        const double push = sign * body.linear;
         const double* l = body.angular;
-        const Vec3<double> turn{sign * (l[0] * lever.x + l[1] * lever.y + l[3] * lever.z),
-                                sign * (l[2] * lever.y + l[4] * lever.z), sign * (l[5] * lever.z)};
-        j[0] = push * d.n.x;
-        j[1] = push * d.n.y;
-        if constexpr (size == 3) {
-            j[2] = body.row.kind() == BodyKind::planar ? turn.z : push * d.n.z;
-        } else {
-            if (body.row.kind() != BodyKind::planar) j[2] = push * d.n.z;
-            j[3] = turn.x;
-            j[4] = turn.y;
-            j[5] = turn.z;
+        for (int k = 0; k < 3; ++k) j[k] = body.linear * of[k];
+        if constexpr (size == 6) {
+            j[3] = l[0] * of[3] + l[1] * of[4] + l[3] * of[5];
+            j[4] = l[2] * of[4] + l[4] * of[5];
         }
+        if (size == 6 || body.row.kind() == BodyKind::planar) j[size - 1] = l[5] * of[size - 1];
     };
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-        const Contact& contact = contacts_[i];
-        for (int k = 0; k < contact.rows; ++k) {
-            const ContactDirection& d = directions_[i].of[k];
-            Row& row = rows_[as_index(contact.first_row + k)];
-            scaled(contact.a, d, d.lever_a, -1, row.a);
-            scaled(contact.b, d, d.lever_b, 1, row.b);
-            row.response = std::inner_product(row.a, row.a + size, row.a, 0.0) +
-                           std::inner_product(row.b, row.b + size, row.b, 0.0);
+    for (const Contact& contact : contacts_) {
+        for (std::int32_t r = contact.first_row; r < contact.first_row + contact.rows; ++r) {
+            Row& row = rows_[as_index(r)];
+            scaled(contact.a, row.of_a, row.a);
+            scaled(contact.b, row.of_b, row.b);
+            row.response = product(row.a, row.a) + product(row.b, row.b);
         }
     }
     has_rows_ = true;
     has_factor_ = false;
 }
 
-/// Reads velocities, and what speed each row wants.
+/// Finds what speed each row has and which one it wants, from bodies that have been read. Returns the largest speed, m/s.
 template <int size>
-void ContactIsland<size>::load_speeds(const KernelContext& context, bool relaxes)
+double ContactIsland<size>::load_speeds(const KernelContext& context, bool relaxes)
 {
     const StepConstants& step = context.step;
+    std::fill(s_.begin(), s_.end(), 0.0);
+    double largest = 0;
+    auto carrier = carriers_.begin();
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-        const IslandContact& place = places_[i];
-        const ContactDirections& all = directions_[i];
-        const Motion va = velocity_of(context, place.body_a), vb = velocity_of(context, place.body_b);
-        Row* rows = rows_of(contacts_[i]);
-        for (int k = 0; k < all.count; ++k) {
-            rows[k].start = component_along(all.of[k], va, vb);
-            rows[k].aim = k == 0 ? 0 : all.surface_speed[k - 1];
+        Contact& contact = contacts_[i];
+        Row* rows = rows_of(contact);
+        const Body* a = contact.a < 0 ? nullptr : &bodies_[as_index(contact.a)];
+        const Body* b = contact.b < 0 ? nullptr : &bodies_[as_index(contact.b)];
+        double separation = contact.separation;
+        if (a != nullptr) separation += product(rows[0].of_a, a->moved);
+        if (b != nullptr) separation += product(rows[0].of_b, b->moved);
+        for (int k = 0; k < contact.rows; ++k) {
+            rows[k].start = 0;
+            if (a != nullptr) rows[k].start += product(rows[k].of_a, a->velocity);
+            if (b != nullptr) rows[k].start += product(rows[k].of_b, b->velocity);
+            rows[k].aim = k == 0 ? 0 : contact.surface_speed[k - 1];
         }
-        contacts_[i].most = all.most_force * static_cast<double>(step.substep);
-        const double separation =
-            all.separation + component_along(all.of[0], displacement_of(context, place.body_a),
-                                             displacement_of(context, place.body_b));
+        if (a == nullptr || b == nullptr) {
+            const Carrier& by = *carrier++;
+            const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::fixed)];
+            const double sign = by.is_a ? -1 : 1;
+            const auto along = [&](int k, const float* quads, double turn) {
+                const ContactDirection& d = by.directions.of[k];
+                return sign * carried(d.n, by.is_a ? d.lever_a : d.lever_b, quads, turn);
+            };
+            separation += along(0, quad_of(arrays.delta, by.body), 2);
+            for (int k = 0; k < contact.rows; ++k)
+                rows[k].start += along(k, quad_of(arrays.velocity, by.body), 1);
+        }
+        for (int k = 0; k < contact.rows; ++k) largest = std::max(largest, std::abs(rows[k].start));
+        contact.most = contact.most_force * static_cast<double>(step.substep);
         double aim = 0;
         if (separation > 0) {
             aim = -separation * static_cast<double>(step.inverse_substep);
         } else if (!relaxes) {
-            const Softness& soft = place.a < 0 || place.b < 0 ? step.static_contact : step.contact;
+            const Softness& soft = a == nullptr || b == nullptr ? step.static_contact : step.contact;
             aim = std::min(
                 -static_cast<double>(soft.rate) * std::min(separation + static_cast<double>(step.slop), 0.0),
                 static_cast<double>(step.push_out_speed));
         }
         rows[0].aim = std::abs(aim) < rounding_speed ? 0 : aim;
+        take_back(i);
     }
-    // A sweep may have changed impulses and velocities since. That is taken back.
-    std::fill(s_.begin(), s_.end(), 0.0);
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-        const float* impulses = impulses_of(places_[i]);
-        Row* rows = rows_of(contacts_[i]);
-        for (int k = 0; k < contacts_[i].rows; ++k) {
-            rows[k].lambda = static_cast<double>(impulses[k * block_lanes]);
-            set(contacts_[i], rows[k], impulses_[as_index(contacts_[i].first_row + k)]);
-        }
+    return largest;
+}
+
+/// Takes back what a sweep has changed of a contact's impulses, and of velocities by them, since they were stored.
+template <int size>
+void ContactIsland<size>::take_back(std::size_t i)
+{
+    const float* impulses = impulses_of(places_[i]);
+    Row* rows = rows_of(contacts_[i]);
+    for (int k = 0; k < contacts_[i].rows; ++k) {
+        rows[k].lambda = static_cast<double>(impulses[k * block_lanes]);
+        set(contacts_[i], rows[k], impulses_[as_index(contacts_[i].first_row + k)]);
     }
 }
 

@@ -102,28 +102,53 @@ void for_each_lane(const SweepChunk& chunk, const Visit& visit)
     }
 }
 
+/// Whether two steps list the same contact at the same place.
+bool are_same(const IslandContact& x, const IslandContact& y)
+{
+    return x.chunk == y.chunk && x.block == y.block && x.lane == y.lane && x.read == y.read &&
+           x.rows == y.rows && x.peak == y.peak && x.body_a.bits == y.body_a.bits &&
+           x.body_b.bits == y.body_b.bits;
+}
+
 }  // namespace
 
 void ExactContacts::find_islands(const BodyStore& bodies, const SweepLists& sweeps,
                                  std::span<const SweepChunk> discs, float dt)
 {
-    contacts_.clear();
-    // In the order of the blocks, which does not depend on threads or lanes.
+    list_contacts(bodies, sweeps, discs, static_cast<double>(dt));
+    if (has_islands_ && std::equal(now_.begin(), now_.end(), contacts_.begin(), contacts_.end(), are_same)) {
+        for (std::int64_t i = 0; i < count_; ++i) islands_[static_cast<std::size_t>(i)]->residual = 0;
+        return;
+    }
+    has_islands_ = false;  // should memory run out
+    contacts_.swap(now_);
+    make_islands(bodies);
+    has_islands_ = true;
+}
+
+/// In the order of the blocks, which does not depend on threads or lanes.
+void ExactContacts::list_contacts(const BodyStore& bodies, const SweepLists& sweeps,
+                                  std::span<const SweepChunk> discs, double dt)
+{
+    now_.clear();
     for (const auto& chunks : sweeps.lists) {
         for (const SweepChunk& chunk : chunks) {
             if (chunk.type >= contact_type_count) continue;
             for_each_lane(chunk, [&](std::int32_t block, std::int32_t lane) {
-                contacts_.push_back(listed(chunk, block, lane));
+                now_.push_back(listed(chunk, block, lane));
             });
         }
     }
     for (const SweepChunk& chunk : discs) {
         for_each_lane(chunk, [&](std::int32_t block, std::int32_t lane) {
             const IslandContact contact = of_discs(chunk, block, lane);
-            if (chunk.kind_a == BodyKind::fixed || may_touch(bodies, contact, static_cast<double>(dt)))
-                contacts_.push_back(contact);
+            if (chunk.kind_a == BodyKind::fixed || may_touch(bodies, contact, dt)) now_.push_back(contact);
         });
     }
+}
+
+void ExactContacts::make_islands(const BodyStore& bodies)
+{
     sets_.reset([&](BodyKind kind) { return bodies.rows(kind).size(); });
     for (const IslandContact& contact : contacts_) sets_.tie(contact.body_a, contact.body_b);
     sets_.flatten();

@@ -39,13 +39,17 @@ class ExactContacts {
 
   private:
     struct Island;
-    std::vector<IslandContact> contacts_;
+    std::vector<IslandContact> contacts_, now_;  ///< by which the islands were made; of this step
+    bool has_islands_ = false;
     BodySets sets_;
     std::vector<std::int32_t> island_of_;           ///< by root
     std::vector<std::int32_t> local_;               ///< number in its island, by BodySets::number
     std::vector<std::unique_ptr<Island>> islands_;  ///< never shrinks, so that islands keep their memory
     std::int64_t count_ = 0, left_out_ = 0;
 
+    void list_contacts(const BodyStore& bodies, const SweepLists& sweeps, std::span<const SweepChunk> discs,
+                       double dt);
+    void make_islands(const BodyStore& bodies);
     Island& island_of(std::int32_t root);
     std::int32_t number_in(Island& island, BodyRow body);
 };
