@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "contacts/friction_impulse.h"
+
 namespace motley {
 namespace {
 
@@ -18,19 +20,6 @@ constexpr int most_sweeps = 3;
 constexpr double worth_while = 0.8;
 /// Solves with one matrix, guesses between two sweeps, and sweeps.
 constexpr int most_repeats = 8, most_guesses = 4, most_rounds = 6;
-
-/// The impulses of friction along the tangents.
-struct Friction {
-    double x = 0, y = 0;
-    [[nodiscard]] double length() const { return std::sqrt(x * x + y * y); }
-    /// The same direction, `wanted` N s long.
-    [[nodiscard]] Friction scaled_to(double wanted) const
-    {
-        const double now = length();
-        return now > 0 ? Friction{x * (wanted / now), y * (wanted / now)} : *this;
-    }
-    [[nodiscard]] Friction within(double bound) const { return length() > bound ? scaled_to(bound) : *this; }
-};
 
 }  // namespace
 
@@ -98,9 +87,9 @@ void ContactIsland<size>::sweep()
                 return response > 0 ? rows[k].lambda - slip / response : rows[k].lambda;
             };
             const double bound = contact.friction * rows[0].lambda;
-            const Friction free{step(1, rows[1].response), step(2, rows[contact.rows - 1].response)};
-            const Friction next =
-                free.length() > bound ? Friction{step(1, most), step(2, most)}.within(bound) : free;
+            const FrictionImpulse free{step(1, rows[1].response), step(2, rows[contact.rows - 1].response)};
+            const FrictionImpulse next =
+                free.length() > bound ? FrictionImpulse{step(1, most), step(2, most)}.within(bound) : free;
             set(contact, rows[1], next.x);
             if (contact.rows > 2) set(contact, rows[2], next.y);
         }
@@ -132,31 +121,12 @@ auto ContactIsland<size>::measure() -> Residual
         const auto step = [&](int k) {
             return k < contact.rows ? rows[k].lambda - (speeds[k] - rows[k].aim) / most : 0;
         };
-        const Friction next = Friction{step(1), step(2)}.within(contact.friction * rows[0].lambda);
+        const FrictionImpulse next =
+            FrictionImpulse{step(1), step(2)}.within(contact.friction * rows[0].lambda);
         add(next.x - rows[1].lambda, most);
         if (contact.rows > 2) add(next.y - rows[2].lambda, most);
     }
     return all;
-}
-
-/// From impulses and refreshed speeds. What begins to touch sticks, until its slip is known.
-template <int size>
-auto ContactIsland<size>::guess_of(const Contact& contact) const -> State
-{
-    const Row* rows = rows_of(contact);
-    const double* speeds = &speeds_[as_index(contact.first_row)];
-    if (rows[0].response <= 0) return State::apart;
-    const double normal = rows[0].lambda + (rows[0].aim - speeds[0]) / rows[0].response;
-    if (normal < -rounding_speed / rows[0].response) return State::apart;
-    if (normal > contact.most) return State::gives_way;
-    if (contact.rows < 2 || contact.friction <= 0) return State::slides;
-    if (rows[0].lambda <= 0) return State::sticks;
-    const auto step = [&](int k) {
-        if (k >= contact.rows) return 0.0;
-        return rows[k].response > 0 ? rows[k].lambda - (speeds[k] - rows[k].aim) / rows[k].response : 0;
-    };
-    const double bound = contact.friction * std::max(normal, rows[0].lambda);
-    return Friction{step(1), step(2)}.length() <= bound ? State::sticks : State::slides;
 }
 
 /// Calls visit(contact, number of the row) for the rows that the guess makes equations of.
@@ -199,9 +169,9 @@ bool ContactIsland<size>::hold_in_cone(const Contact& contact)
 {
     if (contact.rows < 2) return false;
     Row* rows = rows_of(contact);
-    const Friction old{rows[1].lambda, contact.rows > 2 ? rows[2].lambda : 0};
+    const FrictionImpulse old{rows[1].lambda, contact.rows > 2 ? rows[2].lambda : 0};
     if (old.length() <= contact.friction * rows[0].lambda) return false;
-    const Friction pull = old.scaled_to(contact.friction * rows[0].lambda);
+    const FrictionImpulse pull = old.scaled_to(contact.friction * rows[0].lambda);
     set(contact, rows[1], pull.x);
     if (contact.rows > 2) set(contact, rows[2], pull.y);
     return true;
@@ -255,67 +225,6 @@ void ContactIsland<size>::find_step()
     });
 }
 
-/// What the impulses and speeds that a step leads to say of a contact.
-template <int size>
-auto ContactIsland<size>::mended(std::size_t i) const -> State
-{
-    const Contact& contact = contacts_[i];
-    const Row* rows = rows_of(contact);
-    const std::size_t first = as_index(contact.first_row);
-    if (rows[0].response <= 0) return State::apart;
-    const double opening = predicted_[first] - rows[0].aim;
-    const State touching = contact.rows > 1 && contact.friction > 0 ? State::sticks : State::slides;
-    if (guess_[i] == State::apart) return opening < -rounding_speed ? touching : State::apart;
-    if (guess_[i] == State::gives_way) return opening > rounding_speed ? touching : State::gives_way;
-    const double rounding = rounding_speed / rows[0].response;
-    const double normal = rows[0].lambda + change_[first];
-    if (normal < -rounding) return State::apart;
-    if (normal > contact.most + rounding) return State::gives_way;
-    if (touching == State::slides) return State::slides;
-    if (guess_[i] == State::slides) {
-        // Friction that pushes along the slip must have stopped it.
-        double along_slip = 0, squares = 0;
-        for (int k = 1; k < contact.rows; ++k) {
-            along_slip += rows[k].lambda * (predicted_[first + as_index(k)] - rows[k].aim);
-            squares += rows[k].lambda * rows[k].lambda;
-        }
-        return along_slip > rounding_speed * std::sqrt(squares) ? State::sticks : State::slides;
-    }
-    const Friction pull{rows[1].lambda + change_[first + 1],
-                        contact.rows > 2 ? rows[2].lambda + change_[first + 2] : 0};
-    return pull.length() > contact.friction * std::max(normal, 0.0) + rounding ? State::slides
-                                                                               : State::sticks;
-}
-
-/// Friction that had to be more than it can be is at its bound from now on, in its direction.
-template <int size>
-void ContactIsland<size>::begin_to_slide(const Contact& contact)
-{
-    Row* rows = rows_of(contact);
-    double* change = &change_[as_index(contact.first_row)];
-    const Friction pull{rows[1].lambda + change[1], contact.rows > 2 ? rows[2].lambda + change[2] : 0};
-    const Friction held = pull.within(contact.friction * std::max(rows[0].lambda + change[0], 0.0));
-    set(contact, rows[1], held.x);
-    change[1] = 0;
-    if (contact.rows < 3) return;
-    set(contact, rows[2], held.y);
-    change[2] = 0;
-}
-
-/// Returns whether anything in the guess had to be mended.
-template <int size>
-bool ContactIsland<size>::mend_guess()
-{
-    bool any = false;
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-        const State state = mended(i);
-        if (guess_[i] == State::sticks && state == State::slides) begin_to_slide(contacts_[i]);
-        any = any || state != guess_[i];
-        guess_[i] = state;
-    }
-    return any;
-}
-
 /// Changes the impulses by the step, within their bounds.
 template <int size>
 void ContactIsland<size>::apply_step()
@@ -328,8 +237,8 @@ void ContactIsland<size>::apply_step()
         const double normal = std::clamp(before + change_[first], 0.0, contact.most);
         set(contact, rows[0], normal);
         if (contact.rows < 2) continue;
-        Friction pull{rows[1].lambda + change_[first + 1],
-                      contact.rows > 2 ? rows[2].lambda + change_[first + 2] : 0};
+        FrictionImpulse pull{rows[1].lambda + change_[first + 1],
+                             contact.rows > 2 ? rows[2].lambda + change_[first + 2] : 0};
         const double bound = contact.friction * normal;
         constexpr double at_bound = 0.999;  // it slid before
         const bool slides = guess_[i] == State::slides && before > 0;

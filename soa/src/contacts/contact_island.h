@@ -87,8 +87,8 @@ class ContactIsland {
     };
     struct Body {
         BodyRow row;
-        float inverse_mass = -1, inverse_inertia[6] = {};  ///< as they were read last
-        double linear = 0;                                 ///< square root of 1/m
+        float inverse_mass = 0, inverse_inertia[6] = {};  ///< as the rows were made of them
+        double linear = 0;                                ///< square root of 1/m
         double angular[6] = {};  ///< lower triangle of the root of I^-1: xx, yx, yy, zx, zy, zz
         double velocity[size] = {}, moved[size] = {};  ///< moved: since the step began, to first order
     };

@@ -177,7 +177,7 @@ void ContactIsland<size>::begin()
 template <int size>
 bool ContactIsland<size>::load_bodies(const KernelContext& context)
 {
-    bool any_changed = !has_rows_;
+    bool any_changed = false;
     for (Body& body : bodies_) {
         const BodyKind kind = body.row.kind();
         const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
@@ -185,7 +185,7 @@ bool ContactIsland<size>::load_bodies(const KernelContext& context)
         const float* delta = quad_of(arrays.delta, body.row);
         read_motion<size>(kind, velocity, 1, body.velocity);
         read_motion<size>(kind, delta, 2, body.moved);
-        bool changed = velocity[3] != body.inverse_mass;
+        bool changed = !has_rows_ || velocity[3] != body.inverse_mass;
         const float* inertia = nullptr;
         if (kind == BodyKind::planar) {
             changed = changed || delta[3] != body.inverse_inertia[5];
