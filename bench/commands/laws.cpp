@@ -90,10 +90,8 @@ std::string cell(const LawResult& result, LawWay way, std::size_t mark)
 {
     const std::vector<Mark>& marks = result.marks[static_cast<int>(way)];
     if (marks.empty()) return "-";
-    return fmt::format("{:.2g} {}", marks[mark].value,
-                       marks[mark].passes()               ? "PASS"
-                       : result.is_debt(way, marks[mark]) ? "FAIL*"
-                                                          : "FAIL");
+    const bool is_owed = !marks[mark].passes() && result.is_debt(way, marks[mark]);
+    return fmt::format("{:.2g} {}{}", marks[mark].value, marks[mark].verdict(), is_owed ? "*" : "");
 }
 
 }  // namespace

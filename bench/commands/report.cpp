@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "measuring/host.h"
@@ -80,9 +81,10 @@ std::string table_of(const RunResult& r)
              fmt::format("{:.3g} / {:.3g} m/s rms / max, a step", r.direct_rms, r.direct_max));
     }
     line("bodies contained", fmt::format("{}", r.contained));
-    for (const auto& [name, value] : r.figures) line(name, fmt::format("{:.4g}", value));
+    for (const auto& [name, value] : r.figures)
+        line(name, std::isnan(value) ? "not measured: the run was too short" : fmt::format("{:.4g}", value));
     for (const Mark& mark : r.marks) {
-        text += fmt::format("  {} {}: {:.3g}, at most {:g}\n", mark.passes() ? "PASS" : "FAIL", mark.name,
+        text += fmt::format("  {} {}: {:.3g}, at most {:g}\n", mark.verdict(), mark.name,
                             mark.value, mark.bound);
     }
     line("state hash", fmt::format("{:016x}", r.state_hash));

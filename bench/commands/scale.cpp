@@ -172,7 +172,7 @@ std::string table_of(const ScaleResult& result)
     }
     for (const Mark& mark : result.marks)
         text += fmt::format("{}: {:.4g}, at most {:g}: {}\n", mark.name, mark.value, mark.bound,
-                            mark.passes() ? "PASS" : "FAIL");
+                            mark.verdict());
     return text;
 }
 

@@ -1,6 +1,7 @@
 // What a scene of the program is: a motley scene, the host's part around it, and the figures by which it is judged.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -47,8 +48,13 @@ using Figure = std::pair<std::string, double>;
 /// What must hold in a run, by an exact law: `value` is at most `bound`.
 struct Mark {
     std::string name;  ///< with its unit
-    double value, bound;
+    double value, bound;  ///< a value of NaN: the run ended before it could be measured
     [[nodiscard]] bool passes() const { return value <= bound; }
+    [[nodiscard]] const char* verdict() const
+    {
+        if (std::isnan(value)) return "NOT MEASURED";
+        return passes() ? "PASS" : "FAIL";
+    }
 };
 
 class BenchScene {

@@ -38,6 +38,7 @@ class Lean final : public Rows {
     }
     [[nodiscard]] std::vector<Mark> marks() const override
     {
+        if (off_.is_empty()) return {};  // the run was shorter than the settling time
         return {{"force profile off kF, rms per step (share of nF)", off_.root(), 0.01},
                 {"wall force off nF, rms per step (share)", wall_off_.root(), 0.01},
                 {"overlap, deepest of all steps (share of radius)", deepest_ / radius, 0.01}};

@@ -17,10 +17,9 @@ class MeanSquare {
         sum_ += value * value;
         ++count_;
     }
-    [[nodiscard]] double root() const
-    {
-        return std::sqrt(sum_ / static_cast<double>(std::max<std::int64_t>(1, count_)));
-    }
+    [[nodiscard]] bool is_empty() const { return count_ == 0; }
+    /// NaN if there are no values.
+    [[nodiscard]] double root() const { return std::sqrt(sum_ / static_cast<double>(count_)); }
 
   private:
     double sum_ = 0;
