@@ -19,7 +19,7 @@ constexpr int most_sweeps = 3;
 /// Another solve with the same matrix is worth while if the last one left at most this share of the residual, J.
 constexpr double worth_while = 0.8;
 /// Solves with one matrix, guesses between two sweeps, and sweeps.
-constexpr int most_repeats = 8, most_guesses = 4, most_rounds = 6;
+constexpr int most_repeats = 8, most_guesses = 4, most_rounds = 12;
 
 }  // namespace
 
@@ -44,6 +44,19 @@ double ContactIsland<size>::along(const Contact& contact, const Row& row, const 
     return sum;
 }
 
+/// s += j^T times a number.
+template <int size>
+void ContactIsland<size>::add_across(const Contact& contact, const Row& row, double times,
+                                     std::vector<double>& s) const
+{
+    const auto add = [&](std::int32_t body, const double* j) {
+        double* x = s.data() + std::int64_t{body} * size;
+        for (int i = 0; i < size; ++i) x[i] += j[i] * times;
+    };
+    if (contact.a >= 0) add(contact.a, row.a);
+    if (contact.b >= 0) add(contact.b, row.b);
+}
+
 template <int size>
 double ContactIsland<size>::speed(const Contact& contact, const Row& row) const
 {
@@ -62,13 +75,7 @@ void ContactIsland<size>::refresh_speeds()
 template <int size>
 void ContactIsland<size>::set(const Contact& contact, Row& row, double lambda)
 {
-    const double change = lambda - row.lambda;
-    const auto push = [&](std::int32_t body, const double* j) {
-        double* s = s_.data() + std::int64_t{body} * size;
-        for (int i = 0; i < size; ++i) s[i] += j[i] * change;
-    };
-    if (contact.a >= 0) push(contact.a, row.a);
-    if (contact.b >= 0) push(contact.b, row.b);
+    add_across(contact, row, lambda - row.lambda, s_);
     row.lambda = lambda;
 }
 
@@ -207,13 +214,7 @@ void ContactIsland<size>::find_step()
     std::fill(change_.begin(), change_.end(), 0.0);
     for_each_active([&](const Contact& contact, std::size_t r) {
         const Row& row = rows_[r];
-        const double pull = -rho / row.response * (speeds_[r] - row.aim);
-        const auto add = [&](std::int32_t body, const double* j) {
-            double* x = step_.data() + std::int64_t{body} * size;
-            for (int i = 0; i < size; ++i) x[i] += j[i] * pull;
-        };
-        if (contact.a >= 0) add(contact.a, row.a);
-        if (contact.b >= 0) add(contact.b, row.b);
+        add_across(contact, row, -rho / row.response * (speeds_[r] - row.aim), step_);
     });
     factor_.solve(order_, step_);
     for (const Contact& contact : contacts_) {

@@ -13,7 +13,9 @@
 // faces are more than six equations, so J M^-1 J^T is singular; this matrix is not. A solve leaves about 1 / (rho s) of
 // an error in a mode that responds s times as much as a single contact, and is repeated while that is worth while. A
 // tower of fifty boxes leans with s = 1e-6. Where rows contradict each other, an impulse grows by rho times what they
-// contradict each other by: a larger rho would make that of rounding.
+// contradict each other by: a larger rho would make that of rounding. Separations do contradict each other, by rounding: a
+// wall would press against itself, more and more with each step, until friction gives way. So separations that are next to
+// nothing ask for nothing.
 //
 // Unknowns are scaled: dv = W s with W W^T = M^-1, so that masses of any ratio are alike and a body that cannot turn
 // needs no special case. The matrix is I + sum rho / K j j^T, with j = W^T J^T, in blocks of two bodies; its factor is
@@ -60,8 +62,11 @@ class ContactIsland {
     double solve(const KernelContext& context, bool relaxes);
 
   private:
-    /// m/s: smaller speeds and residuals are rounding, as those are that separations ask for.
+    /// m/s: smaller speeds and residuals are rounding.
     static constexpr double rounding_speed = 1e-6;
+    /// m: so much of a gap or of a penetration asks for no speed. Separations are rounded in float, and bodies wander by
+    /// what solves leave over.
+    static constexpr double rounding_separation = 2e-6;
 
     enum class State : std::uint8_t {
         apart,
@@ -139,6 +144,7 @@ class ContactIsland {
     [[nodiscard]] Row* rows_of(const Contact& contact);
     [[nodiscard]] const Row* rows_of(const Contact& contact) const;
     [[nodiscard]] double along(const Contact& contact, const Row& row, const std::vector<double>& s) const;
+    void add_across(const Contact& contact, const Row& row, double times, std::vector<double>& s) const;
     [[nodiscard]] double speed(const Contact& contact, const Row& row) const;
     void refresh_speeds();
     /// Gives a row another impulse, and the bodies what follows.

@@ -274,13 +274,13 @@ double ContactIsland<size>::load_speeds(const KernelContext& context, bool relax
         for (int k = 0; k < contact.rows; ++k) largest = std::max(largest, std::abs(rows[k].start));
         contact.most = contact.most_force * static_cast<double>(step.substep);
         double aim = 0;
-        if (separation > 0) {
-            aim = -separation * static_cast<double>(step.inverse_substep);
-        } else if (!relaxes) {
+        if (separation > rounding_separation) {
+            aim = (rounding_separation - separation) * static_cast<double>(step.inverse_substep);
+        } else if (separation < -rounding_separation && !relaxes) {
             const Softness& soft = a == nullptr || b == nullptr ? step.static_contact : step.contact;
-            aim = std::min(
-                -static_cast<double>(soft.rate) * std::min(separation + static_cast<double>(step.slop), 0.0),
-                static_cast<double>(step.push_out_speed));
+            const double slop = std::max(rounding_separation, static_cast<double>(step.slop));
+            aim = std::min(-static_cast<double>(soft.rate) * std::min(separation + slop, 0.0),
+                           static_cast<double>(step.push_out_speed));
         }
         rows[0].aim = std::abs(aim) < rounding_speed ? 0 : aim;
         take_back(i);
