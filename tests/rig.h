@@ -11,15 +11,22 @@ namespace motley::testing {
 
 inline constexpr float frame_time = 1.0F / 60;
 
-/// The number of steps of a long run. Sanitizers get a tenth of it: they make a step many times slower, and later
-/// steps access the same memory as earlier ones.
+/// Whether a sanitizer runs, which makes a step many times slower.
+#ifdef MOTLEY_SANITIZED
+inline constexpr bool is_sanitized = true;
+#else
+inline constexpr bool is_sanitized = false;
+#endif
+
+/// The number of steps of a long run. Sanitizers get a tenth of it: later steps access the same memory as earlier ones.
 constexpr int long_run(int steps)
 {
-#ifdef MOTLEY_SANITIZED
-    return steps / 10;
-#else
-    return steps;
-#endif
+    return is_sanitized ? steps / 10 : steps;
+}
+/// The number of repeats with other random numbers, loads or copies, of which sanitizers get one for the same reason.
+constexpr int repeats(int count)
+{
+    return is_sanitized ? 1 : count;
 }
 
 inline SolverSettings with_gravity(Vec3<float> gravity)

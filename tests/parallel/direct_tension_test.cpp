@@ -28,7 +28,8 @@ SolverSettings direct(Vec3<float> gravity)
 TEST(DirectTension, ChainsHoldAnyLoadAndGainNoEnergy)
 {
     for (const ChainStart start : {ChainStart::hanging, ChainStart::level}) {
-        for (const double load : {1.0, 30.0, 1e3, 1e6}) {
+        for (const double load : {1e6, 1e3, 30.0, 1.0}) {
+            if (testing::is_sanitized && load < 1e6) break;
             Scene scene;
             LoadedChain chain(scene);
             chain.hang(start, load);

@@ -59,7 +59,7 @@ TEST(DiscBits, AreEqualForEveryInstructionSetAndNumberOfThreads)
 {
     for (const float friction : {0.0F, 0.4F}) {
         for (const Method method : {Method::soft_step, Method::sequential_impulse}) {
-            const DiscCrowd crowd({.people = 2500, .friction = friction});
+            const DiscCrowd crowd({.people = testing::is_sanitized ? 600 : 2500, .friction = friction});
             const SolverSettings settings{.method = method};
             const auto scalar = run(crowd, settings, {.isa = Isa::scalar});
             for (const Isa isa : available_isas()) {

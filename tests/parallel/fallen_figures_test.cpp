@@ -30,6 +30,7 @@ std::vector<SolverSettings> every_way()
     impulse.drift_correction = DriftCorrection::baumgarte;
     impulse.iterations = 6;
     impulse.substeps = 2;
+    if (testing::is_sanitized) return {iterated, exact};
     return {soft, iterated, exact, impulse};
 }
 

@@ -329,7 +329,7 @@ TEST(ImpulsesOfAStep, OfACrowdInPatches)
     for (const SolverSettings& settings : {soft(4), soft(8, 1), tolerant(2)}) {
         testing::LatticeCrowd crowd;
         Solver solver(settings);
-        for (int step = 0; step < 4; ++step) {
+        for (int step = 0; step < testing::repeats(4); ++step) {
             const std::vector<Contact> contacts = crowd.contacts();
             Ledger ledger(crowd.scene, crowd.bodies);
             ASSERT_EQ(solver.step(crowd.scene, frame_time, contacts).status, StepStatus::done);

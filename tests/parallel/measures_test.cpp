@@ -174,7 +174,7 @@ std::vector<std::uint64_t> run(const SolverSettings& settings, const SolverOptio
     testing::JointScene joints;
     Solver solver(settings, options);
     std::vector<std::uint64_t> hashes;
-    for (int step = 0; step < 60; ++step) {
+    for (int step = 0; step < testing::long_run(60); ++step) {
         EXPECT_EQ(solver.step(mixed.scene, frame_time, mixed.contacts()).status, StepStatus::done);
         EXPECT_EQ(solver.step(joints.scene, frame_time).status, StepStatus::done);
         hashes.push_back(mixed.scene.state_hash());

@@ -11,13 +11,14 @@
 
 #include "joint_cases.h"
 #include "momentum_rounding.h"
+#include "rig.h"
 #include "twin.h"
 
 namespace motley {
 namespace {
 
 constexpr float dt = 1.0F / 60;
-constexpr int steps = 30;
+constexpr int steps = testing::long_run(30);
 using testing::Twin;
 
 constexpr double bound_per_step = 200 * 6e-8 * 5;  // size: speeds below 5 m/s and rad/s
@@ -76,7 +77,7 @@ void for_every_pair(const Claim& claim)
         for (int a = 0; a < 5; ++a) {
             for (int b = 0; b < 5; ++b) {
                 if (a > 2 && b > 2) continue;
-                for (int trial = 0; trial < 3; ++trial) {
+                for (int trial = 0; trial < testing::repeats(3); ++trial) {
                     testing::Random random(static_cast<std::uint64_t>(1000 + 100 * a + 10 * b + trial));
                     Twin twin;
                     BodyDefinition body_a = body_of(a, random), body_b = body_of(b, random);
@@ -256,8 +257,8 @@ TYPED_TEST(EveryJoint, KeepsMomentaAndNeverAddsEnergyInFreeFlight)
     using Cases = testing::JointCases<TypeParam>;
     constexpr bool keeps_arms_through_a_step = std::is_same_v<TypeParam, ManifoldDefinition>;
     int regular_cases = 0;
-    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-        testing::Random random(seed);
+    for (int seed = 1; seed <= testing::repeats(5); ++seed) {
+        testing::Random random(static_cast<std::uint64_t>(seed));
         Twin pair;
         pair.add(body_of(2, random));
         pair.add(body_of(2, random));
@@ -286,7 +287,7 @@ TYPED_TEST(EveryJoint, KeepsMomentaAndNeverAddsEnergyInFreeFlight)
             }
         }
     }
-    EXPECT_GE(regular_cases, 5) << "else nothing was tested";
+    EXPECT_GE(regular_cases, testing::repeats(5)) << "else nothing was tested";
 }
 
 TEST(AgainstReference, ContactsAgreeForEveryPairAndMethod)

@@ -202,7 +202,7 @@ TEST(SameBits, AWideNetIsTheSameOnOneToFourThreads)
 {
     SolverSettings settings;
     settings.gravity = {0, -9.81F, 0};
-    const Scene start = net(60);
+    const Scene start = net(testing::is_sanitized ? 20 : 60);
     std::vector<std::uint64_t> one;
     for (int threads = 1; threads <= 4; ++threads) {
         Scene scene = start;

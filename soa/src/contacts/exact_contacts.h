@@ -16,7 +16,7 @@ struct IslandContact;
 class ExactContacts {
   public:
     /// An island whose matrix would take more products of blocks than this is left to the sweeps.
-    static constexpr std::int64_t most_products = 200'000;
+    static constexpr std::int64_t most_products = 300'000;
 
     ExactContacts();
     ~ExactContacts();
