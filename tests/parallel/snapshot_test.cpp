@@ -157,7 +157,7 @@ std::vector<std::byte> saved_where_memory_is(int byte)
     }
     fill_stack(byte);
     std::vector<std::byte> bytes =
-        save_problem({.scene = scene, .settings = settings_of(Method::soft_step), .dt = dt});
+        save_problem({.scene = scene, .settings = settings_of(Method::soft_step), .dt = dt, .contacts = {}});
     const std::vector<std::byte> of_scene = save_scene(scene);
     mallopt(M_PERTURB, 0);
     bytes.insert(bytes.end(), of_scene.begin(), of_scene.end());
