@@ -16,7 +16,7 @@ function(motley_add_reader name export reads_by)
     set(library motley_${name})
     add_library(${library} ${ARGN})
     add_library(motley::${name} ALIAS ${library})
-    set_target_properties(${library} PROPERTIES POSITION_INDEPENDENT_CODE ON EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION 0)
+    set_target_properties(${library} PROPERTIES POSITION_INDEPENDENT_CODE ON EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
     target_include_directories(${library} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     target_include_directories(${library} PRIVATE ${PROJECT_SOURCE_DIR}/core/src)

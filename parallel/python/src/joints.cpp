@@ -1,0 +1,192 @@
+// Scene: joints of every type, by name. Their fields are those that the C interface lists.
+#include "c/joint_mirrors.h"
+
+#include <tuple>
+
+#include "contract/constraint_types.h"
+#include "scene.h"
+
+namespace motley::python {
+
+static void set(const std::string& name, const py::handle& value, EulerAngle& target)
+{
+    target = named<EulerAngle>(name, value, std::array{"x", "y", "z"});
+}
+/// A place, or a dict with position and rotation.
+static void set(const std::string& name, const py::handle& value, JointFrame& target)
+{
+    if (!py::isinstance<py::dict>(value)) {
+        set(name, value, target.position);
+        return;
+    }
+    Keywords given(name, py::reinterpret_borrow<py::kwargs>(value));
+    given.take("position", target.position);
+    given.take("rotation", target.rotation);
+    given.end();
+}
+/// Hz, or a dict with hertz and damping_ratio.
+static void set(const std::string& name, const py::handle& value, JointStiffness& target)
+{
+    if (!py::isinstance<py::dict>(value)) {
+        set(name, value, target.hertz);
+        return;
+    }
+    Keywords given(name, py::reinterpret_borrow<py::kwargs>(value));
+    given.take("hertz", target.hertz);
+    given.take("damping_ratio", target.damping_ratio);
+    given.end();
+}
+/// A list of pairs of anchors.
+template <std::size_t most>
+static void set(const std::string& name, const py::handle& value, ManifoldPoint (&target)[most])
+{
+    if (!py::isinstance<py::sequence>(value) || py::len(value) > most)
+        refuse_value(name, value, "at most " + std::to_string(most) + " pairs of anchors");
+    std::size_t i = 0;
+    for (const py::handle pair : py::reinterpret_borrow<py::sequence>(value)) {
+        const std::string at = name + "[" + std::to_string(i) + "]";
+        if (!py::isinstance<py::sequence>(pair) || py::len(pair) != 2) refuse_value(at, pair, "two anchors");
+        const auto anchors = py::reinterpret_borrow<py::sequence>(pair);
+        set(at, anchors[0], target[i].local_anchor_a);
+        set(at, anchors[1], target[i].local_anchor_b);
+        ++i;
+    }
+}
+
+namespace {
+
+/// What Python says of one field of a definition.
+template <class Definition, class Member>
+void take(const std::string& of, py::dict& left, const char* name, Member Definition::*member,
+          Definition& definition)
+{
+    if (!left.contains(name)) return;
+    const py::object value = left.attr("pop")(name);
+    set(of + "." + name, value, definition.*member);
+}
+
+template <class C, class Definition>
+Definition definition_from(const std::string& type, std::uint64_t a, std::uint64_t b,
+                           const py::kwargs& fields)
+{
+    Definition definition;
+    py::dict left = fields.attr("copy")();
+    std::apply(
+        [&](const auto&... field) { (take(type, left, field.name, field.cpp_member, definition), ...); },
+        c::Mirror<C, Definition>::fields);
+    definition.body_a = id_of<BodyId>(a);
+    definition.body_b = id_of<BodyId>(b);
+    if (!left.empty()) {
+        throw py::type_error("a joint of type " + type + " has no field '" +
+                             py::cast<std::string>(py::str(left.begin()->first)) + "'");
+    }
+    return definition;
+}
+
+struct JointType {
+    const char* name;
+    ConstraintId (*add)(Scene& scene, std::uint64_t a, std::uint64_t b, const py::kwargs& fields);
+    void (*change)(Scene& scene, ConstraintId joint, std::uint64_t a, std::uint64_t b,
+                   const py::kwargs& fields);
+};
+
+template <class C, class Definition>
+constexpr JointType type(const char* name)
+{
+    return {name,
+            [](Scene& scene, std::uint64_t a, std::uint64_t b, const py::kwargs& fields) {
+                return scene.add_joint(
+                    definition_from<C, Definition>(c::Mirror<C, Definition>::name, a, b, fields));
+            },
+            [](Scene& scene, ConstraintId joint, std::uint64_t a, std::uint64_t b, const py::kwargs& fields) {
+                scene.set_joint(joint,
+                                definition_from<C, Definition>(c::Mirror<C, Definition>::name, a, b, fields));
+            }};
+}
+
+constexpr std::array types{
+    type<motley_ball_socket_definition, BallSocketDefinition>("ball_socket"),
+    type<motley_distance_definition, DistanceDefinition>("distance"),
+    type<motley_frame_joint_definition, FixedDefinition>("fixed"),
+    type<motley_frame_joint_definition, HingeDefinition>("hinge"),
+    type<motley_frame_joint_definition, SliderDefinition>("slider"),
+    type<motley_frame_joint_definition, PointOnPlaneDefinition>("point_on_plane"),
+    type<motley_frame_joint_definition, PointOnLineDefinition>("point_on_line"),
+    type<motley_frame_joint_definition, RotationLockDefinition>("rotation_lock"),
+    type<motley_frame_joint_definition, ParallelAxesDefinition>("parallel_axes"),
+    type<motley_frame_joint_definition, PerpendicularAxesDefinition>("perpendicular_axes"),
+    type<motley_drive_definition, SlideDriveDefinition>("slide_drive"),
+    type<motley_drive_definition, TwistDriveDefinition>("twist_drive"),
+    type<motley_drive_definition, EulerDriveDefinition>("euler_drive"),
+    type<motley_swing_limit_definition, SwingLimitDefinition>("swing_limit"),
+    type<motley_point_servo_definition, PointServoDefinition>("point_servo"),
+    type<motley_angular_servo_definition, AngularServoDefinition>("angular_servo"),
+    type<motley_gear_definition, GearDefinition>("gear"),
+    type<motley_rack_and_pinion_definition, RackAndPinionDefinition>("rack_and_pinion"),
+    type<motley_pulley_definition, PulleyDefinition>("pulley"),
+    type<motley_manifold_definition, ManifoldDefinition>("manifold"),
+    type<motley_screw_definition, ScrewDefinition>("screw"),
+};
+static_assert(types.size() == JointTypes::size, "a type of joint has no name in Python");
+
+const JointType& type_of(const std::string& name)
+{
+    std::string all;
+    for (const JointType& type : types) {
+        if (name == type.name) return type;
+        all += (all.empty() ? "" : ", ") + std::string(type.name);
+    }
+    refuse("type", "'" + name + "'", all);
+}
+
+py::dict joint_report(PythonScene& scene, std::uint64_t joint)
+{
+    const JointReport report = scene.get().joint_report(id_of<ConstraintId>(joint));
+    constexpr std::array states{"inactive", "active", "lower", "upper"};
+    py::dict all;
+    all["force"] = tuple_of(report.force);
+    all["torque"] = tuple_of(report.torque);
+    all["error"] = report.error;
+    all["angle_error"] = report.angle_error;
+    all["state"] = states[static_cast<std::size_t>(report.state)];
+    return all;
+}
+
+}  // namespace
+
+void add_joints_to(SceneClass& scene)
+{
+    scene.def(
+        "add_joint",
+        [](PythonScene& self, const std::string& type, std::uint64_t body_a, std::uint64_t body_b,
+           const py::kwargs& fields) {
+            return number_of(type_of(type).add(self.get(), body_a, body_b, fields));
+        },
+        py::arg("type"), py::arg("body_a"), py::arg("body_b"),
+        "Adds a joint: 'ball_socket', 'hinge', 'slider', 'fixed', 'distance', 'twist_drive', ... "
+        "(motley.joint_types). Its\n"
+        "fields are those of its definition in C++. A frame is a place, or a dict of position and rotation. "
+        "Returns a handle.");
+    scene.def(
+        "set_joint",
+        [](PythonScene& self, std::uint64_t joint, const std::string& type, std::uint64_t body_a,
+           std::uint64_t body_b, const py::kwargs& fields) {
+            type_of(type).change(self.get(), id_of<ConstraintId>(joint), body_a, body_b, fields);
+        },
+        py::arg("joint"), py::arg("type"), py::arg("body_a"), py::arg("body_b"),
+        "Replaces the definition of a joint: all its fields, of which those that are not given have their "
+        "defaults.");
+    scene.def(
+        "remove_joint",
+        [](PythonScene& self, std::uint64_t joint) { self.get().remove_joint(id_of<ConstraintId>(joint)); },
+        py::arg("joint"), "Removes a joint.");
+    scene.def("joint_report", &joint_report, py::arg("joint"),
+              "Mean force (N) and torque (N m) on body b in the last step, error (m), angle_error (rad) and "
+              "state now.");
+    scene.def_property_readonly("joint_count", [](PythonScene& self) { return self.get().joint_count(); });
+    py::tuple names(types.size());
+    for (std::size_t i = 0; i < types.size(); ++i) names[i] = types[i].name;
+    scene.attr("joint_types") = names;
+}
+
+}  // namespace motley::python
