@@ -84,8 +84,8 @@ std::string table_of(const RunResult& r)
     for (const auto& [name, value] : r.figures)
         line(name, std::isnan(value) ? "not measured: the run was too short" : fmt::format("{:.4g}", value));
     for (const Mark& mark : r.marks) {
-        text += fmt::format("  {} {}: {:.3g}, at most {:g}\n", mark.verdict(), mark.name,
-                            mark.value, mark.bound);
+        text +=
+            fmt::format("  {} {}: {:.3g}, at most {:g}\n", mark.verdict(), mark.name, mark.value, mark.bound);
     }
     line("state hash", fmt::format("{:016x}", r.state_hash));
     return text;

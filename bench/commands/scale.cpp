@@ -171,8 +171,8 @@ std::string table_of(const ScaleResult& result)
             100 * size.sweep_bytes_per_second / size.triad_bytes_per_second, size.bytes / people);
     }
     for (const Mark& mark : result.marks)
-        text += fmt::format("{}: {:.4g}, at most {:g}: {}\n", mark.name, mark.value, mark.bound,
-                            mark.verdict());
+        text +=
+            fmt::format("{}: {:.4g}, at most {:g}: {}\n", mark.name, mark.value, mark.bound, mark.verdict());
     return text;
 }
 

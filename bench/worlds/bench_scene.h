@@ -47,7 +47,7 @@ using Figure = std::pair<std::string, double>;
 
 /// What must hold in a run, by an exact law: `value` is at most `bound`.
 struct Mark {
-    std::string name;  ///< with its unit
+    std::string name;     ///< with its unit
     double value, bound;  ///< a value of NaN: the run ended before it could be measured
     [[nodiscard]] bool passes() const { return value <= bound; }
     [[nodiscard]] const char* verdict() const
