@@ -17,6 +17,7 @@
 #include "commands/solver_command.h"
 #include "commands/sweep.h"
 #include "commands/threads.h"
+#include "commands/view.h"
 #include "measuring/clock.h"
 #include "measuring/runner.h"
 #include "page/page.h"
@@ -179,6 +180,11 @@ int main(int count, char** arguments)
     CLI::App* replay_app =
         app.add_subcommand("replay", "solve a recorded problem again, as it was or with other dials");
     replay_command.declare(*replay_app);
+    ViewCommand view_command;
+    CLI::App* view_app = app.add_subcommand(
+        "view",
+        "make a page of a recording of `motley run --record`, to play, to look at and to pick people in");
+    view_command.declare(*view_app);
     CLI::App* list_app =
         app.add_subcommand("list", "name the scenes and the instruction sets of this machine");
     CLI::App* demo_app = app.add_subcommand(
@@ -272,6 +278,7 @@ int main(int count, char** arguments)
         if (*run_app) return run();
         if (*record_app) return record();
         if (*replay_app) return replay_command([&] { app.parse(count, arguments); });
+        if (*view_app) return view_command();
         if (*sweep_app) return sweep_command();
         if (*anchors_app) {
             fmt::print("{}", table_of(measure_anchors(anchor_options)));

@@ -73,6 +73,10 @@ struct RunCommand {
         app.add_option("--json", json, "write the figures to this file");
         app.add_option("--trajectories", outputs.trajectories, "write PedPy text to this file");
         app.add_option("--frames", outputs.frames, "write pictures to this folder");
+        app.add_option("--record", outputs.recording, "write a recording to this file, for `motley view`");
+        app.add_option("--record-every", outputs.record_every, "steps between its frames")
+            ->check(CLI::PositiveNumber)
+            ->capture_default_str();
         app.add_option("--colour", outputs.colour,
                        "what pictures show: pressure, density on each square metre, or voronoi, that of each "
                        "person's cell")

@@ -13,6 +13,7 @@
 #include "measuring/host.h"
 #include "measuring/median.h"
 #include "page/frames.h"
+#include "recording/recording.h"
 #include "scene/scene_core.h"
 #include "worlds/density.h"
 #include "worlds/trajectories.h"
@@ -195,10 +196,15 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         trajectories =
             std::make_unique<TrajectoryWriter>(outputs.trajectories, 1 / static_cast<double>(options.dt));
     if (!outputs.frames.empty()) frames = std::make_unique<FrameWriter>(outputs.frames, outputs.colour);
+    std::unique_ptr<RecordingWriter> recording;
+    if (!outputs.recording.empty())
+        recording = std::make_unique<RecordingWriter>(outputs.recording, entry.name,
+                                                      outputs.record_every * static_cast<double>(options.dt));
     if (scene->crowd() == nullptr && trajectories)
         throw std::runtime_error(fmt::format("{}: has no people who walk, so no trajectories", entry.name));
-    if (!scene->view() && (frames || outputs.densities))
-        throw std::runtime_error(fmt::format("{}: has no people, so no frames or densities", entry.name));
+    if (!scene->view() && (frames || outputs.densities || recording))
+        throw std::runtime_error(
+            fmt::format("{}: has no people, so no frames, recordings or densities", entry.name));
 
     RunResult result;
     result.scene = entry.name;
@@ -254,6 +260,7 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
         ++result.steps;
         scene->observe(time, solver);
         if (trajectories) trajectories->write(*scene->crowd(), step);
+        if (recording && step % outputs.record_every == 0) recording->write(*scene->view(), step);
         if (frames && step % outputs.frame_every == 0) frames->write(*scene->view(), executor);
         if (outputs.hash_every > 0 && (step + 1) % outputs.hash_every == 0) {
             fmt::print("step {} hash {:016x}\n", step + 1, scene->scene.state_hash());

@@ -53,9 +53,10 @@ struct RunResult {
 
 /// What to write in addition to the table.
 struct RunOutputs {
-    std::string trajectories, frames;  ///< empty: none
+    std::string trajectories, frames, recording;  ///< empty: none
     FrameColour colour = FrameColour::pressure;
     int frame_every = 30;    ///< steps
+    int record_every = 6;    ///< steps
     bool densities = false;  ///< figures of how close people stand at the end
     int hash_every = 0;      ///< steps; 0: never
     std::string problem;     ///< the file for the problem of step `problem_step`; empty: none

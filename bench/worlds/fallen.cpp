@@ -181,6 +181,7 @@ void add_silhouettes(const Scene& scene, const Fallen& fallen, View& view)
     }
     const Vec3<double> centre = centre_of(scene, fallen);
     view.people.push_back({centre.x, centre.y});
+    view.numbers.push_back(fallen.bodies.front().slot);
 }
 
 void add_drifts(const Scene& scene, const Fallen& fallen, std::vector<double>& drifts)

@@ -66,6 +66,7 @@ View view_of(const Crowd& crowd, const Scene& scene)
         const Vec2<double> at{crowd.positions[i].x, crowd.positions[i].y};
         const Vec2<double> end = crowd.are_torsos ? shoulder_of(agent, crowd.yaws[i]) : Vec2<double>{};
         view.people.push_back(at);
+        view.numbers.push_back(crowd.number_of(i));
         view.shapes.push_back(
             {at - end, at + end,
              static_cast<double>(crowd.are_torsos ? Crowd::depth_radius(agent) : agent.radius),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "worlds/crowd.h"
@@ -17,8 +18,9 @@ struct Silhouette {
 };
 
 struct View {
-    std::vector<Silhouette> shapes;    ///< what lies below comes first
-    std::vector<Vec2<double>> people;  ///< m, the centre of each
+    std::vector<Silhouette> shapes;      ///< what lies below comes first
+    std::vector<Vec2<double>> people;    ///< m, the centre of each
+    std::vector<std::uint32_t> numbers;  ///< of each, the same as long as the person is there
     std::vector<Wall> walls;
     /// N/m, by wall and metre of it from its first point on; the last metre may be shorter. Empty: not known.
     std::vector<std::vector<double>> wall_pressures;

@@ -131,6 +131,7 @@ class LevelOfDetail final : public BenchScene {
                                    static_cast<double>(loads[i].normal_force) / (6.283185307179586 * radius),
                                    view.people.size()});
             view.people.push_back(at);
+            view.numbers.push_back(bodies_[i].slot);
         }
         return view;
     }
