@@ -248,7 +248,7 @@ void World::begin_step()
         const bool recalls = joint.impulses.empty() && !joint.memory.empty();
         for (const Block& block : blocks_of(joint)) {
             joint.approaches.push_back(speed(joint.a, joint.b, block.jacobian)(0));
-            if (block.armature > 0) joint.rotor_speed = joint.approaches.back();
+            if (block.armature > 0) joint.rotor_speed = joint.approaches.back() - joint.rotor_lag;
             if (recalls) joint.impulses.emplace_back(Eigen::VectorXd::Zero(block.error.size()));
         }
         if (recalls) joint.model->recall(joint.memory, joint.impulses);
@@ -560,6 +560,10 @@ void World::end_step(double h)
 {
     for (Joint& joint : joints) {
         const auto a = static_cast<std::size_t>(joint.a), b = static_cast<std::size_t>(joint.b);
+        for (const Block& block : blocks_of(joint)) {
+            if (block.armature > 0)
+                joint.rotor_lag = speed(joint.a, joint.b, block.jacobian)(0) - joint.rotor_speed;
+        }
         joint.travelled += joint.model->travel(start_[a], start_[b], bodies[a], bodies[b]);
     }
     last_substep_ = h;

@@ -1,11 +1,11 @@
 // The smaller calls of the C interface do what their namesakes in C++ do.
-#include <unistd.h>
 
 #include <filesystem>
 #include <limits>
 #include <string>
 
 #include "both.h"
+#include "system.h"
 
 namespace motley {
 namespace {
@@ -165,8 +165,9 @@ TEST(CCallsOfSleep, ABodyAtRestSleepsUntilItIsWoken)
 
 TEST_F(CCallsOfNames, SaveAProblemThatCppSolvesToTheSameBits)
 {
-    const std::string file =
-        (std::filesystem::temp_directory_path() / ("motley-c-problem-" + std::to_string(getpid()))).string();
+    const std::string file = (std::filesystem::temp_directory_path() /
+                              ("motley-c-problem-" + std::to_string(testing::process_id())))
+                                 .string();
     motley_solver_settings settings = motley_default_solver_settings();
     settings.gravity.y = -9.81F;
     motley_contact contact{};

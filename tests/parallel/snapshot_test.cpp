@@ -1,7 +1,5 @@
 // Scenes in files. Independent evidence: the same scene without a file in between.
 #include <gtest/gtest.h>
-#include <malloc.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstddef>
@@ -14,6 +12,7 @@
 #include "joint_scene.h"
 #include "rig.h"
 #include "scene/scene_core.h"
+#include "system.h"
 
 namespace motley {
 namespace {
@@ -26,7 +25,11 @@ constexpr float dt = 1.0F / 60;
 /// A file for this test only, which the destructor removes.
 class File {
   public:
-    File() : path_(::testing::TempDir() + "motley-" + name_of_test() + "-" + std::to_string(::getpid())) {}
+    File()
+        : path_(::testing::TempDir() + "motley-" + name_of_test() + "-" +
+                std::to_string(testing::process_id()))
+    {
+    }
     ~File() { std::remove(path_.c_str()); }
     File(const File&) = delete;
     File& operator=(const File&) = delete;
@@ -123,7 +126,7 @@ TEST(Snapshot, KeepsEveryTypeOfJointBetweenEveryPairOfBodies)
 /// A scene with all that scenes have, made and saved where new memory has this byte.
 std::vector<std::byte> saved_where_memory_is(int byte)
 {
-    mallopt(M_PERTURB, byte);
+    testing::fill_new_memory(byte);
     fill_stack(byte);
     JointScene joints;
     Scene& scene = joints.scene;
@@ -159,7 +162,7 @@ std::vector<std::byte> saved_where_memory_is(int byte)
     std::vector<std::byte> bytes =
         save_problem({.scene = scene, .settings = settings_of(Method::soft_step), .dt = dt, .contacts = {}});
     const std::vector<std::byte> of_scene = save_scene(scene);
-    mallopt(M_PERTURB, 0);
+    testing::fill_new_memory(0);
     bytes.insert(bytes.end(), of_scene.begin(), of_scene.end());
     return bytes;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mixed_scene.h"
+#include "system.h"
 
 namespace motley {
 namespace {
@@ -36,7 +37,7 @@ TEST(Solver, RefusesAnInstructionSetOfTheEnvironmentUnlessItsOptionsNameOne)
 {
     const char* before = std::getenv("MOTLEY_ISA");
     const std::string kept = before == nullptr ? "" : before;
-    setenv("MOTLEY_ISA", "abacus", 1);
+    testing::set_environment("MOTLEY_ISA", "abacus");
     std::string refusal;
     try {
         Solver solver;
@@ -44,11 +45,7 @@ TEST(Solver, RefusesAnInstructionSetOfTheEnvironmentUnlessItsOptionsNameOne)
         refusal = error.what();
     }
     EXPECT_NO_THROW(Solver({}, {.isa = Isa::scalar}));
-    if (before == nullptr) {
-        unsetenv("MOTLEY_ISA");
-    } else {
-        setenv("MOTLEY_ISA", kept.c_str(), 1);
-    }
+    testing::set_environment("MOTLEY_ISA", kept.c_str());
     EXPECT_EQ(refusal.find("MOTLEY_ISA is abacus; expected one of scalar"), 0U) << refusal;
 }
 

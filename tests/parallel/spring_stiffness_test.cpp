@@ -222,6 +222,42 @@ TEST(Armature, ReportsWhatItTakesFromTheBodies)
     EXPECT_NEAR(scene.joint_report(drive).torque.z, -1.5 * 2, 3e-3);
 }
 
+/// Nothing but bodies and rotors moves here, and joints between them cannot give energy. Sweeps couple the rotors to a link
+/// of a five hundredth of their inertia only slowly, so that a rotor and its joint go at different speeds for many steps.
+TEST(Armature, BesideALightLinkGivesNoEnergy)
+{
+    for (const bool exact : {false, true}) {
+        for (const float rotor : {0.002F, 0.02F, 0.2F}) {
+            Scene scene;
+            const BodyId one = scene.add_body(box({0, 0, 0})),
+                         link = scene.add_body(box({0.5, 0, 0}, 0.002F)),
+                         two = scene.add_body(box({1, 0, 0}));
+            const auto join = [&](BodyId a, BodyId b, int axis) {
+                const JointFrame at_a{{0.25F, 0, 0}, axis_along(axis)},
+                    at_b{{-0.25F, 0, 0}, axis_along(axis)};
+                scene.add_joint(HingeDefinition{a, b, at_a, at_b});
+                scene.add_joint(TwistDriveDefinition{
+                    .body_a = a, .body_b = b, .frame_a = at_a, .frame_b = at_b, .armature = rotor});
+            };
+            join(one, link, 2);
+            join(link, two, 1);
+            scene.set_velocity(two, {0, 3, 2}, {6, -5, 8});
+            // The most that the rotors may have at the start: those of joints as fast as the bodies.
+            const double at_start =
+                scene.errors().kinetic_energy + 0.5 * static_cast<double>(rotor) * (64 + 25);
+            SolverSettings settings;
+            settings.exact_joints = exact;
+            Solver solver(settings);
+            double most = 0;
+            for (int step = 0; step < 1200; ++step) {
+                ASSERT_EQ(solver.step(scene, frame_time).status, StepStatus::done);
+                most = std::max(most, scene.errors().kinetic_energy);
+            }
+            EXPECT_LT(most, at_start) << exact << " " << rotor;
+        }
+    }
+}
+
 /// A fixed joint has one stiffness for all of its rows. One that gives in translation by one frequency and in rotation by
 /// another, or by none, is a point servo beside a rotation lock.
 TEST(SpringStiffness, OfTranslationAndRotationApartIsAPointServoBesideARotationLock)

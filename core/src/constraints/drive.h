@@ -79,6 +79,9 @@ struct Drive : ConstraintTraits {
     template <class Real>
     struct Memory {
         Real motor, spring, limit;  ///< N s or N m s
+        /// m/s or rad/s, by which the joint is faster than its rotor: sweeps that have not converged leave them apart. A rotor
+        /// that took the joint's speed when a step begins would gain energy out of nothing.
+        Real rotor_lag;
     };
     /// What a sweep reads of a row.
     template <class Real>
@@ -198,7 +201,7 @@ struct Drive : ConstraintTraits {
         impulse.limit = warm * memory.limit;
         SubstepRow<Real, A::kind, B::kind> here;
         build<Real>(row, here, a, b);
-        impulse.rotor_speed = speed_of(here, a, b);
+        impulse.rotor_speed = speed_of(here, a, b) - memory.rotor_lag;
         return row;
     }
 
@@ -264,9 +267,13 @@ struct Drive : ConstraintTraits {
     }
 
     template <class Real, class Row, class Impulse, class End>
-    static Memory<Real> remember(const Row&, const Impulse& impulse, const End&)
+    static Memory<Real> remember(const Row& row, const Impulse& impulse, const End& end)
     {
-        return {impulse.motor, impulse.spring, impulse.limit};
+        SubstepRow<Real, decltype(end.a())::kind, decltype(end.b())::kind> now;
+        build<Real>(row, now, end.a(), end.b());
+        const Real lag = speed_of(now, end.a(), end.b()) - impulse.rotor_speed;
+        return {impulse.motor, impulse.spring, impulse.limit,
+                select(row.in_sweep.armature > Real(0), lag, Real(0))};
     }
 
     template <class Real, class Row, class Substep, class Impulse>

@@ -3,19 +3,16 @@
 #include "motley/core/snapshot.h"
 #include "stores/joint_store.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstddef>
-#include <cstdio>
 #include <fstream>
 #include <new>
 #include <type_traits>
 #include <utility>
 
 #include "scene/scene_archive.h"
+#include "scene/whole_file.h"
 
 namespace motley {
 namespace {
@@ -91,10 +88,6 @@ auto reading(const std::string& from, const Read& read)
 {
     throw std::runtime_error(what);
 }
-[[noreturn]] void fail_with_errno(const std::string& what)
-{
-    fail(what + ": " + std::strerror(errno));
-}
 
 /// Throws unless this motley reads what has such a header and `size` bytes in all.
 void check_header(const Header& header, const Name& name, std::uint64_t size)
@@ -142,23 +135,6 @@ ArchiveReader behind_header(std::span<const std::byte> bytes, const Name& name)
 void require_done(const ArchiveReader& archive)
 {
     if (!archive.is_done()) fail("goes on behind its last field");
-}
-
-/// Writes another file and renames it to `file`, so that a reader sees either the old file or the new one.
-void write_whole(const std::string& file, std::span<const std::byte> bytes)
-{
-    const std::string part = file + ".part";
-    std::FILE* out = std::fopen(part.c_str(), "wb");
-    if (out == nullptr) fail_with_errno(part + ": cannot be written");
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size() &&
-                         std::fflush(out) == 0 && fsync(fileno(out)) == 0;
-    const int error = errno;
-    if (std::fclose(out) != 0 || !written || std::rename(part.c_str(), file.c_str()) != 0) {
-        const int why = written ? errno : error;
-        std::remove(part.c_str());
-        errno = why;
-        fail_with_errno(file + ": cannot be written");
-    }
 }
 
 /// The bytes of a file whose header is good.

@@ -1,4 +1,4 @@
-// The one call to the operating system in core.
+// Memory of many pages. See also whole_file.cpp: nothing else in core calls the operating system by name.
 #include "stores/aligned_vector.h"
 
 #if defined(__linux__)

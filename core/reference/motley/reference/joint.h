@@ -74,6 +74,7 @@ struct Joint {
     std::vector<Eigen::VectorXd> impulses{};  ///< of each block, carried from step to step
     double travelled = 0;
     double rotor_speed = 0;           ///< J v of the blocks with an armature, as the last solve left it
+    double rotor_lag = 0;             ///< by how much J v was above it when the last step ended
     std::span<const float> memory{};  ///< where impulses are read from while `impulses` is empty
     /// The impulse on b in the last step: N s at the point where the rows act, then N m s.
     Eigen::Matrix<double, 6, 1> wrench = Eigen::Matrix<double, 6, 1>::Zero();

@@ -1,0 +1,10 @@
+# Runs PROGRAM, and SCRIPT by PYTHON, and fails unless their last lines of output are the same.
+execute_process(COMMAND ${PROGRAM} 120 OUTPUT_VARIABLE native COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${PYTHON} ${SCRIPT} 120 OUTPUT_VARIABLE script COMMAND_ERROR_IS_FATAL ANY)
+foreach(output native script)
+    string(STRIP "${${output}}" text)
+    string(REGEX REPLACE "^.*\n" "" ${output} "${text}")
+endforeach()
+if(native STREQUAL "" OR NOT native STREQUAL script)
+    message(FATAL_ERROR "the program ends with\n${native}\nand the script with\n${script}")
+endif()
