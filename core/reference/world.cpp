@@ -143,10 +143,7 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
             row.response = block.jacobian * inverse_mass * block.jacobian.transpose();
             if (block.armature > 0) row.response(0, 0) = 1 / row.mass(0, 0);
         }
-        // A rotor takes its share of what is warm started, as of every other impulse.
-        const double to_bodies = block.armature > 0 ? 1 - block.armature / row.mass(0, 0) : 1;
-        apply(joint, block.jacobian, to_bodies * row.impulse());
-        if (block.armature > 0) joint.rotor_speed += row.impulse()(0) / row.mass(0, 0);
+        apply(joint, block.jacobian, row.impulse());
     }
 }
 

@@ -258,25 +258,6 @@ TEST(Armature, BesideALightLinkGivesNoEnergy)
     }
 }
 
-/// A spring that turns a rotor swings what hangs on them by a light link. All energy comes from the spring: k 1^2 / 2.
-TEST(Armature, WarmStartsDoNotThrowALightLink)
-{
-    for (const float rotor : {0.0F, 0.02F, 0.2F}) {
-        Scene scene;
-        const BodyId link = scene.add_body(box({0, 0, 0}, 0.002F)), arm = scene.add_body(box({0.5, 0, 0}));
-        hang_on(scene, scene.ground(), link,
-                {.spring_stiffness = 100, .spring_target = 1, .armature = rotor});
-        scene.add_joint(FixedDefinition{link, arm, {{0.25F, 0, 0}}, {{-0.25F, 0, 0}}});
-        Solver solver;
-        double most = 0;
-        for (int step = 0; step < 600; ++step) {
-            ASSERT_EQ(solver.step(scene, frame_time).status, StepStatus::done);
-            most = std::max(most, scene.errors().kinetic_energy);
-        }
-        EXPECT_LT(most, 0.5 * 100) << rotor;
-    }
-}
-
 /// A fixed joint has one stiffness for all of its rows. One that gives in translation by one frequency and in rotation by
 /// another, or by none, is a point servo beside a rotation lock.
 TEST(SpringStiffness, OfTranslationAndRotationApartIsAPointServoBesideARotationLock)

@@ -40,7 +40,6 @@ struct Drive : ConstraintTraits {
     static constexpr bool is_euler = drive_axis == DriveAxis::euler;
     /// Few joints have Euler angles.
     static constexpr bool is_rare = is_euler;
-    static constexpr bool has_rotor = true;
     /// Replaces an infinite limit: too far to be reached, small enough for results to stay finite.
     static constexpr float far_away = 1e12F;
     static constexpr float half_turn = 3.14159265F;
@@ -215,12 +214,9 @@ struct Drive : ConstraintTraits {
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const Row&, const Substep& substep, Impulse& impulse, A& a, B& b)
+    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
     {
-        // The rotor takes its share at once: all of it would throw a link that is much lighter than its rotor.
-        const Real lambda = impulse.motor + impulse.spring + impulse.limit;
-        push(substep, substep.share * lambda, a, b);
-        impulse.rotor_speed = impulse.rotor_speed + substep.response * lambda;
+        push(substep, impulse.motor + impulse.spring + impulse.limit, a, b);
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>

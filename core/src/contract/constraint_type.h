@@ -33,7 +33,7 @@
 //     tension<Real>(row, impulse) -> Tension                          with pulls_at_arms: see tension.h
 //   each substep
 //     prepare_substep<Real>(row, impulse, substep&, a, b)             J, C and K^-1 where the bodies are now
-//     warm_start<Real>(row, substep, impulse, a&, b&)                 v += M^-1 J^T lambda; impulse& with has_rotor
+//     warm_start<Real>(row, substep, impulse, a&, b&)                 v += M^-1 J^T lambda
 //     solve<Real>(step, in_sweep, substep, impulse&, a&, b&)          one sweep, as soft as `step` says: rigid to relax
 //     project<Real>(step, row, a&, b&)                                moves the bodies along J^T
 //     wrench<Real>(row, substep, impulse) -> Wrench                   of a joint: its impulse on b where it acts
@@ -72,8 +72,6 @@ struct ConstraintTraits {
     static constexpr bool only_pulls = false;
     /// Pulls at the ends of arms, so that heavy loads make them stiff: has tension().
     static constexpr bool pulls_at_arms = false;
-    /// May gear a rotor to its row, whose speed its impulses keep.
-    static constexpr bool has_rotor = false;
     /// Is defined by points of the world: has world_points(definition), and start.from_world_points().
     static constexpr bool has_world_points = false;
     /// Rows of J that exact joints may lock.

@@ -194,12 +194,11 @@ struct Kernels {
     [[gnu::always_inline]] static void begin_substep(const Bundle& bundle, A& a, B& b)
     {
         const auto row = load_row<Row>(bundle.row);
-        auto impulse = load_row<Impulse>(bundle.impulse);
+        const auto impulse = load_row<Impulse>(bundle.impulse);
         Substep substep;
         Type::template prepare_substep<Lanes>(row, impulse, substep, a, b);
         Type::template warm_start<Lanes>(row, substep, impulse, a, b);
         store_row(substep, bundle.substep);
-        if constexpr (Type::has_rotor) store_row(impulse, bundle.impulse);
     }
 
     static void warm_start(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
