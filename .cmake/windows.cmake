@@ -1,4 +1,4 @@
-# 64-bit Windows from Linux, by MinGW-w64: .ci/test-windows unpacks what it needs and runs the tests by Wine.
+# 64-bit Windows from Linux, by MinGW-w64: .ci/test-windows copies what it needs and runs the tests by Wine.
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR x86_64)
 set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)

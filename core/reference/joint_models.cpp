@@ -72,9 +72,9 @@ class DistanceModel : public JointModel {
         return blocks;
     }
 
-    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
-                                             double) const override
+    [[nodiscard]] std::vector<double> memory(const Joint& joint) const override
     {
+        const std::vector<Eigen::VectorXd>& impulses = joint.impulses;
         return {impulses.size() > 1 ? impulses[0](0) : 0, impulses.back()(0)};  // spring, limit
     }
     void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const override
@@ -139,11 +139,15 @@ class DriveModel : public JointModel {
         return blocks;
     }
 
-    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
-                                             double) const override
+    [[nodiscard]] std::vector<double> memory(const Joint& joint) const override
     {
+        const std::vector<Eigen::VectorXd>& impulses = joint.impulses;
         const std::size_t motor = impulses.size() - 2;
-        return {impulses[motor](0), motor > 0 ? impulses[0](0) : 0, impulses[motor + 1](0)};
+        return {impulses[motor](0), motor > 0 ? impulses[0](0) : 0, impulses[motor + 1](0), joint.rotor_lag};
+    }
+    [[nodiscard]] double rotor_lag_in(const float* memory) const override
+    {
+        return static_cast<double>(memory[3]);
     }
     void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const override
     {
@@ -173,10 +177,9 @@ class SwingLimitModel : public JointModel {
                  .side = -1}};
     }
 
-    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
-                                             double) const override
+    [[nodiscard]] std::vector<double> memory(const Joint& joint) const override
     {
-        return {-impulses[0](0)};  // the lanes' limit is positive
+        return {-joint.impulses[0](0)};  // the lanes' limit is positive
     }
     void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const override
     {
@@ -275,10 +278,9 @@ class TransmissionModel : public JointModel {
         return of_b - ratio_ * turn_about(start_a, a, axis_a_);
     }
 
-    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
-                                             double travelled) const override
+    [[nodiscard]] std::vector<double> memory(const Joint& joint) const override
     {
-        return {impulses[0](0), travelled};
+        return {joint.impulses[0](0), joint.travelled};
     }
     [[nodiscard]] double travelled_in(const float* memory) const override
     {
@@ -320,10 +322,9 @@ class ScrewModel : public JointModel {
         return slide(a, b) - slide(start_a, start_b) -
                metres_a_radian_ * (turn_about(start_b, b, axis_b) - turn_about(start_a, a, axis_a_));
     }
-    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
-                                             double travelled) const override
+    [[nodiscard]] std::vector<double> memory(const Joint& joint) const override
     {
-        return {impulses[0](0), travelled};
+        return {joint.impulses[0](0), joint.travelled};
     }
     [[nodiscard]] double travelled_in(const float* memory) const override
     {
@@ -417,9 +418,9 @@ class ManifoldModel : public JointModel {
         all.insert(all.end(), points.begin(), points.end());
         return all;
     }
-    [[nodiscard]] std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
-                                             double) const override
+    [[nodiscard]] std::vector<double> memory(const Joint& joint) const override
     {
+        const std::vector<Eigen::VectorXd>& impulses = joint.impulses;
         std::vector<double> memory(4, 0);
         for (std::size_t i = 3; i < impulses.size(); ++i) memory[i - 3] = impulses[i](0);
         for (std::size_t i = 0; i < 3; ++i)
@@ -450,10 +451,11 @@ class ManifoldModel : public JointModel {
 
 }  // namespace
 
-std::vector<double> JointModel::memory(const std::vector<Eigen::VectorXd>& impulses, double) const
+std::vector<double> JointModel::memory(const Joint& joint) const
 {
     std::vector<double> in_line;
-    for (const Eigen::VectorXd& block : impulses) in_line.insert(in_line.end(), block.begin(), block.end());
+    for (const Eigen::VectorXd& block : joint.impulses)
+        in_line.insert(in_line.end(), block.begin(), block.end());
     return in_line;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "motley/reference/joint_models.h"
 #include "motley/reference/world.h"
@@ -11,15 +10,6 @@
 
 namespace motley::reference {
 namespace {
-
-/// Where the memory of a type of joint keeps how far its rotor is behind, counted in floats.
-template <class Memory>
-constexpr bool has_rotor = requires(Memory memory)
-{
-    memory.rotor_lag;
-};
-template <class Memory>
-constexpr std::size_t rotor_at = offsetof(Memory, rotor_lag) / sizeof(float);
 
 Body body_of(const SceneCore& scene, BodyId id)
 {
@@ -113,8 +103,7 @@ DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& set
             constexpr std::size_t stride = quad_floats<typename Store::Memory>;
             joint.memory = {&store.memory[i * stride], stride};
             joint.travelled = joint.model->travelled_in(joint.memory.data());
-            if constexpr (has_rotor<typename Store::Memory>)
-                joint.rotor_lag = static_cast<double>(joint.memory[rotor_at<typename Store::Memory>]);
+            joint.rotor_lag = joint.model->rotor_lag_in(joint.memory.data());
             world.joints.push_back(std::move(joint));
         }
     });
@@ -140,8 +129,7 @@ DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& set
 
     // Everything that allocates comes before anything is written.
     std::vector<std::vector<double>> memories;
-    for (const Joint& joint : world.joints)
-        memories.push_back(joint.model->memory(joint.impulses, joint.travelled));
+    for (const Joint& joint : world.joints) memories.push_back(joint.model->memory(joint));
 
     for (std::size_t i = 0; i < ids.size(); ++i) write_back(scene, ids[i], world.bodies[i]);
     const auto narrow = [](double value) { return std::isfinite(value) ? static_cast<float>(value) : 0.0F; };
@@ -158,8 +146,6 @@ DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& set
             const std::vector<double>& memory = *next++;
             for (std::size_t k = 0; k < std::min(memory.size(), stride); ++k)
                 store.memory[i * stride + k] = narrow(memory[k]);
-            if constexpr (has_rotor<typename Store::Memory>)
-                store.memory[i * stride + rotor_at<typename Store::Memory>] = narrow(joint->rotor_lag);
             float* wrench = &store.wrenches[i * Store::wrench_floats];
             for (const double part : (joint++)->wrench) *wrench++ = narrow(part);
         }

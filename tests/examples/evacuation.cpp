@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 #include <vector>
 
 namespace {
@@ -17,7 +18,6 @@ using motley::Vec3;
 
 constexpr float dt = 1.0F / 60;
 constexpr float radius = 0.2F, mass = 80, walking_speed = 1.3F, relaxation_time = 0.5F;  // m, kg, m/s, s
-constexpr double pi = 3.141592653589793;
 
 /// A hall of 16 by 12 m with a door of 1.2 m on the right and one of 1 m at the top left.
 constexpr double width = 16, depth = 12;
@@ -36,7 +36,7 @@ void add_hall(motley::Scene& scene)
     scene.add_wall({.points = left_of_the_doors});
 }
 
-/// Rows of people, half a metre apart, from the middle of the hall on.
+/// Rows of people, half a metre apart, from the lower left of the hall on.
 std::vector<motley::BodyId> add_people(motley::Scene& scene, int count)
 {
     std::vector<motley::BodyId> people;
@@ -98,17 +98,16 @@ int main(int count, char** arguments)
     std::vector<Vec3<float>> velocities(people.size()), forces(people.size());
     std::vector<std::size_t> ways(people.size());
     std::vector<motley::BodyLoad> loads(people.size());
-    const std::vector<float> circumferences(people.size(), static_cast<float>(2 * pi) * radius);
+    const std::vector<float> circumferences(people.size(), 2 * std::numbers::pi_v<float> * radius);
     std::array<int, 2> out{};
     float highest = 0;
     std::printf("    s  inside  door 1  door 2  highest pressure (N/m)\n");
+    scene.read_positions(people, places);
+    std::transform(places.begin(), places.end(), ways.begin(), nearest_door);
     for (int step = 1; step <= 180 * 60; ++step) {
-        scene.read_positions(people, places);
         scene.read_velocities(people, velocities);
-        for (std::size_t i = 0; i < people.size(); ++i) {
-            if (step == 1) ways[i] = nearest_door(places[i]);
+        for (std::size_t i = 0; i < people.size(); ++i)
             forces[i] = steering(doors[ways[i]], places[i], velocities[i]);
-        }
         scene.set_forces(people, forces);
         const motley::StepReport report = solver.step(scene, dt);
         if (report.status != motley::StepStatus::done) {

@@ -1,5 +1,5 @@
-/* A game in C: a curtain of beads that a ball flies through. The game has a job system of its own, on which steps run
-   beside its other work, and draws between two steps at the rate of its screen.
+/* A game in C: a curtain of beads that a ball flies through. The game has a job system of its own, on which steps run,
+   and draws between two steps at the rate of its screen.
 
      game_loop     prints the ball's place in some frames, and whether one thread gives the same bits */
 #define _POSIX_C_SOURCE 200809L
@@ -8,7 +8,6 @@
 #include <inttypes.h>
 #include <pthread.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { workers = 2, strings = 16, beads = 10, bodies = strings * beads + 1 };
 static const float step_seconds = 1.0F / 120;
@@ -66,7 +65,7 @@ static void stop(job_system* jobs)
 }
 
 /* What motley calls: worker 0 runs here and the others where a thread is free. What has not begun by then is taken back, for
-   a step is done by however many come. */
+   a step is done by however many come. Only the game's main thread puts tasks into the queue. */
 static void run_worker(void* job, int32_t worker)
 {
     motley_job_run(job, worker);

@@ -269,9 +269,11 @@ struct Drive : ConstraintTraits {
     template <class Real, class Row, class Impulse, class End>
     static Memory<Real> remember(const Row& row, const Impulse& impulse, const End& end)
     {
-        SubstepRow<Real, decltype(end.a())::kind, decltype(end.b())::kind> now;
-        build<Real>(row, now, end.a(), end.b());
-        const Real lag = speed_of(now, end.a(), end.b()) - impulse.rotor_speed;
+        const auto a = end.a();
+        const auto b = end.b();
+        SubstepRow<Real, decltype(a)::kind, decltype(b)::kind> now;
+        build<Real>(row, now, a, b);
+        const Real lag = speed_of(now, a, b) - impulse.rotor_speed;
         return {impulse.motor, impulse.spring, impulse.limit,
                 select(row.in_sweep.armature > Real(0), lag, Real(0))};
     }

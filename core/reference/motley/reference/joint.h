@@ -36,6 +36,8 @@ struct Block {
     [[nodiscard]] bool is_one_sided() const { return kind == Kind::limit || kind == Kind::contact; }
 };
 
+struct Joint;
+
 /// The constraints of a joint with the numbers of its definition. `in_plane`: the pair cannot leave the plane, and rows
 /// perpendicular to it are left out.
 class JointModel {
@@ -59,12 +61,13 @@ class JointModel {
     }
 
     /// The Memory of the joint's type, number by number. By default the impulses one after another.
-    [[nodiscard]] virtual std::vector<double> memory(const std::vector<Eigen::VectorXd>& impulses,
-                                                     double travelled) const;
+    [[nodiscard]] virtual std::vector<double> memory(const Joint& joint) const;
     /// Reads the impulses from such a memory; `impulses` has the sizes of the blocks. Numbers that it lacks are zero.
     virtual void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const;
     /// Reads the accumulated C from such a memory.
     [[nodiscard]] virtual double travelled_in(const float* /*memory*/) const { return 0; }
+    /// Reads Joint::rotor_lag from such a memory.
+    [[nodiscard]] virtual double rotor_lag_in(const float* /*memory*/) const { return 0; }
 };
 
 /// A joint between bodies of the world by index.
