@@ -1,9 +1,11 @@
 // What tests ask of the system and what POSIX and Windows call otherwise.
 #pragma once
 
+#include <cstddef>
 #include <cstdlib>
 
 #ifdef _WIN32
+#include <malloc.h>
 #include <process.h>
 #else
 #include <unistd.h>
@@ -35,6 +37,24 @@ inline void set_environment(const char* name, const char* value)
     } else {
         setenv(name, value, 1);
     }
+#endif
+}
+
+/// As std::aligned_alloc() and std::free(), of which Windows has no pair.
+inline void* allocate_aligned(std::size_t alignment, std::size_t size)
+{
+#ifdef _WIN32
+    return _aligned_malloc(size, alignment);
+#else
+    return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+#endif
+}
+inline void free_aligned(void* memory)
+{
+#ifdef _WIN32
+    _aligned_free(memory);
+#else
+    std::free(memory);
 #endif
 }
 

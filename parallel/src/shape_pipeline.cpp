@@ -2,6 +2,7 @@
 #include "shape_pipeline.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "stores/growth.h"
 
@@ -44,7 +45,7 @@ void ShapePipeline::find_pairs(SceneCore& scene, double dt)
 void ShapePipeline::find_surfaces(const SceneCore& scene)
 {
     const std::vector<WallSegment>& segments = scene.discs.segments;
-    if (std::ranges::none_of(segments, &WallSegment::has_own_surface)) return;
+    if (std::none_of(segments.begin(), segments.end(), std::mem_fn(&WallSegment::has_own_surface))) return;
     surfaces_.assign(found(), {});
     const std::span<const Contact> own = std::span(all_).subspan(hosts_);
     for (std::size_t first = 0, end = 0; first < own.size(); first = end) {

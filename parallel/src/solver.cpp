@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <new>
 #include <utility>
 
@@ -77,7 +78,8 @@ std::string text_of(const std::exception_ptr& thrown) noexcept
 void refuse_what_sweeps_must_solve(const SceneCore& scene, const SolverSettings& settings)
 {
     if (settings.method == Method::direct && scene.shapes.is_in_use() &&
-        std::ranges::any_of(scene.discs.segments, &WallSegment::has_own_surface))
+        std::any_of(scene.discs.segments.begin(), scene.discs.segments.end(),
+                    std::mem_fn(&WallSegment::has_own_surface)))
         refuse("SolverSettings.method",
                "direct, in a scene with capsules and a wall with surface_speed or max_force", "another one");
     if (!scene.discs.is_in_use()) return;

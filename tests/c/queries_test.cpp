@@ -167,8 +167,10 @@ TEST_F(CQueries, EventsAreTheDifferenceOfTheContactsThatPush)
         ASSERT_EQ(motley_contact_events_update(events, scene), MOTLEY_DONE);
         const std::set<Touch> now = touches();
         std::set<Touch> began, ended;
-        std::ranges::set_difference(now, before, std::inserter(began, began.end()));
-        std::ranges::set_difference(before, now, std::inserter(ended, ended.end()));
+        std::set_difference(now.begin(), now.end(), before.begin(), before.end(),
+                            std::inserter(began, began.end()));
+        std::set_difference(before.begin(), before.end(), now.begin(), now.end(),
+                            std::inserter(ended, ended.end()));
         const motley_contact_pair* pairs = nullptr;
         std::size_t count = 0;
         ASSERT_EQ(motley_contact_events_began(events, &pairs, &count), MOTLEY_DONE);

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdlib>
+#include <cstddef>
 #include <new>
 
 #include "allocator.h"
@@ -11,6 +11,7 @@
 #include "lattice_crowd.h"
 #include "mixed_scene.h"
 #include "shape_crowd.h"
+#include "system.h"
 
 namespace motley::testing {
 
@@ -28,7 +29,7 @@ void* counted(std::size_t size, std::size_t alignment)
     if (allocations_until_failure != motley::testing::never && --allocations_until_failure < 0) {
         if (failures_left.fetch_sub(1) > 0) throw std::bad_alloc();
     }
-    void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    void* memory = motley::testing::allocate_aligned(alignment, size);
     if (memory == nullptr) throw std::bad_alloc();
     return memory;
 }
@@ -46,19 +47,19 @@ void* counted(std::size_t size, std::size_t alignment)
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept
 {
-    std::free(memory);
+    motley::testing::free_aligned(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept
 {
-    std::free(memory);
+    motley::testing::free_aligned(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept
 {
-    std::free(memory);
+    motley::testing::free_aligned(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept
 {
-    std::free(memory);
+    motley::testing::free_aligned(memory);
 }
 
 namespace motley {

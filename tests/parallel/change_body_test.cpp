@@ -570,7 +570,7 @@ TEST(ChangeBody, InACrowdOfDiscsLeavesNoContactBehind)
         for (const DiscContact& contact : scene.disc_contacts()) {
             for (const BodyId body : {contact.a, contact.b}) {
                 ASSERT_TRUE(body == scene.ground() || scene.model(body) == BodyModel::planar);
-                ASSERT_EQ(std::ranges::count(with_new_discs, body), 0);
+                ASSERT_EQ(std::count(with_new_discs.begin(), with_new_discs.end(), body), 0);
             }
         }
         Scene anew = load_scene(save_scene(scene));

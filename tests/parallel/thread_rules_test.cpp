@@ -151,12 +151,13 @@ TEST(ThreadRules, SettingsOfASolverMayBeReadDuringItsStep)
 {
     testing::MixedScene mixed;
     Solver solver(falling(), {.threads = 2, .alone_below = 0});
+    const int threads = solver.threads();  // 1 where the library has no threads of its own
     std::atomic<bool> done{false};
     std::thread reader([&] {
         while (!done) {
             EXPECT_EQ(solver.settings().substeps, 4);
-            EXPECT_EQ(solver.threads(), 2);
-            EXPECT_EQ(solver.executor().concurrency(), 2);
+            EXPECT_EQ(solver.threads(), threads);
+            EXPECT_EQ(solver.executor().concurrency(), threads);
             std::this_thread::yield();
         }
     });

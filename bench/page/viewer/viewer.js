@@ -38,6 +38,26 @@ void main() {
   gl_FragColor = vec4(inside, colour.a);
 }`;
 
+// Small discs, a point each.
+const POINT_VERTEX = `
+attribute float radius; attribute vec4 paint;
+varying vec4 colour; varying float around; varying float reach;
+uniform float least; uniform float ratio;
+void main() {
+  around = max(radius, least); reach = around + least; colour = paint;
+  gl_PointSize = 2.0 * reach / least * ratio;
+  gl_Position = projectionMatrix * viewMatrix * vec4(position.xy, 0.0, 1.0);
+}`;
+const POINT_FRAGMENT = `
+precision highp float;
+varying vec4 colour; varying float around; varying float reach;
+uniform float least;
+void main() {
+  float off = length((gl_PointCoord - 0.5) * 2.0 * reach) - around;
+  if (off > 0.0) discard;
+  gl_FragColor = vec4(off > -1.5 * least && around > 4.0 * least ? 0.62 * colour.rgb : colour.rgb, colour.a);
+}`;
+
 const SQUARE = `
 precision highp float;
 varying vec4 colour;
@@ -98,10 +118,53 @@ class Capsules {
   }
 }
 
-const renderer = new THREE.WebGLRenderer({ canvas: element("view"), antialias: true, preserveDrawingBuffer: true });
+// Discs of few pixels, in one call: a corner each instead of four.
+class Dots {
+  constructor(scene, order) {
+    this.least = { value: 0.01 };
+    this.ratio = { value: 1 };
+    this.material = new THREE.ShaderMaterial({ vertexShader: POINT_VERTEX, fragmentShader: POINT_FRAGMENT,
+                                               uniforms: { least: this.least, ratio: this.ratio }, transparent: true, depthTest: false });
+    this.scene = scene;
+    this.order = order;
+    this.room = 0;
+  }
+  reserve(count) {
+    if (count <= this.room) return;
+    this.room = Math.ceil(count * 1.2) + 16;
+    this.geometry = new THREE.BufferGeometry();
+    this.position = new THREE.BufferAttribute(new Float32Array(3 * this.room), 3);
+    this.radius = new THREE.BufferAttribute(new Float32Array(this.room), 1);
+    this.paint = new THREE.BufferAttribute(new Uint8Array(4 * this.room), 4, true);
+    for (const name of ["position", "radius", "paint"]) this.geometry.setAttribute(name, this[name]);
+    if (this.points) this.scene.remove(this.points);
+    this.points = new THREE.Points(this.geometry, this.material);
+    this.points.frustumCulled = false;
+    this.points.renderOrder = this.order;
+    this.scene.add(this.points);
+  }
+  set(i, x, y, radius, colour) {
+    const place = this.position.array, paint = this.paint.array;
+    place[3 * i] = x;
+    place[3 * i + 1] = y;
+    this.radius.array[i] = radius;
+    for (let k = 0; k < 3; ++k) paint[4 * i + k] = colour[k];
+    paint[4 * i + 3] = 255;
+  }
+  show(count) {
+    if (!this.points) return;
+    this.geometry.setDrawRange(0, count);
+    for (const attribute of [this.position, this.radius, this.paint]) attribute.needsUpdate = true;
+    this.points.visible = count > 0;
+  }
+}
+
+// Without antialiasing, which costs a browser without a graphics card a third of a frame: shaders cut the shapes, not edges.
+const renderer = new THREE.WebGLRenderer({ canvas: element("view"), antialias: false, preserveDrawingBuffer: true });
 renderer.setClearColor(0xfafaf8);
 const world = new THREE.Scene(), camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -10, 10);
 const fields = new Capsules(world, 0, SQUARE), walls = new Capsules(world, 1), people = new Capsules(world, 2), ring = new Capsules(world, 3);
+const dots = new Dots(world, 2), DOT_PIXELS = 12;  // a larger disc would vanish at an edge of the view, where its middle leaves it
 const eye = { x: 0, y: 0, metres: 10 };  // middle of the view, and metres from its lower to its upper edge
 let playing = false, time = 0, picked = -1, following = false, dirty = true, before = new Map();
 
@@ -115,7 +178,8 @@ function placeCamera() {
   Object.assign(camera, { left: -across, right: across, top: half, bottom: -half });
   camera.position.set(eye.x, eye.y, 1);
   camera.updateProjectionMatrix();
-  for (const each of [fields, walls, people, ring]) each.least.value = metresAPixel();
+  for (const each of [fields, walls, people, ring, dots]) each.least.value = metresAPixel();
+  dots.ratio.value = renderer.getPixelRatio();
 }
 
 // Everything in view, with some room for what lies over the picture.
@@ -166,25 +230,40 @@ function drawFrame() {
   const frame = Math.min(run.frames - 1, Math.floor(time / run.secondsAFrame + 1e-6));
   run.seek(frame);
   const bySpeed = element("colour").value === "speed", speed = bySpeed ? speeds() : null;
-  people.reserve(run.count);
-  for (let i = 0; i < run.count; ++i) {
-    const share = bySpeed ? speed[i] / FULL.speed : run.pressure[i] / FULL.pressure;
-    people.set(i, run.ends[4 * i] / 1000, run.ends[4 * i + 1] / 1000, run.ends[4 * i + 2] / 1000, run.ends[4 * i + 3] / 1000,
-               run.radius[i] / 1000, rampColour(share), 1);
-  }
-  people.show(run.count);
-  drawWalls();
-  drawDensity();
-  drawPicked();
   if (following && picked >= 0) {
     const i = run.find(picked);
     if (i >= 0) [eye.x, eye.y] = [run.ends[4 * i] / 1000, run.ends[4 * i + 1] / 1000];
   }
+  drawPeople((i) => rampColour(speed ? speed[i] / FULL.speed : run.pressure[i] / FULL.pressure));
+  drawWalls();
+  drawDensity();
+  drawPicked();
   placeCamera();
   renderer.render(world, camera);
   element("clock").textContent = (frame * run.secondsAFrame).toFixed(1) + " of " + ((run.frames - 1) * run.secondsAFrame).toFixed(1) + " s";
   element("time").value = frame;
   dirty = false;
+}
+
+// Small discs as dots, and of all others those in view.
+function drawPeople(colour) {
+  const view = element("view"), up = eye.metres / 2, across = up * view.clientWidth / view.clientHeight;
+  const small = DOT_PIXELS / 2 * metresAPixel(), ends = run.ends;
+  dots.reserve(run.count);
+  people.reserve(run.count);
+  let points = 0, shapes = 0;
+  for (let i = 0; i < run.count; ++i) {
+    const x0 = ends[4 * i] / 1000, y0 = ends[4 * i + 1] / 1000, x1 = ends[4 * i + 2] / 1000, y1 = ends[4 * i + 3] / 1000;
+    const radius = run.radius[i] / 1000;
+    if (x0 === x1 && y0 === y1 && radius < small) {
+      dots.set(points++, x0, y0, radius, colour(i));
+      continue;
+    }
+    const outside = (a, b, middle, half) => Math.max(a, b) + radius < middle - half || Math.min(a, b) - radius > middle + half;
+    if (!outside(x0, x1, eye.x, across) && !outside(y0, y1, eye.y, up)) people.set(shapes++, x0, y0, x1, y1, radius, colour(i), 1);
+  }
+  dots.show(points);
+  people.show(shapes);
 }
 
 // A piece of a metre each, coloured by what presses on it.

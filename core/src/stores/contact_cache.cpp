@@ -46,9 +46,7 @@ ContactCache::Walk::Walk(ContactCache& cache, std::int64_t part)
 {
     // Begin at the shift where the part before ended: in this step or, if it has not been read yet, in the last one.
     std::int32_t shift = 0;
-    if (part > 0)
-        shift = std::atomic_ref(cache.parts_[static_cast<std::size_t>(part - 1)].shift)
-                    .load(std::memory_order_relaxed);
+    if (part > 0) shift = AtomicRef(cache.parts_[static_cast<std::size_t>(part - 1)].shift).load();
     cursor_ = static_cast<std::uint32_t>(
         std::clamp(std::int64_t{index_} + shift, std::int64_t{0}, static_cast<std::int64_t>(list_.count)));
 }
@@ -58,9 +56,7 @@ ContactCache::Walk::~Walk()
     Part& part = cache_.parts_[static_cast<std::size_t>(part_)];
     part.missed = {cache_.part(part_).begin, missed_};
     part.claims = claims_;
-    std::atomic_ref(part.shift)
-        .store(static_cast<std::int32_t>(cursor_) - static_cast<std::int32_t>(index_),
-               std::memory_order_relaxed);
+    AtomicRef(part.shift).store(static_cast<std::int32_t>(cursor_) - static_cast<std::int32_t>(index_));
 }
 
 /// Searches the nearest contacts first: most often only a few have come or gone since the part before.
@@ -114,12 +110,9 @@ std::uint32_t ContactCache::trace(std::int64_t part, std::uint32_t index)
     const auto [which, found] =
         table_.enter(staged().entries[index].key, KeyTable::List::fresh, index, keys());
     if (found == KeyTable::Found::none) return none;
-    if (which == KeyTable::List::fresh ||
-        std::atomic_ref(claimed_[found]).exchange(1, std::memory_order_relaxed) != 0)
-        mark_repeated();
-    std::atomic_ref(parts_[static_cast<std::size_t>(part)].shift)
-        .store(static_cast<std::int32_t>(found) - static_cast<std::int32_t>(index),
-               std::memory_order_relaxed);
+    if (which == KeyTable::List::fresh || AtomicRef(claimed_[found]).exchange(1) != 0) mark_repeated();
+    AtomicRef(parts_[static_cast<std::size_t>(part)].shift)
+        .store(static_cast<std::int32_t>(found) - static_cast<std::int32_t>(index));
     return which == KeyTable::List::lost ? found : none;
 }
 

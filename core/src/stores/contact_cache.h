@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "motley/core/constraints/contact_definition.h"
 #include "stores/aligned_vector.h"
+#include "stores/atomic_ref.h"
 #include "stores/key_table.h"
 
 namespace motley {
@@ -160,7 +160,7 @@ class ContactCache {
             return (which == KeyTable::List::lost ? current() : staged()).entries[i].key;
         };
     }
-    void mark_repeated() { std::atomic_ref(repeated_).store(true, std::memory_order_relaxed); }
+    void mark_repeated() { AtomicRef(repeated_).store(true); }
 };
 
 inline std::uint32_t ContactCache::Walk::find(std::uint32_t index, std::uint64_t key)
@@ -185,7 +185,7 @@ inline std::uint32_t ContactCache::Walk::find(std::uint32_t index, std::uint64_t
     index_ = index + 1;
     ++claims_;
     // If two new contacts claim the same one, open_table() finds more claims than claimed contacts.
-    std::atomic_ref(cache_.claimed_[found]).store(1, std::memory_order_relaxed);
+    AtomicRef(cache_.claimed_[found]).store(1);
     return found;
 }
 

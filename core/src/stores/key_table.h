@@ -1,11 +1,11 @@
 // A hash set of contact keys that several threads fill at once: see ContactCache.
 #pragma once
 
-#include <atomic>
 #include <bit>
 #include <cstdint>
 
 #include "stores/aligned_vector.h"
+#include "stores/atomic_ref.h"
 
 namespace motley {
 
@@ -38,14 +38,13 @@ class KeyTable {
         const std::uint64_t own = hash << 32 | std::uint64_t{index} << 1 | static_cast<std::uint64_t>(list);
         for (std::size_t i = place_of(hash);; i = (i + 1) & mask_) {
             std::uint64_t held = 0;
-            if (std::atomic_ref(buckets_[i]).compare_exchange_strong(held, own, std::memory_order_relaxed))
-                break;
+            if (AtomicRef(buckets_[i]).compare_exchange(held, own)) break;
             const Found found = unpack(held);
             if (held >> 32 == hash && key_of(found.list, found.index) == key) return found;
         }
         if (list == List::fresh) {
             const std::uint64_t bit = hash >> filter_shift_;
-            std::atomic_ref(filter_[bit / 64]).fetch_or(1ULL << bit % 64, std::memory_order_relaxed);
+            AtomicRef(filter_[bit / 64]).set_bits(std::uint64_t{1} << bit % 64);
         }
         return {list, Found::none};
     }

@@ -14,10 +14,10 @@ Handles are whole numbers, and arrays of them arrays of uint64. Numbers are SI u
 """
 
 from ._errors import InvalidInput
-from ._motley import CrowdIndex, Scene, Solver, WallIndex, contact_dtype
+from ._motley import CrowdIndex, Figure, Scene, Solver, WallIndex, contact_dtype
 from .geometry import add_walls, people_inside
 
 joint_types = Scene.joint_types
 
-__all__ = ["CrowdIndex", "InvalidInput", "Scene", "Solver", "WallIndex", "add_walls", "contact_dtype", "joint_types",
+__all__ = ["CrowdIndex", "Figure", "InvalidInput", "Scene", "Solver", "WallIndex", "add_walls", "contact_dtype", "joint_types",
            "people_inside"]

@@ -3,7 +3,6 @@
 #include "scene.h"
 
 namespace motley::python {
-namespace {
 
 BodyDefinition body_from(const py::kwargs& arguments)
 {
@@ -23,6 +22,8 @@ BodyDefinition body_from(const py::kwargs& arguments)
     given.end();
     return body;
 }
+
+namespace {
 
 py::dict state_of(PythonScene& scene, std::uint64_t body)
 {

@@ -8,34 +8,6 @@
 
 namespace motley::python {
 
-static void set(const std::string& name, const py::handle& value, EulerAngle& target)
-{
-    target = named<EulerAngle>(name, value, std::array{"x", "y", "z"});
-}
-/// A place, or a dict with position and rotation.
-static void set(const std::string& name, const py::handle& value, JointFrame& target)
-{
-    if (!py::isinstance<py::dict>(value)) {
-        set(name, value, target.position);
-        return;
-    }
-    Keywords given(name, py::reinterpret_borrow<py::kwargs>(value));
-    given.take("position", target.position);
-    given.take("rotation", target.rotation);
-    given.end();
-}
-/// Hz, or a dict with hertz and damping_ratio.
-static void set(const std::string& name, const py::handle& value, JointStiffness& target)
-{
-    if (!py::isinstance<py::dict>(value)) {
-        set(name, value, target.hertz);
-        return;
-    }
-    Keywords given(name, py::reinterpret_borrow<py::kwargs>(value));
-    given.take("hertz", target.hertz);
-    given.take("damping_ratio", target.damping_ratio);
-    given.end();
-}
 /// A list of pairs of anchors.
 template <std::size_t most>
 static void set(const std::string& name, const py::handle& value, ManifoldPoint (&target)[most])
@@ -85,6 +57,7 @@ Definition definition_from(const std::string& type, std::uint64_t a, std::uint64
 
 struct JointType {
     const char* name;
+    void (*add_to_figure)(Figure& figure, std::uint64_t a, std::uint64_t b, const py::kwargs& fields);
     ConstraintId (*add)(Scene& scene, std::uint64_t a, std::uint64_t b, const py::kwargs& fields);
     void (*change)(Scene& scene, ConstraintId joint, std::uint64_t a, std::uint64_t b,
                    const py::kwargs& fields);
@@ -94,6 +67,15 @@ template <class C, class Definition>
 constexpr JointType type(const char* name)
 {
     return {name,
+            [](Figure& figure, std::uint64_t a, std::uint64_t b, const py::kwargs& fields) {
+                const auto joint =
+                    definition_from<C, Definition>(c::Mirror<C, Definition>::name, a, b, fields);
+                if constexpr (requires { joint.point_a; }) {
+                    refuse("type", c::Mirror<C, Definition>::name, "a joint without points of the world");
+                } else {
+                    figure.add_joint(joint);
+                }
+            },
             [](Scene& scene, std::uint64_t a, std::uint64_t b, const py::kwargs& fields) {
                 return scene.add_joint(
                     definition_from<C, Definition>(c::Mirror<C, Definition>::name, a, b, fields));
@@ -152,7 +134,31 @@ py::dict joint_report(PythonScene& scene, std::uint64_t joint)
     return all;
 }
 
+py::dict break_events(PythonScene& scene)
+{
+    const std::span<const BreakEvent> events = scene.get().break_events();
+    const auto count = static_cast<py::ssize_t>(events.size());
+    py::array_t<std::uint64_t> joints(count);
+    py::array_t<float> forces(count), torques(count);
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        joints.mutable_data()[i] = number_of(events[i].joint);
+        forces.mutable_data()[i] = events[i].force;
+        torques.mutable_data()[i] = events[i].torque;
+    }
+    py::dict all;
+    all["joint"] = joints;
+    all["force"] = forces;
+    all["torque"] = torques;
+    return all;
+}
+
 }  // namespace
+
+void add_joint(Figure& figure, const std::string& type, std::uint64_t body_a, std::uint64_t body_b,
+               const py::kwargs& fields)
+{
+    type_of(type).add_to_figure(figure, body_a, body_b, fields);
+}
 
 void add_joints_to(SceneClass& scene)
 {
@@ -183,6 +189,22 @@ void add_joints_to(SceneClass& scene)
     scene.def("joint_report", &joint_report, py::arg("joint"),
               "Mean force (N) and torque (N m) on body b in the last step, error (m), angle_error (rad) and "
               "state now.");
+    scene.def(
+        "set_break_limit",
+        [](PythonScene& self, std::uint64_t joint, const py::object& force, const py::object& torque) {
+            BreakLimit limit;
+            if (!force.is_none()) set("force", force, limit.force);
+            if (!torque.is_none()) set("torque", torque, limit.torque);
+            self.get().set_break_limit(id_of<ConstraintId>(joint), limit);
+        },
+        py::arg("joint"), py::arg("force") = py::none(), py::arg("torque") = py::none(),
+        "break_events() lists the joint after each step in which it bore more than force (N) or torque (N "
+        "m); "
+        "None: no\n"
+        "limit. The joint holds all the same: remove it to break it.");
+    scene.def("break_events", &break_events,
+              "What the last step asked of joints beyond their limits: arrays joint (handles), force (N) and "
+              "torque (N m).");
     scene.def_property_readonly("joint_count", [](PythonScene& self) { return self.get().joint_count(); });
     py::tuple names(types.size());
     for (std::size_t i = 0; i < types.size(); ++i) names[i] = types[i].name;

@@ -78,6 +78,9 @@ PYBIND11_MODULE(_motley, module)
     add_bulk_calls_to(scene);
     add_crowds_to(scene);
     add_joints_to(scene);
+    add_shapes_to(scene);
+    add_six_dof_to(scene);
+    add_assemblies_to(module, scene);
     add_queries_to(module);
     add_solver_to(module);
 }

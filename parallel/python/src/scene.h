@@ -43,10 +43,22 @@ class PythonScene {
 
 using SceneClass = py::class_<PythonScene>;
 
+// Definitions from keyword arguments.
+BodyDefinition body_from(const py::kwargs& fields);
+CapsuleDefinition capsule_from(std::uint64_t body, const py::object& start, const py::object& end,
+                               const py::kwargs& fields);
+SixDofDefinition six_dof_from(std::uint64_t body_a, std::uint64_t body_b, const py::kwargs& fields);
+/// Adds a joint of a type that has this name.
+void add_joint(Figure& figure, const std::string& type, std::uint64_t body_a, std::uint64_t body_b,
+               const py::kwargs& fields);
+
+void add_assemblies_to(py::module_& module, SceneClass& scene);
 void add_bodies_to(SceneClass& scene);
 void add_bulk_calls_to(SceneClass& scene);
 void add_crowds_to(SceneClass& scene);
 void add_joints_to(SceneClass& scene);
+void add_shapes_to(SceneClass& scene);
+void add_six_dof_to(SceneClass& scene);
 void add_solver_to(py::module_& module);
 void add_queries_to(py::module_& module);
 

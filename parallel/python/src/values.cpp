@@ -58,4 +58,28 @@ void Keywords::end() const
     throw py::type_error(of_ + " has no field '" + first + "'");
 }
 
+void set(const std::string& name, const py::handle& value, JointFrame& target)
+{
+    if (!py::isinstance<py::dict>(value)) {
+        set(name, value, target.position);
+        return;
+    }
+    Keywords given(name, py::reinterpret_borrow<py::kwargs>(value));
+    given.take("position", target.position);
+    given.take("rotation", target.rotation);
+    given.end();
+}
+
+void set(const std::string& name, const py::handle& value, JointStiffness& target)
+{
+    if (!py::isinstance<py::dict>(value)) {
+        set(name, value, target.hertz);
+        return;
+    }
+    Keywords given(name, py::reinterpret_borrow<py::kwargs>(value));
+    given.take("hertz", target.hertz);
+    given.take("damping_ratio", target.damping_ratio);
+    given.end();
+}
+
 }  // namespace motley::python

@@ -137,6 +137,20 @@ inline void set(const std::string& name, const py::handle& value, BodyMotion& ta
 {
     target = named<BodyMotion>(name, value, motion_names);
 }
+inline void set(const std::string& name, const py::handle& value, EulerAngle& target)
+{
+    target = named<EulerAngle>(name, value, std::array{"x", "y", "z"});
+}
+inline void set(const std::string& name, const py::handle& value, SixDofRotation& target)
+{
+    target = named<SixDofRotation>(name, value, std::array{"about_axes", "euler"});
+}
+/// A place, or a dict with position and rotation.
+void set(const std::string& name, const py::handle& value, JointFrame& target);
+/// Hz, or a dict with hertz and damping_ratio.
+void set(const std::string& name, const py::handle& value, JointStiffness& target);
+/// Three axes, of which each is "locked", "free", a pair of limits, or a dict with the fields of AxisSetup.
+void set(const std::string& name, const py::handle& value, AxisSetup (&target)[3]);
 
 template <class Real>
 py::tuple tuple_of(const Vec2<Real>& v)

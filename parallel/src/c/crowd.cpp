@@ -1,6 +1,8 @@
 // Discs and walls of the C interface.
 #include "motley/c/crowd.h"
 
+#include <algorithm>
+
 #include "motley/core/crowd.h"
 #include "rings.h"
 
@@ -99,7 +101,8 @@ motley_status motley_scene_add_polygon(motley_scene* scene, size_t ring_count, c
         const Polygon polygon = polygon_of(rings, ring_count);
         const auto ids = array<WallId>(walls, ring_count, "walls");
         const WallDefinition shared = like == nullptr ? WallDefinition{} : read_wall(like, "like");
-        std::ranges::copy(add_polygon(to, polygon, shared), ids.begin());
+        const auto added = add_polygon(to, polygon, shared);
+        std::copy(added.begin(), added.end(), ids.begin());
     });
 }
 

@@ -263,7 +263,8 @@ std::vector<std::size_t> sorted_by_signature(const Members& members)
 
 bool are_copies(const Members& members, std::size_t x, std::size_t y)
 {
-    return std::ranges::equal(members.signature_of(x), members.signature_of(y));
+    const auto of_x = members.signature_of(x), of_y = members.signature_of(y);
+    return std::equal(of_x.begin(), of_x.end(), of_y.begin(), of_y.end());
 }
 
 /// A padding lane in the block of this constraint: see Placement::is_gap.

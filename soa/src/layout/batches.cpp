@@ -2,11 +2,11 @@
 #include "layout/batches.h"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 #include <utility>
 
 #include "layout/patches.h"
+#include "stores/atomic_ref.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -117,8 +117,7 @@ void BatchSet::count(std::int64_t chunk)
         return std::accumulate(of_pool.begin(), of_pool.end(), 0) > 0;
     };
     for (std::size_t p = 0; p < pools_.size(); ++p) {
-        if (counts(across, p) || (has_patches_ && counts(inside, p)))
-            std::atomic_ref(occurs_[p]).store(1, std::memory_order_relaxed);
+        if (counts(across, p) || (has_patches_ && counts(inside, p))) AtomicRef(occurs_[p]).store(1);
     }
 }
 

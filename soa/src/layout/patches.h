@@ -12,12 +12,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "stores/aligned_vector.h"
+#include "stores/atomic_ref.h"
 #include "stores/body_store.h"
 #include "stores/growth.h"
 
@@ -53,9 +53,9 @@ class Patches {
     {
         if (body.kind() == BodyKind::fixed) return;
         const std::uint32_t mine = claim_of(index / contacts_a_patch);
-        std::atomic_ref<std::uint32_t> owner(owners_[static_cast<std::size_t>(body.kind())][body.row()]);
-        std::uint32_t seen = owner.load(std::memory_order_relaxed);
-        while (mine > seen && !owner.compare_exchange_weak(seen, mine, std::memory_order_relaxed)) {
+        const AtomicRef owner(owners_[static_cast<std::size_t>(body.kind())][body.row()]);
+        std::uint32_t seen = owner.load();
+        while (mine > seen && !owner.compare_exchange(seen, mine)) {
         }
     }
     /// After all claims: is told of every body of a patch's stretch of the list, and lists those that belong to the
@@ -77,13 +77,12 @@ class Patches {
         [[nodiscard]] bool holds(BodyRow body)
         {
             if (body.kind() == BodyKind::fixed) return true;
-            std::atomic_ref<std::uint32_t> owner(
-                patches_.owners_[static_cast<std::size_t>(body.kind())][body.row()]);
-            const std::uint32_t found = owner.load(std::memory_order_relaxed);
+            const AtomicRef owner(patches_.owners_[static_cast<std::size_t>(body.kind())][body.row()]);
+            const std::uint32_t found = owner.load();
             if ((found | listed) != (claim_ | listed)) return false;
             // Written in any case and counted only when new: a branch on whether a body is new would often be
             // mispredicted.
-            owner.store(claim_ | listed, std::memory_order_relaxed);
+            owner.store(claim_ | listed);
             *end_ = body;
             end_ += found == claim_ ? 1 : 0;
             return true;

@@ -234,7 +234,8 @@ void ShapeContacts::remember_sides(const SceneCore& scene, const ShapePairs& pai
         beside_.push_back(
             {capsule_of(contact.key), met.wall.slot, met.number, contact.body_b.slot, met.side});
     }
-    std::ranges::sort(beside_, {}, &Beside::order);
+    std::sort(beside_.begin(), beside_.end(),
+              [](const Beside& x, const Beside& y) { return x.order() < y.order(); });
     keep_room(beside_);
 }
 
@@ -251,7 +252,8 @@ ShapeContacts::Hold ShapeContacts::hold_of(const SceneCore& scene, const ShapePa
     const auto left_by = [&](double place) { return dot(left, axis.at(place) - wall.from); };
     const WallMet met = scene.discs.met(pair.partner);
     const Beside key{capsule.slot, met.wall.slot, met.number, capsule.body.slot, -1};
-    auto before = std::ranges::lower_bound(beside_, key.order(), {}, &Beside::order);
+    auto before = std::lower_bound(beside_.begin(), beside_.end(), key.order(),
+                                   [](const Beside& x, const auto& order) { return x.order() < order; });
     const auto is_of_pair = [&] { return before != beside_.end() && before->is_of(key); };
     if (scene.discs.segments[pair.partner].is_one_way != 0) {
         if (!is_of_pair()) return {std::min(left_by(0), left_by(1)) >= placed.radius, 1};

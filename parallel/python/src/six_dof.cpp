@@ -1,0 +1,78 @@
+// Scene: a joint of six degrees of freedom, which becomes several joints.
+#include "motley/core/six_dof.h"
+
+#include "arrays.h"
+#include "scene.h"
+
+namespace motley::python {
+
+static void set(const std::string& name, const py::handle& value, AxisSetup& target)
+{
+    if (py::isinstance<py::str>(value)) {
+        constexpr std::array names{"locked", "free"};
+        enum class Way : std::uint8_t { locked, free };
+        target = named<Way>(name, value, names) == Way::free ? AxisSetup::free() : AxisSetup::locked();
+        return;
+    }
+    if (!py::isinstance<py::dict>(value)) {
+        const auto limits = numbers_from<2>(name, value);
+        target = AxisSetup::limited(static_cast<float>(limits[0]), static_cast<float>(limits[1]));
+        return;
+    }
+    Keywords given(name, py::reinterpret_borrow<py::kwargs>(value));
+    given.take("lower", target.lower);
+    given.take("upper", target.upper);
+    given.take("motor_speed", target.motor_speed);
+    given.take("motor_max_force", target.motor_max_force);
+    given.take("spring_hertz", target.spring_hertz);
+    given.take("spring_damping_ratio", target.spring_damping_ratio);
+    given.take("spring_stiffness", target.spring_stiffness);
+    given.take("spring_damping", target.spring_damping);
+    given.take("spring_target", target.spring_target);
+    given.take("spring_max_force", target.spring_max_force);
+    given.take("armature", target.armature);
+    given.end();
+}
+void set(const std::string& name, const py::handle& value, AxisSetup (&target)[3])
+{
+    if (py::isinstance<py::str>(value) || !py::isinstance<py::sequence>(value) || py::len(value) != 3)
+        refuse_value(name, value, "three axes");
+    const auto axes = py::reinterpret_borrow<py::sequence>(value);
+    for (std::size_t i = 0; i < 3; ++i) set(name + "[" + std::to_string(i) + "]", axes[i], target[i]);
+}
+
+SixDofDefinition six_dof_from(std::uint64_t body_a, std::uint64_t body_b, const py::kwargs& fields)
+{
+    SixDofDefinition definition;
+    definition.body_a = id_of<BodyId>(body_a);
+    definition.body_b = id_of<BodyId>(body_b);
+    Keywords given("SixDofDefinition", fields);
+    given.take("frame_a", definition.frame_a);
+    given.take("frame_b", definition.frame_b);
+    given.take("position", definition.position);
+    given.take("rotation", definition.rotation);
+    given.take("rotations", definition.rotations);
+    given.take("max_swing", definition.max_swing);
+    given.take("stiffness", definition.stiffness);
+    given.end();
+    return definition;
+}
+
+void add_six_dof_to(SceneClass& scene)
+{
+    scene.def(
+        "add_six_dof",
+        [](PythonScene& self, std::uint64_t body_a, std::uint64_t body_b, const py::kwargs& fields) {
+            const SixDofDefinition definition = six_dof_from(body_a, body_b, fields);
+            return handles_of<ConstraintId>(add_six_dof(self.get(), definition));
+        },
+        py::arg("body_a"), py::arg("body_b"),
+        "Adds a joint of six degrees of freedom: position and rotation are three axes each, of which one is "
+        "'locked' (the\n"
+        "default), 'free', a pair of limits (m or rad), or a dict with fields of AxisSetup. Other fields: "
+        "frame_a, frame_b,\n"
+        "rotations ('about_axes' or 'euler'), max_swing (rad), stiffness. Returns the handles of the joints "
+        "that it becomes.");
+}
+
+}  // namespace motley::python
