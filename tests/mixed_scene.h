@@ -109,14 +109,14 @@ class MixedScene {
                 const Vec3<double> d = at[j] - at[i];
                 const double distance = std::sqrt(dot(d, d));
                 if (distance > 2.2 * radius || distance < 1e-9 || scene.is_contained(balls[j])) continue;
-                add(balls[i], balls[j], i << 32 | j, (1 / distance) * d, distance - 2 * radius, radius,
-                    radius);
+                add(balls[i], balls[j], std::uint64_t{i} << 32 | j, (1 / distance) * d, distance - 2 * radius,
+                    radius, radius);
             }
             const double above = at[i].y - floor_height;
             if (above < 1.2 * radius) {
                 // The ground is at the origin, so its lever arm is the contact point.
-                Contact floor =
-                    make(scene.ground(), balls[i], i << 32 | 0xFFFFFFFF, {0, 1, 0}, above - radius);
+                Contact floor = make(scene.ground(), balls[i], std::uint64_t{i} << 32 | 0xFFFFFFFF, {0, 1, 0},
+                                     above - radius);
                 floor.arm_a = {static_cast<float>(at[i].x), 0, static_cast<float>(at[i].z)};
                 floor.arm_b = {0, static_cast<float>(-above), 0};
                 if (i % 2 == 0) {  // the same contact with the bodies exchanged

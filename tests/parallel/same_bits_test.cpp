@@ -21,6 +21,17 @@ struct Way {
     std::uint64_t golden;  ///< of the state after `golden_steps`, from the first build that had it
 };
 
+#ifdef __EMSCRIPTEN__
+// WebAssembly cannot take denormals for zero (float_environment.h). x86 makes these hashes too where it does not.
+constexpr std::uint64_t golden_of_projection = 9312123720246324464ULL;
+constexpr std::uint64_t goldens_of_joints[] = {3007604585695495585ULL, 12868755470557197933ULL,
+                                               8422437900052035028ULL, 5694374309584148385ULL};
+#else
+constexpr std::uint64_t golden_of_projection = 10622580740719753038ULL;
+constexpr std::uint64_t goldens_of_joints[] = {6152861225497905870ULL, 10963724893553877999ULL,
+                                               15762102905278795181ULL, 16452082627860794370ULL};
+#endif
+
 std::vector<Way> ways()
 {
     SolverSettings soft;
@@ -36,7 +47,7 @@ std::vector<Way> ways()
     return {{"soft_step", soft, 9802001598944533563ULL},
             {"baumgarte", iterative, 7495287706603010883ULL},
             {"no drift correction", none, 6810443865828568700ULL},
-            {"projection", projection, 10622580740719753038ULL}};
+            {"projection", projection, golden_of_projection}};
 }
 
 /// The state's hash after every step.
@@ -92,8 +103,6 @@ std::vector<std::uint64_t> run_joints(const SolverSettings& settings, const Solv
 
 TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAfterEveryStep)
 {
-    const std::uint64_t golden[] = {6152861225497905870ULL, 10963724893553877999ULL, 15762102905278795181ULL,
-                                    16452082627860794370ULL};
     std::size_t number = 0;
     for (const Way& way : ways()) {
         const auto scalar = run_joints(way.settings, {.isa = Isa::scalar});
@@ -105,7 +114,7 @@ TEST(SameBits, EveryJointTypeMatchesScalarOnEveryInstructionSetAndThreadCountAft
                 << way.name << " on " << threads << " threads";
         }
         if (steps == golden_steps) {
-            EXPECT_EQ(scalar.back(), golden[number++])
+            EXPECT_EQ(scalar.back(), goldens_of_joints[number++])
                 << way.name
                 << ": this build makes other bits than the one that the golden hash is of. Where a type of "
                 << "constraint, its cases or its maths have changed on purpose, every build has to make the "

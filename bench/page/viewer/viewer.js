@@ -159,7 +159,7 @@ class Dots {
   }
 }
 
-// Without antialiasing, which costs a browser without a graphics card a third of a frame: shaders cut the shapes, not edges.
+// Without antialiasing, which does nothing here: shaders cut the shapes, not edges of triangles.
 const renderer = new THREE.WebGLRenderer({ canvas: element("view"), antialias: false, preserveDrawingBuffer: true });
 renderer.setClearColor(0xfafaf8);
 const world = new THREE.Scene(), camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -10, 10);

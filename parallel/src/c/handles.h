@@ -1,6 +1,7 @@
 // What the opaque handles of the C interface hold, and the structs that many of its calls use.
 #pragma once
 
+#include "maths/bit_cast.h"
 #include "mirror.h"
 #include "motley/c/scene.h"
 #include "motley/core/ids.h"
@@ -78,7 +79,7 @@ To as(const From& value)
     } else {
         static_assert(same_layout<To, From>());
     }
-    return std::bit_cast<To>(value);
+    return motley::bit_cast<To>(value);
 }
 
 /// Writes a handle to where the host wants it, if it does.

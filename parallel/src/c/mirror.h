@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "call.h"
+#include "maths/bit_cast.h"
 
 namespace motley::c {
 
@@ -124,7 +124,7 @@ void take(const From& from, To& to, const FieldName& name)
         to = from;
     } else {
         static_assert(same_layout<From, To>());
-        to = std::bit_cast<To>(from);
+        to = motley::bit_cast<To>(from);
     }
 }
 
@@ -143,7 +143,7 @@ void give(const From& from, To& to)
         to = from;
     } else {
         static_assert(same_layout<To, From>());
-        to = std::bit_cast<To>(from);
+        to = motley::bit_cast<To>(from);
     }
 }
 

@@ -1,10 +1,10 @@
 // See disc_strips.h. A sort by counting, in chunks that do not depend on the number of threads.
 #include "crowd/disc_strips.h"
 
-#include <bit>
 #include <cmath>
 #include <utility>
 
+#include "maths/bit_cast.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -23,12 +23,12 @@ int DiscStrips::bucket_of(float reach)
 {
     // Exponent and three digits of the fraction.
     constexpr std::int32_t first = (127 - 20) << 3;
-    const auto digits = static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(reach) >> 20);
+    const auto digits = static_cast<std::int32_t>(bit_cast<std::uint32_t>(reach) >> 20);
     return std::clamp(digits - first, 0, buckets - 1);
 }
 float DiscStrips::upper_end_of(int bucket)
 {
-    return std::bit_cast<float>(static_cast<std::uint32_t>(bucket + 1 + ((127 - 20) << 3)) << 20);
+    return bit_cast<float>(static_cast<std::uint32_t>(bucket + 1 + ((127 - 20) << 3)) << 20);
 }
 
 float DiscStrips::skin_at(double speed, float dt)

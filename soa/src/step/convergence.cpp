@@ -1,10 +1,10 @@
 // Islands by union-find; residuals and wanted sweeps by block.
 #include "step/convergence.h"
+#include "maths/bit_cast.h"
 #include "stores/joint_store.h"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 
 namespace motley {
@@ -30,7 +30,7 @@ constexpr std::int32_t unseen = -1;
 constexpr std::int32_t all_but_sign = 0x7FFFFFFF;
 std::int32_t bits_of(float value)
 {
-    return std::bit_cast<std::int32_t>(value) & all_but_sign;
+    return bit_cast<std::int32_t>(value) & all_but_sign;
 }
 /// Compares integers, because a compiler may vectorize a maximum of integers, but not one of floats.
 std::int32_t largest_bits(const float* values, int count)
@@ -65,7 +65,7 @@ ResidualSum sum_residuals(const SweepLists& sweeps)
         }
         sum.constraints += count;
     });
-    sum.largest = static_cast<double>(std::bit_cast<float>(largest));
+    sum.largest = static_cast<double>(bit_cast<float>(largest));
     return sum;
 }
 
