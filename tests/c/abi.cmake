@@ -1,14 +1,15 @@
 # The binary interface of C, as a host that is built already knows it (calls, their parameters, the layout of what they take
 # and the values of enumerations) is still that of abi-1.xml, which was written when the interface was released; additions
-# are allowed. Bodies that do nothing are compiled for the calls of the headers, since only what is compiled is described.
-#   cmake -DCOMPILER=cc -DSOURCE=. -DDIRECTORY=build -P tests/c/abi.cmake [-- --release]
-# With --release it writes abi-1.xml instead: only when MOTLEY_C_VERSION has become another one.
+# are allowed. abidw describes compiled calls: each call of the headers gets a body that does nothing.
+#   cmake -DCOMPILER=cc -DSOURCE=. -DDIRECTORY=build [-DRELEASE=ON] -P tests/c/abi.cmake
+# RELEASE writes abi-1.xml instead: only when MOTLEY_C_VERSION has become another one.
 cmake_minimum_required(VERSION 3.22)
 set(abi ${SOURCE}/tests/c/abi-1.xml)
 set(include ${SOURCE}/parallel/include)
 execute_process(COMMAND ${COMPILER} -std=c99 -E -P -I${include} ${include}/motley/c/motley.h OUTPUT_VARIABLE text
     COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX REPLACE "#pragma[^\n]*" "" text "${text}")
+# A semicolon would separate elements of a list.
 string(REPLACE ";" "@" text "${text}")
 string(REGEX REPLACE "[ \n]+" " " text "${text}")
 string(REGEX MATCHALL "[a-z][a-z0-9_ *]*[ *]motley_[a-z0-9_]+\\([^@{}]*\\)@" calls "${text}")
@@ -23,13 +24,11 @@ list(JOIN calls "\n" calls)
 file(WRITE ${DIRECTORY}/abi.c "#include <motley/c/motley.h>\n${calls}\n")
 execute_process(COMMAND ${COMPILER} -std=c99 -g -gdwarf-4 -fPIC -shared -nostdlib -I${include} -o ${DIRECTORY}/abi.so ${DIRECTORY}/abi.c
     COMMAND_ERROR_IS_FATAL ANY)
-math(EXPR last "${CMAKE_ARGC} - 1")
-if(CMAKE_ARGV${last} STREQUAL --release)
+if(RELEASE)
     execute_process(COMMAND abidw --no-show-locs --no-comp-dir-path --no-corpus-path --out-file ${abi} ${DIRECTORY}/abi.so
         COMMAND_ERROR_IS_FATAL ANY)
     return()
 endif()
-# abidiff's bit 4 says that something changed, bit 8 that hosts break; additions are no changes.
 execute_process(COMMAND abidiff --no-added-syms ${abi} ${DIRECTORY}/abi.so RESULT_VARIABLE result OUTPUT_VARIABLE changes
     ERROR_VARIABLE changes)
 if(NOT result EQUAL 0)

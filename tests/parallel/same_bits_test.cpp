@@ -22,7 +22,7 @@ struct Way {
 };
 
 #ifdef __EMSCRIPTEN__
-// WebAssembly cannot take denormals for zero (float_environment.h). x86 makes these hashes too where it does not.
+// WebAssembly cannot take denormals for zero. x86 without the flags of float_environment.h makes these hashes too.
 constexpr std::uint64_t golden_of_projection = 9312123720246324464ULL;
 constexpr std::uint64_t goldens_of_joints[] = {3007604585695495585ULL, 12868755470557197933ULL,
                                                8422437900052035028ULL, 5694374309584148385ULL};

@@ -1,4 +1,4 @@
-// Draws a run: people as discs and capsules, all in one call, walls, and a field of densities below them.
+// Draws a run: people as discs and capsules, all in two calls, walls, and a field of densities below them.
 "use strict";
 
 const FULL = { pressure: 600, speed: 2, wall: 6000, density: 8 };  // N/m, m/s, N/m, 1/m2: the red ends of the scales
@@ -26,19 +26,23 @@ void main() {
   place = position.xy * (around + abs(half_axis) + least);
   gl_Position = projectionMatrix * viewMatrix * vec4(middle + place, 0.0, 1.0);
 }`;
-const FRAGMENT = `
+// What fragments share: the colour `off` metres outside of a shape, darker at the rim of one that is not tiny.
+const RIM = `
 precision highp float;
-varying vec2 place; varying vec2 axis; varying float around; varying vec4 colour;
+varying float around; varying vec4 colour;
 uniform float least;
+vec4 rimmed(float off) {
+  return vec4(off > -1.5 * least && around > 4.0 * least ? 0.62 * colour.rgb : colour.rgb, colour.a);
+}`;
+const FRAGMENT = RIM + `
+varying vec2 place; varying vec2 axis;
 void main() {
   float along = dot(axis, axis) > 0.0 ? clamp(dot(place, axis) / dot(axis, axis), -1.0, 1.0) : 0.0;
   float off = length(place - along * axis) - around;
   if (off > 0.0) discard;
-  vec3 inside = off > -1.5 * least && around > 4.0 * least ? 0.62 * colour.rgb : colour.rgb;
-  gl_FragColor = vec4(inside, colour.a);
+  gl_FragColor = rimmed(off);
 }`;
 
-// Small discs, a point each.
 const POINT_VERTEX = `
 attribute float radius; attribute vec4 paint;
 varying vec4 colour; varying float around; varying float reach;
@@ -48,14 +52,12 @@ void main() {
   gl_PointSize = 2.0 * reach / least * ratio;
   gl_Position = projectionMatrix * viewMatrix * vec4(position.xy, 0.0, 1.0);
 }`;
-const POINT_FRAGMENT = `
-precision highp float;
-varying vec4 colour; varying float around; varying float reach;
-uniform float least;
+const POINT_FRAGMENT = RIM + `
+varying float reach;
 void main() {
   float off = length((gl_PointCoord - 0.5) * 2.0 * reach) - around;
   if (off > 0.0) discard;
-  gl_FragColor = vec4(off > -1.5 * least && around > 4.0 * least ? 0.62 * colour.rgb : colour.rgb, colour.a);
+  gl_FragColor = rimmed(off);
 }`;
 
 const SQUARE = `
@@ -63,100 +65,90 @@ precision highp float;
 varying vec4 colour;
 void main() { gl_FragColor = colour; }`;
 
-// Many capsules, or squares, in one call. Four corners each, not instances, which browsers without a graphics card draw slowly.
-class Capsules {
-  constructor(scene, order, fragment = FRAGMENT) {
+// Many shapes in one call, each of which takes the same number of vertices.
+class Batch {
+  constructor(scene, order, vertices, vertexShader, fragmentShader) {
     this.least = { value: 0.01 };
-    this.material = new THREE.ShaderMaterial({ vertexShader: VERTEX, fragmentShader: fragment, uniforms: { least: this.least },
+    this.ratio = { value: 1 };
+    this.material = new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: { least: this.least, ratio: this.ratio },
                                                transparent: true, depthTest: false });
     this.scene = scene;
     this.order = order;
+    this.vertices = vertices;
     this.room = 0;
+  }
+  attribute(name, array, size, normalized = false) {
+    this[name] = new THREE.BufferAttribute(array, size, normalized);
+    this.geometry.setAttribute(name, this[name]);
   }
   reserve(count) {
     if (count <= this.room) return;
     this.room = Math.ceil(count * 1.2) + 16;
+    this.geometry = new THREE.BufferGeometry();
+    this.attribute("radius", new Float32Array(this.vertices * this.room), 1);
+    this.attribute("paint", new Uint8Array(4 * this.vertices * this.room), 4, true);
+    if (this.drawn) this.scene.remove(this.drawn);
+    this.drawn = this.build();
+    this.drawn.frustumCulled = false;
+    this.drawn.renderOrder = this.order;
+    this.scene.add(this.drawn);
+  }
+  setVertex(vertex, radius, colour, alpha) {
+    const paint = this.paint.array;
+    this.radius.array[vertex] = radius;
+    for (let k = 0; k < 3; ++k) paint[4 * vertex + k] = colour[k];
+    paint[4 * vertex + 3] = 255 * alpha;
+  }
+  // Shows the first `count` shapes, which take `range` places in the order of drawing.
+  showRange(count, range, changed) {
+    if (!this.drawn) return;
+    this.geometry.setDrawRange(0, range);
+    for (const attribute of [changed, this.radius, this.paint]) attribute.needsUpdate = true;
+    this.drawn.visible = count > 0;
+  }
+}
+
+// Capsules, or squares: four corners each, not instances, which browsers without a graphics card draw slowly.
+class Capsules extends Batch {
+  constructor(scene, order, fragment = FRAGMENT) { super(scene, order, 4, VERTEX, fragment); }
+  build() {
     const corners = new Float32Array(12 * this.room), index = new Uint32Array(6 * this.room);
     for (let i = 0; i < this.room; ++i) {
       corners.set([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0], 12 * i);
       index.set([0, 1, 2, 0, 2, 3].map((k) => 4 * i + k), 6 * i);
     }
-    this.geometry = new THREE.BufferGeometry();
-    this.geometry.setAttribute("position", new THREE.BufferAttribute(corners, 3));
+    this.attribute("position", corners, 3);
+    this.attribute("ends", new Float32Array(16 * this.room), 4);
     this.geometry.setIndex(new THREE.BufferAttribute(index, 1));
-    const attribute = (name, array, size, normalized) => {
-      this[name] = new THREE.BufferAttribute(array, size, normalized);
-      this.geometry.setAttribute(name, this[name]);
-    };
-    attribute("ends", new Float32Array(16 * this.room), 4, false);
-    attribute("radius", new Float32Array(4 * this.room), 1, false);
-    attribute("paint", new Uint8Array(16 * this.room), 4, true);
-    if (this.mesh) this.scene.remove(this.mesh);
-    this.mesh = new THREE.Mesh(this.geometry, this.material);
-    this.mesh.frustumCulled = false;
-    this.mesh.renderOrder = this.order;
-    this.scene.add(this.mesh);
+    return new THREE.Mesh(this.geometry, this.material);
   }
   set(i, x0, y0, x1, y1, radius, colour, alpha) {
-    const ends = this.ends.array, paint = this.paint.array;
+    const ends = this.ends.array;
     for (let corner = 4 * i; corner < 4 * i + 4; ++corner) {
       const at = 4 * corner;
       ends[at] = x0;
       ends[at + 1] = y0;
       ends[at + 2] = x1;
       ends[at + 3] = y1;
-      this.radius.array[corner] = radius;
-      for (let k = 0; k < 3; ++k) paint[at + k] = colour[k];
-      paint[at + 3] = 255 * alpha;
+      this.setVertex(corner, radius, colour, alpha);
     }
   }
-  show(count) {
-    if (!this.mesh) return;
-    this.geometry.setDrawRange(0, 6 * count);
-    for (const attribute of [this.ends, this.radius, this.paint]) attribute.needsUpdate = true;
-    this.mesh.visible = count > 0;
-  }
+  show(count) { this.showRange(count, 6 * count, this.ends); }
 }
 
-// Discs of few pixels, in one call: a corner each instead of four.
-class Dots {
-  constructor(scene, order) {
-    this.least = { value: 0.01 };
-    this.ratio = { value: 1 };
-    this.material = new THREE.ShaderMaterial({ vertexShader: POINT_VERTEX, fragmentShader: POINT_FRAGMENT,
-                                               uniforms: { least: this.least, ratio: this.ratio }, transparent: true, depthTest: false });
-    this.scene = scene;
-    this.order = order;
-    this.room = 0;
-  }
-  reserve(count) {
-    if (count <= this.room) return;
-    this.room = Math.ceil(count * 1.2) + 16;
-    this.geometry = new THREE.BufferGeometry();
-    this.position = new THREE.BufferAttribute(new Float32Array(3 * this.room), 3);
-    this.radius = new THREE.BufferAttribute(new Float32Array(this.room), 1);
-    this.paint = new THREE.BufferAttribute(new Uint8Array(4 * this.room), 4, true);
-    for (const name of ["position", "radius", "paint"]) this.geometry.setAttribute(name, this[name]);
-    if (this.points) this.scene.remove(this.points);
-    this.points = new THREE.Points(this.geometry, this.material);
-    this.points.frustumCulled = false;
-    this.points.renderOrder = this.order;
-    this.scene.add(this.points);
+// Discs of few pixels: a point each.
+class Dots extends Batch {
+  constructor(scene, order) { super(scene, order, 1, POINT_VERTEX, POINT_FRAGMENT); }
+  build() {
+    this.attribute("position", new Float32Array(3 * this.room), 3);
+    return new THREE.Points(this.geometry, this.material);
   }
   set(i, x, y, radius, colour) {
-    const place = this.position.array, paint = this.paint.array;
-    place[3 * i] = x;
-    place[3 * i + 1] = y;
-    this.radius.array[i] = radius;
-    for (let k = 0; k < 3; ++k) paint[4 * i + k] = colour[k];
-    paint[4 * i + 3] = 255;
+    this.position.array[3 * i] = x;
+    this.position.array[3 * i + 1] = y;
+    this.setVertex(i, radius, colour, 1);
   }
-  show(count) {
-    if (!this.points) return;
-    this.geometry.setDrawRange(0, count);
-    for (const attribute of [this.position, this.radius, this.paint]) attribute.needsUpdate = true;
-    this.points.visible = count > 0;
-  }
+  show(count) { this.showRange(count, count, this.position); }
 }
 
 // Without antialiasing, which does nothing here: shaders cut the shapes, not edges of triangles.
@@ -248,22 +240,25 @@ function drawFrame() {
 // Small discs as dots, and of all others those in view.
 function drawPeople(colour) {
   const view = element("view"), up = eye.metres / 2, across = up * view.clientWidth / view.clientHeight;
-  const small = DOT_PIXELS / 2 * metresAPixel(), ends = run.ends;
+  const small = DOT_PIXELS / 2 * metresAPixel();
+  const outside = (a, b, radius, middle, half) => Math.max(a, b) + radius < middle - half || Math.min(a, b) - radius > middle + half;
+  const place = (i) => [0, 1, 2, 3].map((k) => run.ends[4 * i + k] / 1000);
+  const shapes = [];
+  let points = 0;
   dots.reserve(run.count);
-  people.reserve(run.count);
-  let points = 0, shapes = 0;
   for (let i = 0; i < run.count; ++i) {
-    const x0 = ends[4 * i] / 1000, y0 = ends[4 * i + 1] / 1000, x1 = ends[4 * i + 2] / 1000, y1 = ends[4 * i + 3] / 1000;
     const radius = run.radius[i] / 1000;
-    if (x0 === x1 && y0 === y1 && radius < small) {
-      dots.set(points++, x0, y0, radius, colour(i));
-      continue;
-    }
-    const outside = (a, b, middle, half) => Math.max(a, b) + radius < middle - half || Math.min(a, b) - radius > middle + half;
-    if (!outside(x0, x1, eye.x, across) && !outside(y0, y1, eye.y, up)) people.set(shapes++, x0, y0, x1, y1, radius, colour(i), 1);
+    if (run.isLong[i] || radius >= small) shapes.push(i);
+    else dots.set(points++, run.ends[4 * i] / 1000, run.ends[4 * i + 1] / 1000, radius, colour(i));
   }
+  const seen = shapes.filter((i) => {
+    const [x0, y0, x1, y1] = place(i), radius = run.radius[i] / 1000;
+    return !outside(x0, x1, radius, eye.x, across) && !outside(y0, y1, radius, eye.y, up);
+  });
+  people.reserve(seen.length);
+  seen.forEach((i, at) => people.set(at, ...place(i), run.radius[i] / 1000, colour(i), 1));
   dots.show(points);
-  people.show(shapes);
+  people.show(seen.length);
 }
 
 // A piece of a metre each, coloured by what presses on it.

@@ -1,9 +1,11 @@
 // numpy arrays as the library's views: as they lie in memory where their type fits, and converted once where it does not.
 #pragma once
 
+#include <cstring>
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "values.h"
@@ -124,6 +126,26 @@ class Output {
   private:
     py::array array_;
 };
+
+/// One member of each item, as an array: numbers and handles in a row, vectors as n x 2 or n x 3.
+template <class Items, class Item, class Member>
+py::array column(const Items& items, Member Item::*member)
+{
+    constexpr bool is_of_floats = std::is_same_v<Member, float> || std::is_same_v<Member, Vec2<float>> ||
+                                  std::is_same_v<Member, Vec3<float>>;
+    using Number = std::conditional_t<is_of_floats, float, std::uint64_t>;
+    constexpr std::size_t width = sizeof(Member) / sizeof(Number);
+    static_assert(width * sizeof(Number) == sizeof(Member), "neither floats nor a handle");
+    std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(items.size())};
+    if (width > 1) shape.push_back(static_cast<py::ssize_t>(width));
+    py::array_t<Number> array(shape);
+    Number* at = array.mutable_data();
+    for (const Item& item : items) {
+        std::memcpy(at, &(item.*member), sizeof(Member));
+        at += width;
+    }
+    return array;
+}
 
 /// One number for all of `count`, or one for each.
 template <class Number>

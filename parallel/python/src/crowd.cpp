@@ -108,70 +108,37 @@ py::array_t<std::uint64_t> add_wkt(PythonScene& scene, const std::string& text, 
 #endif
 }
 
-struct Loads {
-    std::vector<BodyLoad> of;
-    /// One number of each, as an array.
-    template <class Number>
-    [[nodiscard]] py::array_t<float> array(const Number& number) const
-    {
-        py::array_t<float> values(static_cast<py::ssize_t>(of.size()));
-        for (std::size_t i = 0; i < of.size(); ++i) values.mutable_data()[i] = number(of[i]);
-        return values;
-    }
-};
-
 /// With the circumference of each disc where none is given.
 py::dict read_loads(PythonScene& scene, const py::object& bodies, const py::object& circumferences)
 {
     const Handles ids("bodies", bodies);
-    Loads loads;
-    loads.of.resize(ids.size());
+    std::vector<BodyLoad> loads(ids.size());
     if (circumferences.is_none()) {
-        scene.get().read_loads(ids.span<BodyId>(), {}, StridedSpan<BodyLoad>(loads.of));
+        scene.get().read_loads(ids.span<BodyId>(), {}, StridedSpan<BodyLoad>(loads));
     } else {
         const std::vector<float> around = for_each_of<float>("circumferences", circumferences, ids.size());
-        scene.get().read_loads(ids.span<BodyId>(), {}, StridedSpan<BodyLoad>(loads.of),
+        scene.get().read_loads(ids.span<BodyId>(), {}, StridedSpan<BodyLoad>(loads),
                                StridedSpan<const float>(around));
     }
-    py::array_t<float> net({static_cast<py::ssize_t>(ids.size()), py::ssize_t{3}});
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-        const Vec3<float> force = loads.of[i].net_force;
-        const float values[] = {force.x, force.y, force.z};
-        std::copy(values, values + 3, net.mutable_data() + 3 * i);
-    }
     py::dict all;
-    all["normal_force"] = loads.array([](const BodyLoad& load) { return load.normal_force; });
-    all["largest_normal_force"] = loads.array([](const BodyLoad& load) { return load.largest_normal_force; });
-    all["net_force"] = net;
-    all["pressure"] = loads.array([](const BodyLoad& load) { return load.pressure; });
+    all["normal_force"] = column(loads, &BodyLoad::normal_force);
+    all["largest_normal_force"] = column(loads, &BodyLoad::largest_normal_force);
+    all["net_force"] = column(loads, &BodyLoad::net_force);
+    all["pressure"] = column(loads, &BodyLoad::pressure);
     return all;
 }
 
 py::dict disc_contacts(PythonScene& scene)
 {
     const std::vector<DiscContact> contacts = scene.get().disc_contacts();
-    const auto count = static_cast<py::ssize_t>(contacts.size());
-    py::array_t<std::uint64_t> a(count), b(count), wall(count);
-    py::array_t<float> normal({count, py::ssize_t{2}}), separation(count), pressing(count), rubbing(count);
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const DiscContact& contact = contacts[i];
-        a.mutable_data()[i] = number_of(contact.a);
-        b.mutable_data()[i] = number_of(contact.b);
-        wall.mutable_data()[i] = number_of(contact.wall);
-        normal.mutable_data()[2 * i] = contact.normal.x;
-        normal.mutable_data()[2 * i + 1] = contact.normal.y;
-        separation.mutable_data()[i] = contact.separation;
-        pressing.mutable_data()[i] = contact.normal_force;
-        rubbing.mutable_data()[i] = contact.friction_force;
-    }
     py::dict all;
-    all["a"] = a;
-    all["b"] = b;
-    all["wall"] = wall;
-    all["normal"] = normal;
-    all["separation"] = separation;
-    all["normal_force"] = pressing;
-    all["friction_force"] = rubbing;
+    all["a"] = column(contacts, &DiscContact::a);
+    all["b"] = column(contacts, &DiscContact::b);
+    all["wall"] = column(contacts, &DiscContact::wall);
+    all["normal"] = column(contacts, &DiscContact::normal);
+    all["separation"] = column(contacts, &DiscContact::separation);
+    all["normal_force"] = column(contacts, &DiscContact::normal_force);
+    all["friction_force"] = column(contacts, &DiscContact::friction_force);
     return all;
 }
 

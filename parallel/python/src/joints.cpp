@@ -3,6 +3,7 @@
 
 #include <tuple>
 
+#include "arrays.h"
 #include "contract/constraint_types.h"
 #include "scene.h"
 
@@ -137,18 +138,10 @@ py::dict joint_report(PythonScene& scene, std::uint64_t joint)
 py::dict break_events(PythonScene& scene)
 {
     const std::span<const BreakEvent> events = scene.get().break_events();
-    const auto count = static_cast<py::ssize_t>(events.size());
-    py::array_t<std::uint64_t> joints(count);
-    py::array_t<float> forces(count), torques(count);
-    for (std::size_t i = 0; i < events.size(); ++i) {
-        joints.mutable_data()[i] = number_of(events[i].joint);
-        forces.mutable_data()[i] = events[i].force;
-        torques.mutable_data()[i] = events[i].torque;
-    }
     py::dict all;
-    all["joint"] = joints;
-    all["force"] = forces;
-    all["torque"] = torques;
+    all["joint"] = column(events, &BreakEvent::joint);
+    all["force"] = column(events, &BreakEvent::force);
+    all["torque"] = column(events, &BreakEvent::torque);
     return all;
 }
 

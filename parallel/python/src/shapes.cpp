@@ -39,44 +39,18 @@ std::uint64_t add_half_space(PythonScene& scene, const py::kwargs& fields)
     return number_of(scene.get().add_half_space(half_space));
 }
 
-/// A vector of each contact, as an array of n x 3.
-template <class Vector>
-py::array_t<float> vectors(const std::vector<ShapeContact>& contacts, const Vector& vector)
-{
-    py::array_t<float> all({static_cast<py::ssize_t>(contacts.size()), py::ssize_t{3}});
-    float* at = all.mutable_data();
-    for (const ShapeContact& contact : contacts) {
-        const Vec3<float>& v = vector(contact);
-        for (const float number : {v.x, v.y, v.z}) *at++ = number;
-    }
-    return all;
-}
-
 py::dict shape_contacts(PythonScene& scene)
 {
     const std::vector<ShapeContact> contacts = scene.get().shape_contacts();
-    const auto count = static_cast<py::ssize_t>(contacts.size());
-    py::array_t<std::uint64_t> a(count), b(count), wall(count);
-    py::array_t<float> separation(count), pressing(count);
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        a.mutable_data()[i] = number_of(contacts[i].a);
-        b.mutable_data()[i] = number_of(contacts[i].b);
-        wall.mutable_data()[i] = number_of(contacts[i].wall);
-        separation.mutable_data()[i] = contacts[i].separation;
-        pressing.mutable_data()[i] = contacts[i].normal_force;
-    }
     py::dict all;
-    all["a"] = a;
-    all["b"] = b;
-    all["wall"] = wall;
-    all["normal"] = vectors(
-        contacts, [](const ShapeContact& c) -> const auto& { return c.normal; });
-    all["arm_b"] = vectors(
-        contacts, [](const ShapeContact& c) -> const auto& { return c.arm_b; });
-    all["separation"] = separation;
-    all["normal_force"] = pressing;
-    all["friction_force"] = vectors(
-        contacts, [](const ShapeContact& c) -> const auto& { return c.friction_force; });
+    all["a"] = column(contacts, &ShapeContact::a);
+    all["b"] = column(contacts, &ShapeContact::b);
+    all["wall"] = column(contacts, &ShapeContact::wall);
+    all["normal"] = column(contacts, &ShapeContact::normal);
+    all["arm_b"] = column(contacts, &ShapeContact::arm_b);
+    all["separation"] = column(contacts, &ShapeContact::separation);
+    all["normal_force"] = column(contacts, &ShapeContact::normal_force);
+    all["friction_force"] = column(contacts, &ShapeContact::friction_force);
     return all;
 }
 
