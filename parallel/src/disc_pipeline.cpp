@@ -35,8 +35,7 @@ void DiscPipeline::find(SceneCore& scene, float dt)
         if (leaving_.size() <= few && discs.late.size() + 4 * leaving_.size() <= discs.count / 2 + 64) {
             if (leaving_.empty()) return;
             discs.is_stale = true;
-            if (finder_.find_late(scene, leaving_, dt)) {
-                place_resting(scene, wall_ends_, discs.bands[0]);
+            if (find_late(scene, dt)) {
                 discs.is_stale = false;
                 return;
             }
@@ -125,6 +124,25 @@ void DiscPipeline::list_leaving(const SceneCore& scene, float dt)
     }
 }
 
+/// Adds the contacts that the discs may have which leave their skins. Returns false where a search of all discs must be
+/// made instead.
+bool DiscPipeline::find_late(SceneCore& scene, float dt)
+{
+    DiscStore& discs = scene.discs;
+    finder_.begin_late(scene, leaving_, dt);
+    if (!finder_.are_late_near(discs)) return false;
+    const auto bands = static_cast<std::int64_t>(discs.band_count);
+    runner_.run(bands, [&](std::int64_t band) { finder_.list_late(scene, static_cast<std::size_t>(band)); });
+    if (!finder_.are_late_sparse(discs)) return false;
+    finder_.make_room_for_workers(runner_.workers());
+    runner_.run(bands, [&](std::int64_t band, int worker) {
+        if (finder_.add_late(scene, static_cast<std::size_t>(band), worker))
+            place_resting(scene, wall_ends_, discs.bands[static_cast<std::size_t>(band)]);
+    });
+    finder_.end_late(discs);
+    return true;
+}
+
 void DiscPipeline::carry_impulses(SceneCore& scene)
 {
     CarriedImpulses& carried = finder_.carried;
@@ -148,7 +166,7 @@ void DiscPipeline::sort_into_strips(SceneCore& scene, float dt)
     runner_.run(chunks, [&](std::int64_t chunk) { strips.measure(scene, discs, chunk); });
     strips.choose(discs);
     runner_.run(chunks, [&](std::int64_t chunk) {
-        DiscStrips::anchor(scene, chunk);
+        strips.anchor(scene, chunk);
         strips.count(scene, chunk);
     });
     strips.open();

@@ -32,6 +32,7 @@ class DiscPipeline {
     [[nodiscard]] static bool is_anyone_awake(const SceneCore& scene);
     [[nodiscard]] bool have_walls_left(const SceneCore& scene, float dt) const;
     void list_leaving(const SceneCore& scene, float dt);
+    bool find_late(SceneCore& scene, float dt);
     void sort_into_strips(SceneCore& scene, float dt);
     void carry_impulses(SceneCore& scene);
     void find_contacts(SceneCore& scene);

@@ -4,8 +4,8 @@
 //
 // Bodies are sorted into strips of the plane, and consecutive strips into bands. A contact belongs to the band of its
 // first body, and its other body is in the same band or in the next one. So bands of even number share no body with
-// each other, nor do those of odd number. Band 0 is solved by itself: it has the contacts that reach further, and those
-// that were found since the last search of all discs.
+// each other, nor do those of odd number. Band 0 is solved by itself: it has the contacts of discs that reach further.
+// Contacts that were found since the last search of all discs are added to the bands that their bodies were in then.
 #pragma once
 
 #include <array>

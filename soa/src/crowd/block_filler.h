@@ -21,18 +21,29 @@ class BlockFiller {
     void begin(DiscBlocks& blocks, int row_floats, int impulse_floats, std::size_t bodies)
     {
         blocks.count = 0;
-        go_on(blocks, row_floats, impulse_floats, bodies);
+        take_over(blocks, row_floats, impulse_floats, bodies);
     }
-    /// The same with new blocks behind those that there are.
-    void go_on(DiscBlocks& blocks, int row_floats, int impulse_floats, std::size_t bodies)
+    /// Goes on with the blocks that there are: opens those of the last ones again that have lanes left. `numbers_of`
+    /// gives the numbers of the bodies, or no_body, in a lane of a block.
+    template <class NumbersOf>
+    void go_on(DiscBlocks& blocks, int row_floats, int impulse_floats, std::size_t bodies,
+               const NumbersOf& numbers_of)
     {
-        blocks_ = &blocks;
-        row_floats_ = static_cast<std::size_t>(row_floats);
-        impulse_floats_ = static_cast<std::size_t>(impulse_floats);
-        // Memory may have run out while blocks were open.
-        if (open_ != 0) std::fill(masks_.begin(), masks_.end(), 0U);
-        open_ = 0;
-        if (masks_.size() < bodies) masks_.resize(with_room_to_grow(bodies), 0);
+        take_over(blocks, row_floats, impulse_floats, bodies);
+        const auto count = static_cast<std::size_t>(blocks.count);
+        for (std::size_t block = count - std::min(count, most_open); block < count; ++block) {
+            if (blocks.lanes[block] == block_lanes) continue;
+            const int number = std::countr_zero(~open_);
+            Open& open = opened_[static_cast<std::size_t>(number)];
+            open.block = block;
+            open_ |= 1U << number;
+            for (std::size_t lane = 0; lane < blocks.lanes[block]; ++lane) {
+                open.bodies[lane] = numbers_of(block, lane);
+                for (const std::uint32_t body : open.bodies[lane]) {
+                    if (body != no_body) masks_[body] |= 1U << number;
+                }
+            }
+        }
     }
     /// How many bodies there may be before a list grows.
     [[nodiscard]] std::size_t most_bodies() const { return masks_.size(); }
@@ -80,6 +91,7 @@ class BlockFiller {
     }
 
   private:
+    static constexpr std::size_t most_open = 32;
     struct Open {
         std::size_t block;
         std::array<std::array<std::uint32_t, 2>, block_lanes> bodies;
@@ -87,9 +99,19 @@ class BlockFiller {
     DiscBlocks* blocks_ = nullptr;
     std::size_t row_floats_ = 0, impulse_floats_ = 0;
     std::vector<std::uint32_t> masks_;  ///< by body: in which open blocks it is
-    std::array<Open, 32> opened_;
+    std::array<Open, most_open> opened_;
     std::uint32_t open_ = 0;  ///< a bit for each open block
 
+    void take_over(DiscBlocks& blocks, int row_floats, int impulse_floats, std::size_t bodies)
+    {
+        blocks_ = &blocks;
+        row_floats_ = static_cast<std::size_t>(row_floats);
+        impulse_floats_ = static_cast<std::size_t>(impulse_floats);
+        // Memory may have run out while blocks were open.
+        if (open_ != 0) std::fill(masks_.begin(), masks_.end(), 0U);
+        open_ = 0;
+        if (masks_.size() < bodies) masks_.resize(with_room_to_grow(bodies), 0);
+    }
     [[nodiscard]] std::uint32_t mask_of(std::uint32_t body) const
     {
         return body == no_body ? 0 : masks_[body];

@@ -94,8 +94,8 @@ void DiscFinder::list_rows(DiscStore& discs, std::uint32_t first, std::uint32_t 
         discs.rows_by_place[place] = strips.disc(place).row;
 }
 
-/// Gives a band near walls room for so many blocks of contacts with them before the first ones are found. Band 0 gets a
-/// new block in each step between searches.
+/// Gives a band near walls room for so many blocks of contacts with them before the first ones are found: it may get a
+/// new block in a step between searches.
 void DiscFinder::make_room_for_touches(DiscBand& band, std::size_t blocks)
 {
     for_each_disc_class([&](auto c) {
@@ -146,6 +146,12 @@ bool DiscFinder::are_rows_scattered(const DiscStore& discs)
     return seen > 2 * in_order;
 }
 
+DiscFinder::PlacedSegment DiscFinder::place_segment(const DiscStore& discs, std::uint32_t index) const
+{
+    return {strips.to_strips(discs.wall_ends[2 * std::size_t{index}]),
+            strips.to_strips(discs.wall_ends[2 * std::size_t{index} + 1]), index};
+}
+
 /// Lists for every band the walls near its strips.
 void DiscFinder::place_segments(const DiscStore& discs)
 {
@@ -154,9 +160,7 @@ void DiscFinder::place_segments(const DiscStore& discs)
     for (std::vector<PlacedSegment>& list : segments_) list.clear();
     const double reach = static_cast<double>(strips.most_reach()) + static_cast<double>(discs.wall_skin);
     for (std::size_t i = 0; i < discs.segments.size(); ++i) {
-        const PlacedSegment segment{strips.to_strips(discs.wall_ends[2 * i]),
-                                    strips.to_strips(discs.wall_ends[2 * i + 1]),
-                                    static_cast<std::uint32_t>(i)};
+        const PlacedSegment segment = place_segment(discs, static_cast<std::uint32_t>(i));
         segments_[0].push_back(segment);
         const std::int32_t low = strips.strip_at(std::min(segment.from.y, segment.to.y) - reach);
         const std::int32_t high = strips.strip_at(std::max(segment.from.y, segment.to.y) + reach);
@@ -169,19 +173,16 @@ void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
 {
     Worker& own = workers_[static_cast<std::size_t>(worker)];
     DiscBand& found = scene.discs.bands[band];
-    std::size_t numbers = scene.bodies.rows(BodyKind::planar).size();
     if (band == 0) {
         const auto all = static_cast<std::uint32_t>(strips.discs().size());
         list_rows(scene.discs, all - static_cast<std::uint32_t>(strips.wide().size()), all);
-        if (strips.wide().empty()) numbers = 0;
     } else {
         const std::int32_t first = strips.first_strip(static_cast<std::int32_t>(band) - 1);
         const std::int32_t last = strips.first_strip(static_cast<std::int32_t>(band));
         list_rows(scene.discs, strips.first_of(first), strips.first_of(last));
-        numbers = strips.first_of(std::min(last + 1, strips.strip_count())) - strips.first_of(first);
     }
-    if (!segments_[band].empty()) make_room_for_touches(found, band == 0 ? 32 : 8);
-    begin_fillers(found, own, numbers, false);
+    if (!segments_[band].empty()) make_room_for_touches(found, 12);
+    begin_fillers(found, own, numbers_of(scene, band));
     if (band == 0) {
         find_wide(scene, own);
     } else {
@@ -190,22 +191,23 @@ void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
     own.finish();
 }
 
-void DiscFinder::begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers, bool goes_on)
+std::size_t DiscFinder::numbers_of(const SceneCore& scene, std::size_t band) const
+{
+    // Contacts of discs that reach far are with any disc: rows are their numbers.
+    if (band == 0) return strips.wide().empty() ? 0 : scene.bodies.rows(BodyKind::planar).size();
+    const auto last_band = static_cast<std::size_t>(strips.band_count());
+    return first_place(std::min(band + 1, last_band) + 1) - first_place(band);
+}
+
+void DiscFinder::begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers)
 {
     for_each_disc_class([&](auto c) {
         using Fields = DiscFieldsOf<c.value>;
         const auto i = static_cast<std::size_t>(c.value);
-        const auto begin = [&](BlockFiller& filler, DiscBlocks& blocks) {
-            if (goes_on) {
-                filler.go_on(blocks, Fields::row_floats, Fields::impulse_floats, numbers);
-            } else {
-                filler.begin(blocks, Fields::row_floats, Fields::impulse_floats, numbers);
-            }
-        };
-        begin(worker.fillers[i], band.blocks[i]);
-        begin(worker.resting_fillers[i], band.resting[i]);
+        worker.fillers[i].begin(band.blocks[i], Fields::row_floats, Fields::impulse_floats, numbers);
+        worker.resting_fillers[i].begin(band.resting[i], Fields::row_floats, Fields::impulse_floats, numbers);
     });
-    if (!goes_on) band.half_awake = 0;
+    band.half_awake = 0;
 }
 
 /// Memory might not hold the contacts of a large crowd on one spot.

@@ -2,8 +2,10 @@
 // contacts into the blocks of the scene.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -35,10 +37,25 @@ class DiscFinder {
     /// After that: room for more pairs, so that a step to come seldom allocates, and whether the rows should be sorted.
     static void make_room_for_pairs(DiscStore& discs);
     [[nodiscard]] static bool are_rows_scattered(const DiscStore& discs);
-    /// Between searches of all discs: gives the discs in these rows of planar bodies new anchors and skins, and adds
-    /// the contacts that they may have now to band 0. The rows may be in any order; they are sorted. Returns false where
-    /// people are so close that a search of all discs takes less, and must now be made.
-    bool find_late(SceneCore& scene, std::span<std::uint32_t> rows, float dt);
+    // Between searches of all discs, those that left their skins are searched for one by one. What is found does not
+    // depend on the solver that finds it, only on the scene.
+    /// Gives the discs in these rows of planar bodies new anchors and skins. The rows may be in any order.
+    void begin_late(SceneCore& scene, std::span<const std::uint32_t> rows, float dt);
+    /// Whether all that they may meet is in their own band and the two beside it. Otherwise a search of all discs must
+    /// be made, as below.
+    [[nodiscard]] bool are_late_near(const DiscStore& discs) const
+    {
+        return static_cast<double>(discs.late_drift) +
+                   static_cast<double>(std::max(strips.most_reach(), discs.late_reach)) <=
+               late_room_;
+    }
+    /// Lists the contacts that the discs of a band may have now. Bands may be listed on different threads.
+    void list_late(const SceneCore& scene, std::size_t band);
+    /// Whether people are apart enough for this. Otherwise a search of all discs takes less.
+    [[nodiscard]] bool are_late_sparse(const DiscStore& discs) const;
+    /// Puts what was listed for a band into its blocks; returns whether there was anything. Likewise.
+    bool add_late(SceneCore& scene, std::size_t band, int worker);
+    void end_late(DiscStore& discs);
     /// Makes space for so many workers.
     /// Each worker gets the room of the one that has most: which bands a worker gets is not the same in every search.
     void make_room_for_workers(int workers);
@@ -69,12 +86,33 @@ class DiscFinder {
         }
     };
     std::shared_ptr<const char> self_ =
-        std::make_shared<const char>('\0');     ///< its address names this finder
-    std::uint64_t searches_ = 0;                ///< the last one is that of the strips
-    std::vector<std::uint32_t> places_;         ///< of each row in the strips; empty until they are asked for
-    std::vector<std::uint64_t> fresh_;          ///< contacts that find_late() has added
-    std::vector<std::uint8_t> is_new_;          ///< by row: it has a new anchor in this call of find_late()
-    std::size_t looked_at_ = 0;                 ///< discs in this call of find_late()
+        std::make_shared<const char>('\0');  ///< its address names this finder
+    std::uint64_t searches_ = 0;             ///< the last one is that of the strips
+    std::vector<std::uint32_t> places_;      ///< of each row in the strips; empty until they are asked for
+    std::vector<std::uint32_t>
+        renewed_in_;  ///< by row: the last call of begin_late() that renewed its anchor
+    std::uint32_t late_call_ = 0;
+    struct Leaving {
+        std::uint32_t place, row;
+    };
+    std::vector<Leaving> leaving_;  ///< the discs of begin_late(), in the order of the strips
+    double late_room_ =
+        INFINITY;  ///< m: how far the nearest of them is, beyond its reach, from bands not beside its own
+    /// A contact that may be new: of the disc in row `a`, which left its skin, with that in row `b`, or with segment `b`.
+    struct LateContact {
+        std::uint32_t a, b;
+        std::uint32_t band;  ///< whose it is
+        bool is_wall;
+        [[nodiscard]] std::uint64_t key() const { return is_wall ? late_wall_key(a, b) : late_key(a, b); }
+    };
+    struct LateList {
+        std::size_t first = 0, last = 0;  ///< in leaving_: the discs of the band
+        std::vector<LateContact> contacts;
+        bool has_wide = false;  ///< some are of band 0
+        bool is_sparse = true;
+    };
+    std::vector<LateList> late_;                ///< by band of the disc that left
+    std::vector<std::uint64_t> fresh_;          ///< the keys of all of them
     std::atomic<std::size_t> found_in_all_{0};  ///< pairs in this search of all discs
     struct PlacedSegment {
         Vec2<double> from, to;  ///< in the frame of the strips
@@ -83,15 +121,26 @@ class DiscFinder {
     std::vector<Worker> workers_;
     std::vector<std::vector<PlacedSegment>> segments_;  ///< by band
 
+    [[nodiscard]] PlacedSegment place_segment(const DiscStore& discs, std::uint32_t index) const;
     void place_segments(const DiscStore& discs);
     static void make_room_for_touches(DiscBand& band, std::size_t blocks);
     void list_rows(DiscStore& discs, std::uint32_t first, std::uint32_t last) const;
     void make_strips_of(SceneCore& scene);
-    void begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers, bool goes_on);
-    void find_late_of(SceneCore& scene, std::uint32_t row, float dt);
-    void find_late_pairs(SceneCore& scene, const PlacedDisc& me);
-    void find_late_walls(SceneCore& scene, const PlacedDisc& me);
-    [[nodiscard]] bool is_listed(const DiscStore& discs, std::uint64_t key, bool may_be_fresh) const;
+    void begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers);
+    void go_on_with_fillers(DiscBand& found, std::size_t band, Worker& worker, std::size_t numbers);
+    void renew(SceneCore& scene, std::uint32_t row, std::size_t band, float dt);
+    void cut_leaving_into_bands(const DiscStore& discs);
+    [[nodiscard]] PlacedDisc place_now(const SceneCore& scene, std::uint32_t row) const;
+    std::size_t list_late_pairs(const SceneCore& scene, const PlacedDisc& me, std::size_t band,
+                                LateList& list);
+    void list_late_walls(const SceneCore& scene, const PlacedDisc& me, std::size_t band, LateList& list);
+    /// The first place in the strips of a band, counted from 1.
+    [[nodiscard]] std::uint32_t first_place(std::size_t band) const
+    {
+        return strips.first_of(strips.first_strip(static_cast<std::int32_t>(band) - 1));
+    }
+    /// How many discs a band has and the next one has, whose numbers they get among its contacts.
+    [[nodiscard]] std::size_t numbers_of(const SceneCore& scene, std::size_t band) const;
     /// The band of a strip, counted from 1.
     [[nodiscard]] std::size_t band_of(std::int32_t strip) const;
     void find_in_strips(SceneCore& scene, std::size_t band, Worker& worker);

@@ -16,6 +16,8 @@ constexpr float skin_at_rest = 0.02F;
 constexpr double steps_ahead = 6;
 /// People of a band: few enough for a core's first cache, and enough that blocks are full.
 constexpr std::uint32_t discs_per_band = 512;
+/// Two, so that what a disc meets between searches is in its band or beside it.
+constexpr std::int32_t least_strips = 2;
 
 }  // namespace
 
@@ -149,12 +151,19 @@ void DiscStrips::restore(const SceneCore& scene)
     divide();
 }
 
-/// The anchor is a float; the skin grows by what rounding moves it.
-void DiscStrips::anchor(SceneCore& scene, std::int64_t chunk)
+/// The anchor is a float; the skin grows by what rounding moves it. A fast disc reaches no further than strips are made
+/// for, and is soon searched for again, unless it leaves such a skin within a step or two.
+void DiscStrips::anchor(SceneCore& scene, std::int64_t chunk) const
 {
+    DiscStore& discs = scene.discs;
     for_each_disc(scene, chunk, [&](std::uint32_t row, const BodyRows& rows) {
-        scene.discs.place_anchor(row, rows.pose[row].position);
-        scene.discs.found_at[row] = scene.discs.anchors[row];
+        DiscAnchor& anchor = discs.anchors[row];
+        discs.place_anchor(row, rows.pose[row].position);
+        const float most = 0.99999F * (frame_.most_reach - discs.shapes[rows.slot[row]].radius);
+        const double soon = 2 * speed_of(&rows.velocity[std::size_t{4} * row]) * static_cast<double>(dt_);
+        const float least = skin_at_rest + static_cast<float>(std::min(soon, 1e9));
+        if (least <= most) anchor.skin = std::min(anchor.skin, most);
+        discs.found_at[row] = anchor;
     });
 }
 
@@ -254,7 +263,9 @@ void DiscStrips::divide()
     band_strips_.clear();
     band_strips_.push_back(0);
     for (std::int32_t s = 1; s < strips_; ++s) {
-        if (first_of(s) - first_of(band_strips_.back()) >= discs_per_band) band_strips_.push_back(s);
+        const std::int32_t first = band_strips_.back();
+        if (first_of(s) - first_of(first) >= discs_per_band && s - first >= least_strips)
+            band_strips_.push_back(s);
     }
     band_strips_.push_back(strips_);
 }

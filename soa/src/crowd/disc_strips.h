@@ -63,8 +63,8 @@ class DiscStrips {
     /// How far each disc of a chunk of rows may reach before the next search; writes the skins of the anchors.
     void measure(const SceneCore& scene, DiscStore& discs, std::int64_t chunk);
     void choose(DiscStore& discs);
-    /// Writes the places of the anchors.
-    static void anchor(SceneCore& scene, std::int64_t chunk);
+    /// Writes the places of the anchors, and shrinks the skins of the fastest discs.
+    void anchor(SceneCore& scene, std::int64_t chunk) const;
     /// Counts the discs of each group.
     void count(const SceneCore& scene, std::int64_t chunk);
     void open();
