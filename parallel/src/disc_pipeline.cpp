@@ -2,6 +2,7 @@
 #include "disc_pipeline.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "scene/wall_ends.h"
@@ -20,27 +21,15 @@ constexpr double slack = 0.005;
 void DiscPipeline::find(SceneCore& scene, float dt)
 {
     DiscStore& discs = scene.discs;
-    if (!discs.is_in_use()) {
+    if (!discs.is_in_use() && region == nullptr) {
         discs.band_count = 0;
         discs.wants_sorting = false;
         return;
     }
     find_wall_ends(scene, wall_ends_);
-    if (!discs.is_stale && !is_anyone_awake(scene)) return;
+    if (!discs.is_stale && !is_anyone_awake(scene) && region == nullptr) return;
     if (discs.steps_since_sorting < DiscStore::least_steps_between_sortings) ++discs.steps_since_sorting;
-    if (!discs.is_stale && ++discs.age < longest_age && !have_walls_left(scene, dt)) {
-        list_leaving(scene, dt);
-        // A few are searched for one by one; of many, all.
-        const std::size_t few = discs.count / 16 + 8;
-        if (leaving_.size() <= few && discs.late.size() + 4 * leaving_.size() <= discs.count / 2 + 64) {
-            if (leaving_.empty()) return;
-            discs.is_stale = true;
-            if (find_late(scene, dt)) {
-                discs.is_stale = false;
-                return;
-            }
-        }
-    }
+    if (may_keep_contacts(scene, dt)) return;
     // Should memory run out on the way, the next step searches again.
     discs.is_stale = true;
     if (!finder_.has_impulses_of(discs)) carry_impulses(scene);
@@ -50,12 +39,55 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     discs.wall_ends = wall_ends_;
     sort_into_strips(scene, dt);
     find_contacts(scene);
+    find_those_of_fast_discs(scene, dt);
     DiscFinder::make_room_for_pairs(discs);
     discs.wants_sorting = discs.steps_since_sorting == DiscStore::least_steps_between_sortings &&
                           DiscFinder::are_rows_scattered(discs);
     discs.age = 0;
     discs.is_divided = true;
     discs.is_stale = discs.is_torn = false;
+}
+
+/// After a search of all discs: adds the contacts of those who leave the skins that they have in it in this very step. Where
+/// they are too close for this, the next step searches again.
+void DiscPipeline::find_those_of_fast_discs(SceneCore& scene, float dt)
+{
+    list_leaving(scene, dt);
+    if (vote(scene, false).leaving > 0) find_late(scene, dt);
+}
+
+/// Whether the contacts are those of the last step, and those that are added here.
+bool DiscPipeline::may_keep_contacts(SceneCore& scene, float dt)
+{
+    DiscStore& discs = scene.discs;
+    if (region != nullptr) region->renew_copies(scene);
+    const bool must_search = discs.is_stale || ++discs.age >= longest_age || have_walls_left(scene, dt);
+    leaving_.clear();
+    if (!must_search) list_leaving(scene, dt);
+    const SearchVote all = vote(scene, must_search);
+    if (all.must_search) return false;
+    // A few are searched for one by one; of many, all.
+    const std::int64_t few = all.discs / 16 + 8;
+    if (all.leaving > few || all.late + 4 * all.leaving > all.discs / 2 + 64) return false;
+    if (all.leaving == 0) return true;
+    discs.is_stale = true;
+    if (!find_late(scene, dt)) return false;
+    discs.is_stale = false;
+    return true;
+}
+
+/// The votes of this region and all others.
+SearchVote DiscPipeline::vote(const SceneCore& scene, bool must_search) const
+{
+    const DiscStore& discs = scene.discs;
+    SearchVote all{static_cast<std::int64_t>(discs.count), static_cast<std::int64_t>(leaving_.size()),
+                   static_cast<std::int64_t>(discs.late.size()), must_search};
+    if (region == nullptr) return all;
+    const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+    all.leaving = std::count_if(leaving_.begin(), leaving_.end(),
+                                [&](std::uint32_t row) { return !region->is_copy(slots[row]); });
+    region->agree(all);
+    return all;
 }
 
 /// Nobody has a new neighbour while all planar bodies sleep.
@@ -130,16 +162,29 @@ bool DiscPipeline::find_late(SceneCore& scene, float dt)
 {
     DiscStore& discs = scene.discs;
     finder_.begin_late(scene, leaving_, dt);
+    if (region != nullptr) region->agree(discs.late_reach, discs.late_drift, finder_.late_room);
     if (!finder_.are_late_near(discs)) return false;
     const auto bands = static_cast<std::int64_t>(discs.band_count);
-    runner_.run(bands, [&](std::int64_t band) { finder_.list_late(scene, static_cast<std::size_t>(band)); });
-    if (!finder_.are_late_sparse(discs)) return false;
-    finder_.make_room_for_workers(runner_.workers());
-    runner_.run(bands, [&](std::int64_t band, int worker) {
-        if (finder_.add_late(scene, static_cast<std::size_t>(band), worker))
-            place_resting(scene, wall_ends_, discs.bands[static_cast<std::size_t>(band)]);
+    std::atomic<bool> are_sparse{true};
+    runner_.run(bands, [&](std::int64_t i) {
+        const auto band = static_cast<std::size_t>(i);
+        finder_.list_late(scene, band);
+        if (is_own(band) && !finder_.are_late_sparse(band)) are_sparse = false;
     });
-    finder_.end_late(discs);
+    if (region != nullptr) are_sparse = region->is_so_everywhere(are_sparse);
+    if (!are_sparse) return false;
+    finder_.make_room_for_workers(runner_.workers());
+    runner_.run(bands, [&](std::int64_t i, int worker) {
+        const auto band = static_cast<std::size_t>(i);
+        if (is_own(band) && finder_.add_late(scene, band, worker))
+            place_resting(scene, wall_ends_, discs.bands[band]);
+    });
+    if (region == nullptr) {
+        finder_.end_late(discs, 1, discs.band_count);
+    } else {
+        finder_.end_late(discs, region->first_band(), region->last_band());
+        region->list_pushed(scene, finder_.strips);
+    }
     return true;
 }
 
@@ -157,14 +202,42 @@ void DiscPipeline::carry_impulses(SceneCore& scene)
                 [&](std::int64_t band) { carried.keep(discs, static_cast<std::size_t>(band) + 1); });
 }
 
+void DiscPipeline::measure(SceneCore& scene, float dt)
+{
+    DiscStrips& strips = finder_.strips;
+    strips.begin(scene, dt);
+    runner_.run(strips.chunk_count(), [&](std::int64_t chunk) { strips.measure(scene, scene.discs, chunk); });
+}
+
+/// Divides all discs of all regions into bands, and moves people to the ranks of their bands.
+void DiscPipeline::deal_out_bands(SceneCore& scene, float dt)
+{
+    DiscStrips& strips = finder_.strips;
+    region->leave_copies_out(scene);
+    measure(scene, dt);
+    DiscStrips::Measured all = strips.measured();
+    region->add_up(all);
+    strips.choose(scene.discs, all);
+    runner_.run(strips.chunk_count(), [&](std::int64_t chunk) { strips.anchor(scene, chunk); });
+    const std::int64_t wide =
+        strips.count_by_strip(scene, [&](std::uint32_t slot) { return region->is_copy(slot); });
+    region->refuse_everywhere("discs of a crowd on several ranks that reach further than most others", wide,
+                              "0");
+    region->add_up(strips.discs_by_strip());
+    strips.divide();
+    region->move_people(scene, strips, finder_.carried);
+}
+
 void DiscPipeline::sort_into_strips(SceneCore& scene, float dt)
 {
     DiscStrips& strips = finder_.strips;
     DiscStore& discs = scene.discs;
-    strips.begin(scene, dt);
+    if (region != nullptr) deal_out_bands(scene, dt);
+    measure(scene, dt);
+    const DiscStrips::Measured here = strips.measured();
+    if (region == nullptr) strips.choose(discs, here);
+    strips.make_room_for(here.discs);
     const std::int64_t chunks = strips.chunk_count();
-    runner_.run(chunks, [&](std::int64_t chunk) { strips.measure(scene, discs, chunk); });
-    strips.choose(discs);
     runner_.run(chunks, [&](std::int64_t chunk) {
         strips.anchor(scene, chunk);
         strips.count(scene, chunk);
@@ -172,16 +245,19 @@ void DiscPipeline::sort_into_strips(SceneCore& scene, float dt)
     strips.open();
     runner_.run(chunks, [&](std::int64_t chunk) { strips.place(scene, chunk); });
     runner_.run(strips.group_count() + 1, [&](std::int64_t group) { strips.sort(scene, group); });
-    strips.divide();
+    if (region == nullptr) strips.divide();
 }
 
 void DiscPipeline::find_contacts(SceneCore& scene)
 {
     finder_.open(scene, runner_.workers());
-    runner_.run(static_cast<std::int64_t>(scene.discs.band_count), [&](std::int64_t band, int worker) {
-        finder_.find(scene, static_cast<std::size_t>(band), worker);
-        place_resting(scene, wall_ends_, scene.discs.bands[static_cast<std::size_t>(band)]);
+    runner_.run(static_cast<std::int64_t>(scene.discs.band_count), [&](std::int64_t i, int worker) {
+        const auto band = static_cast<std::size_t>(i);
+        if (!is_own(band)) return finder_.leave(scene.discs, band);
+        finder_.find(scene, band, worker);
+        place_resting(scene, wall_ends_, scene.discs.bands[band]);
     });
+    if (region != nullptr) region->list_pushed(scene, finder_.strips);
 }
 
 void DiscPipeline::prepare(SceneCore& scene)

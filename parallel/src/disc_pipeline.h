@@ -6,6 +6,7 @@
 
 #include "crowd/disc_finder.h"
 #include "layout/layout.h"
+#include "region_link.h"
 #include "stage_runner.h"
 
 namespace motley {
@@ -13,6 +14,8 @@ namespace motley {
 class DiscPipeline {
   public:
     DiscPipeline(StageRunner& runner, Layout& layout) : runner_(runner), layout_(layout) {}
+
+    RegionLink* region = nullptr;  ///< the scene is one region of a crowd; null: it is all of it
 
     /// Before a step of dt seconds: finds contacts anew, or those of discs that may have new neighbours.
     void find(SceneCore& scene, float dt);
@@ -29,10 +32,21 @@ class DiscPipeline {
     std::vector<std::uint32_t> leaving_;   ///< rows of discs that may leave their skins in this step
     std::vector<std::vector<std::uint32_t>> leaving_of_;  ///< the same by chunk of rows
 
+    /// Whether the contacts of a band are found and solved here.
+    [[nodiscard]] bool is_own(std::size_t band) const
+    {
+        return region == nullptr || band == 0 || region->has_band(band);
+    }
+
     [[nodiscard]] static bool is_anyone_awake(const SceneCore& scene);
     [[nodiscard]] bool have_walls_left(const SceneCore& scene, float dt) const;
+    bool may_keep_contacts(SceneCore& scene, float dt);
     void list_leaving(const SceneCore& scene, float dt);
+    [[nodiscard]] SearchVote vote(const SceneCore& scene, bool must_search) const;
     bool find_late(SceneCore& scene, float dt);
+    void find_those_of_fast_discs(SceneCore& scene, float dt);
+    void measure(SceneCore& scene, float dt);
+    void deal_out_bands(SceneCore& scene, float dt);
     void sort_into_strips(SceneCore& scene, float dt);
     void carry_impulses(SceneCore& scene);
     void find_contacts(SceneCore& scene);

@@ -20,6 +20,7 @@
 #include "scene/scene_core.h"
 #include "shape_pipeline.h"
 #include "sleep_pipeline.h"
+#include "solver_access.h"
 #include "stage_runner.h"
 #include "step/plan.h"
 #include "step_clock.h"
@@ -169,6 +170,11 @@ Solver::Solver(const SolverSettings& settings, const SolverOptions& options)
     impl_ = std::make_unique<Impl>(settings, checked_isa(options.isa), options);
 }
 
+void SolverAccess::set_region(Solver& solver, RegionLink* region)
+{
+    solver.impl().discs.region = solver.impl().sweeper.region = region;
+}
+
 Solver::~Solver() = default;
 Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
@@ -236,9 +242,9 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> ho
         if (dt == 0 || !report.error.empty()) return clock.leave();
         clock.enter(Stage::colour);
         sleep.wake({scene, contacts, dt, settings});
+        discs.find(scene, dt);
         lay_out(scene, contacts, report);
         if (!report.error.empty()) return clock.leave();
-        discs.find(scene, dt);
         discs.divide(scene);
         layout.list_discs(scene);
         if (settings.exact_contacts) plan_runner.find_contact_islands(scene, dt);

@@ -139,16 +139,36 @@ void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_
 void Sweeper::sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel)
 {
     const std::int64_t bands = layout_.disc_bands();
-    if (layout_.discs().empty()) return;
+    if (layout_.discs().empty() && region == nullptr) return;
     // The bodies of a band fit a core's first cache, and neighbours lie together.
     KernelContext at_hand = layout_.context;
     at_hand.bodies_are_far = false;
     const auto run = [&](std::int64_t band) {
         run_chunks(at_hand, layout_.kernels(), layout_.discs_of_band(band), kernel, every_block);
     };
+    if (region != nullptr) return sweep_region(run);
     run(0);
     runner_.run(bands / 2, [&](std::int64_t i) { run(2 * i + 1); });
     runner_.run((bands - 1) / 2, [&](std::int64_t i) { run(2 * i + 2); });
+}
+
+/// Bands at the borders come first, so that velocities travel to the neighbours while the others are solved.
+template <class Run>
+void Sweeper::sweep_region(const Run& run)
+{
+    float* const velocities = layout_.context.bodies[static_cast<int>(BodyKind::planar)].velocity;
+    const std::size_t first = region->first_band(), last = region->last_band();
+    for (const std::size_t parity : {std::size_t{1}, std::size_t{0}}) {
+        // The bands of this parity from `low` on, without the first and the last band of the region.
+        const std::size_t low = first + 1 + ((first + 1) % 2 == parity ? 0 : 1);
+        const std::size_t inner = low + 1 < last ? (last - low) / 2 : 0;
+        if (first < last && first % 2 == parity) run(static_cast<std::int64_t>(first));
+        if (first + 1 < last && (last - 1) % 2 == parity) run(static_cast<std::int64_t>(last - 1));
+        region->send_velocities(velocities, parity);
+        runner_.run(static_cast<std::int64_t>(inner),
+                    [&](std::int64_t i) { run(static_cast<std::int64_t>(low) + 2 * i); });
+        region->take_velocities(velocities, parity);
+    }
 }
 
 void Sweeper::add_up()

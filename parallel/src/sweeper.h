@@ -10,6 +10,7 @@
 #include "figures/figure_step.h"
 #include "figures/figure_workspace.h"
 #include "layout/layout.h"
+#include "region_link.h"
 #include "stage_runner.h"
 
 namespace motley {
@@ -17,6 +18,8 @@ namespace motley {
 class Sweeper {
   public:
     Sweeper(StageRunner& runner, Layout& layout);
+
+    RegionLink* region = nullptr;  ///< as DiscPipeline::region
 
     /// After the layout is cut: makes space to solve its figures. Allocates only when one is larger than all before.
     void make_room();
@@ -71,6 +74,8 @@ class Sweeper {
                              ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
 
     void sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel);
+    template <class Run>
+    void sweep_region(const Run& run);
     void sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
     void move_patch(const KernelContext& context, std::int64_t patch);
     void relax_patch(const KernelContext& context, std::int64_t patch);

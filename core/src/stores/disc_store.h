@@ -193,6 +193,8 @@ struct DiscStore {
     void remove_wall(std::uint32_t slot);
     /// When a body was removed: its contacts in blocks must not be taken for those of the next body in its row.
     void forget_removed_row(std::uint32_t row);
+    /// By slot: numbers of people that are the same on every rank. Empty where the scene is no region of a larger crowd.
+    std::vector<std::uint64_t> numbers;
     /// Whether the body has left the row since the last search.
     [[nodiscard]] bool is_removed_row(std::size_t row) const
     {

@@ -68,6 +68,13 @@ void CarriedImpulses::open()
     std::uint32_t next = 0;
     for (std::uint32_t& place : places_) next += std::exchange(place, next);
     grow_to(entries_, next);
+    used_ = next;
+}
+
+void CarriedImpulses::make_room(std::size_t rows, std::size_t impulses)
+{
+    if (heads_.size() < rows) heads_.resize(with_room_to_grow(rows), none);
+    grow_to(entries_, used_ + impulses);
 }
 
 void CarriedImpulses::keep(const DiscStore& discs, std::size_t band)

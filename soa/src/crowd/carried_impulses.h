@@ -24,6 +24,31 @@ class CarriedImpulses {
     void open();
     void keep(const DiscStore& discs, std::size_t band);
 
+    // Between keep() and the search, when people move from scene to scene:
+    /// Calls take(row, other, is_wall, impulse) for each that is kept, and forgets those for which it returns true. `other` is
+    /// the row of the second body, or the segment.
+    template <class Take>
+    void take_out(const Take& take)
+    {
+        for (std::uint32_t row = 0; row < heads_.size(); ++row) {
+            for (std::uint32_t e = heads_[row]; e != none; e = entries_[e].next) {
+                Entry& entry = entries_[e];
+                if (entry.other != none &&
+                    take(row, entry.other & ~wall_bit, (entry.other & wall_bit) != 0, entry.impulse))
+                    entry.other = none;
+            }
+        }
+    }
+    /// Makes room for bodies in so many rows, and for so many more impulses.
+    void make_room(std::size_t rows, std::size_t impulses);
+    /// A row has a new body.
+    void forget_row(std::uint32_t row) { heads_[row] = none; }
+    void put_in(std::uint32_t row, std::uint32_t other, bool is_wall, const Impulse& impulse)
+    {
+        entries_[used_] = {is_wall ? wall_bit | other : other, heads_[row], impulse};
+        heads_[row] = used_++;
+    }
+
     /// The impulses of two discs, in either order, or of a disc and a wall.
     [[nodiscard]] Impulse of_pair(std::uint32_t row_a, std::uint32_t row_b) const
     {
@@ -46,6 +71,7 @@ class CarriedImpulses {
         Impulse impulse;
     };
     std::vector<Entry> entries_;
+    std::uint32_t used_ = 0;
     std::vector<std::uint32_t> heads_;  ///< by row: its first entry, or none
     std::vector<std::uint32_t>
         places_;  ///< by band: the number of its entries, then the place of the first one

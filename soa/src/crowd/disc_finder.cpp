@@ -191,6 +191,13 @@ void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
     own.finish();
 }
 
+void DiscFinder::leave(DiscStore& discs, std::size_t band)
+{
+    list_rows(discs, first_place(band), first_place(band + 1));
+    for_each_disc_blocks(discs.bands[band], [](auto, DiscBlocks& blocks) { blocks.count = 0; });
+    discs.bands[band].half_awake = 0;
+}
+
 std::size_t DiscFinder::numbers_of(const SceneCore& scene, std::size_t band) const
 {
     // Contacts of discs that reach far are with any disc: rows are their numbers.

@@ -36,6 +36,8 @@ class DiscFinder {
     void find(SceneCore& scene, std::size_t band, int worker);
     /// After that: room for more pairs, so that a step to come seldom allocates, and whether the rows should be sorted.
     static void make_room_for_pairs(DiscStore& discs);
+    /// Instead of find(), for a band of which others find the contacts.
+    void leave(DiscStore& discs, std::size_t band);
     [[nodiscard]] static bool are_rows_scattered(const DiscStore& discs);
     // Between searches of all discs, those that left their skins are searched for one by one. What is found does not
     // depend on the solver that finds it, only on the scene.
@@ -47,15 +49,18 @@ class DiscFinder {
     {
         return static_cast<double>(discs.late_drift) +
                    static_cast<double>(std::max(strips.most_reach(), discs.late_reach)) <=
-               late_room_;
+               late_room;
     }
+    double late_room =
+        INFINITY;  ///< m: how far the nearest of them is, beyond its reach, from bands not beside its own
     /// Lists the contacts that the discs of a band may have now. Bands may be listed on different threads.
     void list_late(const SceneCore& scene, std::size_t band);
-    /// Whether people are apart enough for this. Otherwise a search of all discs takes less.
-    [[nodiscard]] bool are_late_sparse(const DiscStore& discs) const;
+    /// Whether those of a band are apart enough for this. Otherwise a search of all discs takes less.
+    [[nodiscard]] bool are_late_sparse(std::size_t band) const { return late_[band].is_sparse; }
     /// Puts what was listed for a band into its blocks; returns whether there was anything. Likewise.
     bool add_late(SceneCore& scene, std::size_t band, int worker);
-    void end_late(DiscStore& discs);
+    /// Notes what was listed for the bands [first, last), and for band 0.
+    void end_late(DiscStore& discs, std::size_t first, std::size_t last);
     /// Makes space for so many workers.
     /// Each worker gets the room of the one that has most: which bands a worker gets is not the same in every search.
     void make_room_for_workers(int workers);
@@ -134,15 +139,10 @@ class DiscFinder {
     std::size_t list_late_pairs(const SceneCore& scene, const PlacedDisc& me, std::size_t band,
                                 LateList& list);
     void list_late_walls(const SceneCore& scene, const PlacedDisc& me, std::size_t band, LateList& list);
-    /// The first place in the strips of a band, counted from 1.
-    [[nodiscard]] std::uint32_t first_place(std::size_t band) const
-    {
-        return strips.first_of(strips.first_strip(static_cast<std::int32_t>(band) - 1));
-    }
+    [[nodiscard]] std::uint32_t first_place(std::size_t band) const { return strips.first_place(band); }
     /// How many discs a band has and the next one has, whose numbers they get among its contacts.
     [[nodiscard]] std::size_t numbers_of(const SceneCore& scene, std::size_t band) const;
-    /// The band of a strip, counted from 1.
-    [[nodiscard]] std::size_t band_of(std::int32_t strip) const;
+    [[nodiscard]] std::size_t band_of(std::int32_t strip) const { return strips.band_of(strip); }
     void find_in_strips(SceneCore& scene, std::size_t band, Worker& worker);
     void find_wide(SceneCore& scene, Worker& worker);
     void count_pairs(const DiscStore& discs, std::size_t more);

@@ -12,8 +12,10 @@ namespace {
 
 /// m: a disc at rest may go so far before its neighbours are found again.
 constexpr float skin_at_rest = 0.02F;
-/// Steps for which a search looks ahead, at the speed that a disc has.
-constexpr double steps_ahead = 6;
+/// Steps for which a search looks ahead, at the speed that a disc has; and for which it does at least.
+constexpr double steps_ahead = 6, least_ahead = 2;
+/// m/s: strips are made for discs of this speed, even if most stand still. A few walk through them any time.
+constexpr double walking_speed = 1.5;
 /// People of a band: few enough for a core's first cache, and enough that blocks are full.
 constexpr std::uint32_t discs_per_band = 512;
 /// Two, so that what a disc meets between searches is in its band or beside it.
@@ -33,10 +35,19 @@ float DiscStrips::upper_end_of(int bucket)
     return bit_cast<float>(static_cast<std::uint32_t>(bucket + 1 + ((127 - 20) << 3)) << 20);
 }
 
+float DiscStrips::skin_at(double speed, float dt, double steps)
+{
+    return skin_at_rest + static_cast<float>(std::min(speed * static_cast<double>(dt) * steps, 1e9));
+}
 float DiscStrips::skin_at(double speed, float dt)
 {
-    const double goes = speed * static_cast<double>(dt) * steps_ahead;
-    return skin_at_rest + static_cast<float>(std::min(goes, 1e9));
+    return skin_at(speed, dt, steps_ahead);
+}
+
+float DiscStrips::late_skin(double speed, float dt, float radius) const
+{
+    const float most = most_late_reach() - radius;
+    return std::min(skin_at(speed, dt), std::max(skin_at(speed, dt, least_ahead), most));
 }
 
 float DiscStrips::inverse_mass_of(const SceneCore& scene, std::uint32_t row)
@@ -54,15 +65,6 @@ void DiscStrips::begin(SceneCore& scene, float dt)
     measured_.resize(static_cast<std::size_t>(chunks_));
     grow_to(scene.discs.anchors, rows);
     scene.discs.found_at.resize(scene.discs.anchors.size());
-}
-
-template <class Work>
-void DiscStrips::for_each_disc(const SceneCore& scene, std::int64_t chunk, const Work& work)
-{
-    const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
-    for_each_row_of_chunk(chunk, rows.size(), [&](std::uint32_t row) {
-        if (scene.discs.found_at[row].skin < INFINITY) work(row, rows);
-    });
 }
 
 void DiscStrips::measure(const SceneCore& scene, DiscStore& discs, std::int64_t chunk)
@@ -83,14 +85,14 @@ void DiscStrips::measure(const SceneCore& scene, DiscStore& discs, std::int64_t 
         const auto x = static_cast<double>(at.x), y = static_cast<double>(at.y);
         m.low = {std::min(m.low.x, x), std::min(m.low.y, y)};
         m.high = {std::max(m.high.x, x), std::max(m.high.y, y)};
-        ++m.reaches[static_cast<std::size_t>(bucket_of(shape->radius + anchor.skin))];
+        const float least = skin_at(walking_speed, dt_);
+        ++m.reaches[static_cast<std::size_t>(bucket_of(shape->radius + std::max(anchor.skin, least)))];
         ++m.discs;
     });
     measured_[static_cast<std::size_t>(chunk)] = m;
 }
 
-/// Chooses the strips: as wide as all but a few discs can reach.
-void DiscStrips::choose(DiscStore& discs)
+DiscStrips::Measured DiscStrips::measured() const
 {
     Measured all;
     for (const Measured& m : measured_) {
@@ -99,30 +101,38 @@ void DiscStrips::choose(DiscStore& discs)
         all.discs += m.discs;
         for (std::size_t b = 0; b < buckets; ++b) all.reaches[b] += m.reaches[b];
     }
-    discs_ = all.discs;
-    if (discs_ == 0) all.low = all.high = {};
+    return all;
+}
+
+/// Chooses the strips: as wide as all but a few discs can reach.
+void DiscStrips::choose(DiscStore& discs, const Measured& all)
+{
+    const Vec2<double> low = all.discs > 0 ? all.low : Vec2<double>{},
+                       high = all.discs > 0 ? all.high : Vec2<double>{};
     constexpr std::int64_t one_in = 256;
     int bucket = buckets - 1;
     for (std::int64_t above = 0; bucket > 0; --bucket) {
         above += all.reaches[static_cast<std::size_t>(bucket)];
-        if (above * one_in > discs_) break;
+        if (above * one_in > all.discs) break;
     }
     // Strips are stacked along the longer side. In a crowd that is about square they stay as they were, or the rows of
     // its people would have to be sorted again and again.
-    const double x = all.high.x - all.low.x, y = all.high.y - all.low.y, clearly = 1.25;
+    const double x = high.x - low.x, y = high.y - low.y, clearly = 1.25;
     const bool is_turned = discs.frame.is_turned != 0 ? y <= clearly * x : x > clearly * y;
     const double extent = is_turned ? x : y;
-    const double most_strips = std::min(4.0 * static_cast<double>(discs_) + 64, 1e7);
+    const double most_strips = std::min(4.0 * static_cast<double>(all.discs) + 64, 1e7);
     const float most_reach = upper_end_of(bucket);
     const double per_metre = 1 / std::max(2.0001 * static_cast<double>(most_reach), extent / most_strips);
-    frame_ = {all.low, per_metre, most_reach, static_cast<std::int32_t>(extent * per_metre) + 1,
+    frame_ = {low, per_metre, most_reach, static_cast<std::int32_t>(extent * per_metre) + 1,
               is_turned ? 1 : 0};
     discs.frame = frame_;
-    make_room();
+    strips_ = frame_.strips;
+    in_strip_.clear();
 }
 
-void DiscStrips::make_room()
+void DiscStrips::make_room_for(std::int64_t discs)
 {
+    discs_ = discs;
     strips_ = frame_.strips;
     strips_per_group_ = (strips_ + most_groups - 1) / most_groups;
     groups_ = (strips_ + strips_per_group_ - 1) / strips_per_group_;
@@ -140,10 +150,9 @@ void DiscStrips::restore(const SceneCore& scene)
     const DiscStore& discs = scene.discs;
     const std::uint32_t rows = scene.bodies.rows(BodyKind::planar).size();
     chunks_ = disc_chunks(rows);
-    discs_ = std::count_if(discs.found_at.begin(), discs.found_at.begin() + rows,
-                           [](const DiscAnchor& anchor) { return anchor.skin < INFINITY; });
     frame_ = discs.frame;
-    make_room();
+    make_room_for(std::count_if(discs.found_at.begin(), discs.found_at.begin() + rows,
+                                [](const DiscAnchor& anchor) { return anchor.skin < INFINITY; }));
     for (std::int64_t chunk = 0; chunk < chunks_; ++chunk) count(scene, chunk);
     open();
     for (std::int64_t chunk = 0; chunk < chunks_; ++chunk) place(scene, chunk);
@@ -151,18 +160,19 @@ void DiscStrips::restore(const SceneCore& scene)
     divide();
 }
 
-/// The anchor is a float; the skin grows by what rounding moves it. A fast disc reaches no further than strips are made
-/// for, and is soon searched for again, unless it leaves such a skin within a step or two.
+/// The anchor is a float; the skin grows by what rounding moves it. The skin of a fast disc is cut to what strips are made
+/// for, unless it is so fast that it could not be searched for between searches of all discs either.
 void DiscStrips::anchor(SceneCore& scene, std::int64_t chunk) const
 {
     DiscStore& discs = scene.discs;
     for_each_disc(scene, chunk, [&](std::uint32_t row, const BodyRows& rows) {
         DiscAnchor& anchor = discs.anchors[row];
         discs.place_anchor(row, rows.pose[row].position);
-        const float most = 0.99999F * (frame_.most_reach - discs.shapes[rows.slot[row]].radius);
-        const double soon = 2 * speed_of(&rows.velocity[std::size_t{4} * row]) * static_cast<double>(dt_);
-        const float least = skin_at_rest + static_cast<float>(std::min(soon, 1e9));
-        if (least <= most) anchor.skin = std::min(anchor.skin, most);
+        const float radius = discs.shapes[rows.slot[row]].radius;
+        const float most = 0.99999F * (frame_.most_reach - radius);
+        const float least = skin_at(speed_of(&rows.velocity[std::size_t{4} * row]), dt_, least_ahead);
+        if (most >= skin_at_rest && radius + least <= most_late_reach())
+            anchor.skin = std::min(anchor.skin, most);
         discs.found_at[row] = anchor;
     });
 }
@@ -187,6 +197,7 @@ void DiscStrips::open()
             next += std::exchange(places_[static_cast<std::size_t>(chunk * (groups_ + 1) + group)], next);
     }
     first_in_group_[static_cast<std::size_t>(groups_) + 1] = next;
+    first_[static_cast<std::size_t>(strips_)] = first_in_group_[static_cast<std::size_t>(groups_)];
 }
 
 void DiscStrips::place(const SceneCore& scene, std::int64_t chunk)
@@ -209,10 +220,12 @@ void DiscStrips::sort(const SceneCore& scene, std::int64_t group)
     const std::span<const PlacedDisc> discs =
         std::span<const PlacedDisc>(placed_).subspan(begin, end - begin);
     const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+    const std::vector<std::uint64_t>& numbers = scene.discs.numbers;
     const auto comes_before = [&](const PlacedDisc& p, const PlacedDisc& q) {
         if (p.along != q.along) return p.along < q.along;
         if (p.across != q.across) return p.across < q.across;
-        return slots[p.row] < slots[q.row];
+        const std::uint32_t own = slots[p.row], other = slots[q.row];
+        return numbers.empty() ? own < other : numbers[own] < numbers[other];
     };
     const auto order = [&](std::size_t first, std::size_t last) {
         if (last - first > 1)
@@ -257,15 +270,27 @@ void DiscStrips::sort(const SceneCore& scene, std::int64_t group)
         order(first, starts[b]);
 }
 
+std::size_t DiscStrips::band_of(std::int32_t strip) const
+{
+    std::int32_t band = 0, end = band_count();
+    while (end - band > 1) {
+        const std::int32_t middle = band + (end - band) / 2;
+        (first_strip(middle) <= strip ? band : end) = middle;
+    }
+    return static_cast<std::size_t>(band) + 1;
+}
+
 void DiscStrips::divide()
 {
-    first_[static_cast<std::size_t>(strips_)] = first_in_group_[static_cast<std::size_t>(groups_)];
     band_strips_.clear();
     band_strips_.push_back(0);
-    for (std::int32_t s = 1; s < strips_; ++s) {
-        const std::int32_t first = band_strips_.back();
-        if (first_of(s) - first_of(first) >= discs_per_band && s - first >= least_strips)
+    std::uint32_t in_band = 0;
+    for (std::int32_t s = 0; s < strips_; ++s) {
+        if (in_band >= discs_per_band && s - band_strips_.back() >= least_strips) {
             band_strips_.push_back(s);
+            in_band = 0;
+        }
+        in_band += in_strip_.empty() ? first_of(s + 1) - first_of(s) : in_strip_[static_cast<std::size_t>(s)];
     }
     band_strips_.push_back(strips_);
 }

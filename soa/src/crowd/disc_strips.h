@@ -4,7 +4,8 @@
 // that they are spread over.
 //
 // The order of discs is by strip, then by place along it, then by place across it, and at last by handle slot. It
-// depends on where the discs are, and not on threads or on the order in which they were added.
+// depends on where the discs are, and not on threads or on the order in which they were added. Where the scene is one of
+// several regions (DiscStore::numbers), the number of a person takes the place of the slot.
 #pragma once
 
 #include <algorithm>
@@ -50,20 +51,36 @@ struct PlacedDisc {
 
 class DiscStrips {
   public:
-    /// Starts over. Then, chunk by chunk on any threads, measure(); then choose(); then anchor() and count() of every
-    /// chunk; then open(); then place() of every chunk; then sort() of every group; then divide().
+    static constexpr int buckets = 320;  ///< of reaches, eight an octave
+    struct Measured {
+        Vec2<double> low{1e300, 1e300}, high{-1e300, -1e300};
+        std::int64_t discs = 0;
+        std::array<std::int32_t, buckets> reaches{};
+    };
+    /// Starts over. Then, chunk by chunk on any threads, measure(); then choose() from measured(); then anchor() and count()
+    /// of every chunk; then open(); then place() of every chunk; then sort() of every group; then divide().
     void begin(SceneCore& scene, float dt);
     /// Makes the strips of the last search of all discs once more, on this thread.
     void restore(const SceneCore& scene);
     /// How far something that moves at `speed`, m/s, may go before it is searched for again, m, in steps of dt.
     static float skin_at(double speed, float dt);
+    /// The same for a disc that is searched for between searches of all discs: then it reaches no further than most_late_reach()
+    /// unless it must.
+    [[nodiscard]] float late_skin(double speed, float dt, float radius) const;
+    /// Two discs that reach so far from neighbouring strips are in neighbouring bands, of two strips or more.
+    [[nodiscard]] float most_late_reach() const { return 1.9F * frame_.most_reach; }
     /// 1/kg, of the body in a row; also of one that sleeps.
     static float inverse_mass_of(const SceneCore& scene, std::uint32_t row);
     [[nodiscard]] std::int64_t chunk_count() const { return chunks_; }
     /// How far each disc of a chunk of rows may reach before the next search; writes the skins of the anchors.
     void measure(const SceneCore& scene, DiscStore& discs, std::int64_t chunk);
-    void choose(DiscStore& discs);
-    /// Writes the places of the anchors, and shrinks the skins of the fastest discs.
+    /// What was measured, of all chunks.
+    [[nodiscard]] Measured measured() const;
+    /// Chooses the strips for all discs.
+    void choose(DiscStore& discs, const Measured& all);
+    /// Space to sort so many of them, which are those of this scene.
+    void make_room_for(std::int64_t discs);
+    /// Writes the places of the anchors, and cuts the skins of fast discs: these may leave them in this step.
     void anchor(SceneCore& scene, std::int64_t chunk) const;
     /// Counts the discs of each group.
     void count(const SceneCore& scene, std::int64_t chunk);
@@ -73,6 +90,28 @@ class DiscStrips {
     void sort(const SceneCore& scene, std::int64_t group);
     /// Divides the strips into bands of some hundred discs.
     void divide();
+    /// Where other scenes have discs in the same strips: how many there are in each strip of this scene, besides `is_left_out`
+    /// and the wide ones, whose number is returned...
+    template <class IsLeftOut>
+    std::int64_t count_by_strip(const SceneCore& scene, const IsLeftOut& is_left_out)
+    {
+        in_strip_.assign(static_cast<std::size_t>(strips_), 0);
+        std::int64_t wide = 0;
+        for (std::int64_t chunk = 0; chunk < chunks_; ++chunk) {
+            for_each_disc(scene, chunk, [&](std::uint32_t row, const BodyRows& rows) {
+                if (is_left_out(rows.slot[row])) return;
+                const DiscAnchor& anchor = scene.discs.found_at[row];
+                const bool is_wide =
+                    scene.discs.shapes[rows.slot[row]].radius + anchor.skin > frame_.most_reach;
+                wide += is_wide ? 1 : 0;
+                if (!is_wide) ++in_strip_[static_cast<std::size_t>(strip_at(to_strips(anchor).y))];
+            });
+        }
+        return wide;
+    }
+    /// ...and in all of them, to be summed up before divide().
+    [[nodiscard]] std::span<std::uint32_t> discs_by_strip() { return in_strip_; }
+    [[nodiscard]] std::span<const std::uint32_t> discs_by_strip() const { return in_strip_; }
 
     [[nodiscard]] std::int32_t strip_count() const { return strips_; }
     [[nodiscard]] std::span<const PlacedDisc> strip(std::int32_t s) const
@@ -109,6 +148,13 @@ class DiscStrips {
     {
         return band_strips_[static_cast<std::size_t>(band)];
     }
+    /// The place of the first disc of a band, counted from 1; of one past the last, the place after its last disc.
+    [[nodiscard]] std::uint32_t first_place(std::size_t band) const
+    {
+        return first_of(first_strip(static_cast<std::int32_t>(band) - 1));
+    }
+    /// The band of a strip, counted from 1.
+    [[nodiscard]] std::size_t band_of(std::int32_t strip) const;
     /// The strip of a place across the strips, m; also for places beyond the first and last one.
     [[nodiscard]] std::int32_t strip_at(double across) const
     {
@@ -134,13 +180,6 @@ class DiscStrips {
 
   private:
     static constexpr std::int32_t most_groups = 256;
-    static constexpr int buckets = 320;  ///< of reaches, eight an octave
-
-    struct Measured {
-        Vec2<double> low{1e300, 1e300}, high{-1e300, -1e300};
-        std::int64_t discs = 0;
-        std::array<std::int32_t, buckets> reaches{};
-    };
     std::vector<Measured> measured_;  ///< by chunk
     std::int64_t chunks_ = 0;
     float dt_ = 0;
@@ -154,10 +193,17 @@ class DiscStrips {
     AlignedVector<PlacedDisc> placed_, sorted_;  ///< by group; in order
     std::vector<std::uint32_t> first_;           ///< by strip, one past the last, and one past the wide ones
     std::vector<std::int32_t> band_strips_;
+    std::vector<std::uint32_t> in_strip_;  ///< discs of all scenes; empty: there is one
 
+    /// Calls work(row, rows) for each disc that was measured in a chunk of rows.
     template <class Work>
-    static void for_each_disc(const SceneCore& scene, std::int64_t chunk, const Work& work);
-    void make_room();
+    static void for_each_disc(const SceneCore& scene, std::int64_t chunk, const Work& work)
+    {
+        const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
+        for_each_row_of_chunk(chunk, rows.size(), [&](std::uint32_t row) {
+            if (scene.discs.found_at[row].skin < INFINITY) work(row, rows);
+        });
+    }
     [[nodiscard]] Vec2<double> turned(const Vec2<double>& at) const
     {
         return frame_.is_turned != 0 ? Vec2<double>{at.y, at.x} : at;
@@ -166,6 +212,7 @@ class DiscStrips {
     {
         return reach > frame_.most_reach ? groups_ : strip_at(across) / strips_per_group_;
     }
+    static float skin_at(double speed, float dt, double steps);
     [[nodiscard]] static int bucket_of(float reach);
     [[nodiscard]] static float upper_end_of(int bucket);
 };

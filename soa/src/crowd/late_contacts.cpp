@@ -68,7 +68,7 @@ void DiscFinder::begin_late(SceneCore& scene, std::span<const std::uint32_t> row
               [](const Leaving& p, const Leaving& q) { return p.place < q.place; });
     cut_leaving_into_bands(discs);
     ++late_call_;
-    late_room_ = INFINITY;
+    late_room = INFINITY;
     for (std::size_t band = 0; band < discs.band_count; ++band) {
         for (std::size_t i = late_[band].first; i < late_[band].last; ++i)
             renew(scene, leaving_[i].row, band, dt);
@@ -103,7 +103,8 @@ void DiscFinder::renew(SceneCore& scene, std::uint32_t row, std::size_t band, fl
 {
     DiscStore& discs = scene.discs;
     const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
-    discs.anchors[row].skin = DiscStrips::skin_at(speed_of(&rows.velocity[std::size_t{4} * row]), dt);
+    discs.anchors[row].skin = strips.late_skin(speed_of(&rows.velocity[std::size_t{4} * row]), dt,
+                                               discs.shapes[rows.slot[row]].radius);
     discs.place_anchor(row, rows.pose[row].position);
     renewed_in_[row] = late_call_;
     const PlacedDisc me = place_now(scene, row);
@@ -116,8 +117,8 @@ void DiscFinder::renew(SceneCore& scene, std::uint32_t row, std::size_t band, fl
         return strips.low_edge_of(strips.first_strip(static_cast<std::int32_t>(of) - 1));
     };
     const auto reach = static_cast<double>(me.reach);
-    if (band > 2) late_room_ = std::min(late_room_, me.across - reach - low_edge(band - 1));
-    if (band + 1 < last) late_room_ = std::min(late_room_, low_edge(band + 2) - (me.across + reach));
+    if (band > 2) late_room = std::min(late_room, me.across - reach - low_edge(band - 1));
+    if (band + 1 < last) late_room = std::min(late_room, low_edge(band + 2) - (me.across + reach));
 }
 
 /// A disc where its anchor is now.
@@ -143,13 +144,6 @@ void DiscFinder::list_late(const SceneCore& scene, std::size_t band)
         list_late_walls(scene, me, band, list);
         list.is_sparse = looks <= most_looks && list.contacts.size() - before <= 2 * most_later_neighbours;
     }
-}
-
-bool DiscFinder::are_late_sparse(const DiscStore& discs) const
-{
-    const auto bands = static_cast<std::ptrdiff_t>(discs.band_count);
-    return std::all_of(late_.begin(), late_.begin() + bands,
-                       [](const LateList& list) { return list.is_sparse; });
 }
 
 /// Returns how many discs it looked at.
@@ -276,24 +270,17 @@ void DiscFinder::go_on_with_fillers(DiscBand& found, std::size_t band, Worker& w
     });
 }
 
-void DiscFinder::end_late(DiscStore& discs)
+void DiscFinder::end_late(DiscStore& discs, std::size_t first, std::size_t last)
 {
     fresh_.clear();
     for (std::size_t band = 0; band < discs.band_count; ++band) {
-        for (const LateContact& contact : late_[band].contacts) fresh_.push_back(contact.key());
+        for (const LateContact& contact : late_[band].contacts) {
+            if (contact.band == 0 || (contact.band >= first && contact.band < last))
+                fresh_.push_back(contact.key());
+        }
     }
     std::sort(fresh_.begin(), fresh_.end());
     merge_into(discs.late, fresh_);
-}
-
-std::size_t DiscFinder::band_of(std::int32_t strip) const
-{
-    std::int32_t band = 0, end = strips.band_count();
-    while (end - band > 1) {
-        const std::int32_t middle = band + (end - band) / 2;
-        (strips.first_strip(middle) <= strip ? band : end) = middle;
-    }
-    return static_cast<std::size_t>(band) + 1;
 }
 
 }  // namespace motley

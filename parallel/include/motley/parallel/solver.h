@@ -74,6 +74,7 @@ class Solver {
     [[nodiscard]] Executor& executor();
 
   private:
+    friend struct SolverAccess;
     struct [[gnu::visibility("hidden")]] Impl;
     std::unique_ptr<Impl> impl_;
 

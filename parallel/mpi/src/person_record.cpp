@@ -1,0 +1,63 @@
+// See person_record.h.
+#include "person_record.h"
+
+#include "stores/growth.h"
+
+namespace motley {
+namespace {
+
+std::size_t row_of(const SceneCore& scene, std::uint32_t slot)
+{
+    return scene.bodies.row_of(scene.bodies.id_of_slot(slot)).row();
+}
+
+}  // namespace
+
+PersonState read_state(const SceneCore& scene, std::uint32_t slot)
+{
+    const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
+    const std::size_t row = row_of(scene, slot);
+    const float* v = &rows.velocity[4 * row];
+    const float* a = &rows.acceleration[4 * row];
+    return {rows.pose[row], {v[0], v[1], v[2]}, {a[0], a[1], a[2]}, scene.bodies.dampings[slot]};
+}
+
+void write_state(SceneCore& scene, std::uint32_t slot, const PersonState& state)
+{
+    BodyRows& rows = scene.bodies.rows(BodyKind::planar);
+    const std::size_t row = row_of(scene, slot);
+    rows.pose[row] = state.pose;
+    for (std::size_t i = 0; i < 3; ++i) {
+        rows.velocity[4 * row + i] = state.velocity[i];
+        rows.acceleration[4 * row + i] = state.acceleration[i];
+    }
+    scene.bodies.set_damping(slot, state.damping);
+}
+
+PersonRecord read_person(const SceneCore& scene, std::uint32_t slot)
+{
+    PersonRecord person;
+    person.number = scene.discs.numbers[slot];
+    person.state = read_state(scene, slot);
+    person.inverse_mass = scene.bodies.inverse_masses[slot];
+    person.inverse_inertia = scene.bodies.inverse_inertias[slot];
+    person.shape = scene.discs.shapes[slot];
+    person.user_data = slot < scene.user_data.size() ? scene.user_data[slot] : 0;
+    return person;
+}
+
+void write_person(SceneCore& scene, std::uint32_t slot, const PersonRecord& person)
+{
+    BodyRows& rows = scene.bodies.rows(BodyKind::planar);
+    const std::size_t row = row_of(scene, slot);
+    scene.bodies.inverse_masses[slot] = rows.velocity[4 * row + 3] = person.inverse_mass;
+    scene.bodies.inverse_inertias[slot] = rows.delta[4 * row + 3] = person.inverse_inertia;
+    write_state(scene, slot, person.state);
+    scene.discs.numbers[slot] = person.number;
+    scene.discs.set_shape(slot, person.shape);
+    if (person.user_data == 0 && slot >= scene.user_data.size()) return;
+    if (slot >= scene.user_data.size()) scene.user_data.resize(scene.bodies.slot_count());
+    scene.user_data[slot] = person.user_data;
+}
+
+}  // namespace motley

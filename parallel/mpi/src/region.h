@@ -1,0 +1,95 @@
+// The region of one rank, and its messages to the others: see RegionLink.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "motley/mpi/distributed_crowd.h"
+#include "person_record.h"
+#include "region_link.h"
+
+namespace motley {
+
+class Region final : public RegionLink {
+  public:
+    Region(MPI_Comm comm, Scene& scene);
+
+    DistributedFigures figures;
+    std::vector<OwnPerson> people;
+    std::unordered_map<std::uint64_t, std::uint32_t> index_of;  ///< in `people`, by number
+
+    [[nodiscard]] MPI_Comm comm() const { return comm_; }
+    /// Whether something has been sent since begin_step(), and all ranks have refused this step.
+    void begin_step() { has_spoken_ = refused_together_ = false; }
+    [[nodiscard]] bool has_left_others_waiting() const { return has_spoken_ && !refused_together_; }
+    /// Takes a person off the list; the body stays.
+    void forget_person(std::uint64_t number);
+    /// Makes room for the numbers of bodies that were added.
+    void grow_with_slots();
+
+    [[nodiscard]] std::size_t first_band() const override { return first_; }
+    [[nodiscard]] std::size_t last_band() const override { return last_; }
+    [[nodiscard]] bool is_copy(std::uint32_t slot) const override
+    {
+        return slot < is_copy_.size() && is_copy_[slot] != 0;
+    }
+    void renew_copies(SceneCore& scene) override;
+    void agree(SearchVote& vote) override;
+    void agree(float& reach, float& drift, double& room) override;
+    bool is_so_everywhere(bool here) override;
+    void refuse_everywhere(const char* what, std::int64_t count, const char* valid) override;
+    void leave_copies_out(SceneCore& scene) override;
+    void add_up(DiscStrips::Measured& measured) override;
+    void add_up(std::span<std::uint32_t> discs_by_strip) override;
+    void move_people(SceneCore& scene, const DiscStrips& strips, CarriedImpulses& carried) override;
+    void list_pushed(const SceneCore& scene, const DiscStrips& strips) override;
+    void send_velocities(const float* velocities, std::size_t parity) override;
+    void take_velocities(float* velocities, std::size_t parity) override;
+
+  private:
+    static constexpr int nobody = MPI_PROC_NULL;
+    /// A border: with the region above, its people are copies here; with the region below, people here have copies there.
+    struct Border {
+        int rank = nobody;
+        std::vector<BodyId> people;         ///< the whole band beside the border, in the order of the strips
+        std::vector<std::uint32_t> pushed;  ///< those whom both sides may push, by index in `people`
+        std::vector<std::uint32_t> rows;    ///< of `pushed`
+        std::vector<float> outgoing, incoming;
+    };
+    MPI_Comm comm_;
+    Scene& scene_;
+    int rank_ = 0, ranks_ = 1;
+    std::size_t first_ = 1, last_ = 1;
+    std::vector<std::size_t> starts_;  ///< by rank: its first band; one more at the end
+    std::vector<int> owners_,
+        copiers_;  ///< by strip: whose it is, and who has copies of its people, or nobody
+    std::vector<std::size_t> strip_of_;  ///< by row, while people move
+    Border above_, below_;
+    bool is_dealt_anew_ = false;
+    std::vector<std::uint8_t> is_copy_;  ///< by slot
+    std::vector<PersonState> outgoing_states_, incoming_states_;
+    std::vector<MPI_Request> requests_;
+    bool has_spoken_ = false, refused_together_ = false;
+
+    [[nodiscard]] int rank_of(std::size_t band) const;
+    void deal_out(const DiscStrips& strips);
+    void find_neighbours(std::size_t bands);
+    template <class Record>
+    std::vector<Record> exchange(const std::vector<std::vector<Record>>& outgoing);
+    std::vector<std::vector<ImpulseRecord>> take_out_impulses(const SceneCore& scene,
+                                                              CarriedImpulses& carried) const;
+    void take_in_people(SceneCore& scene, std::span<const PersonRecord> people);
+    void take_in_impulses(const SceneCore& scene, std::span<const ImpulseRecord> impulses,
+                          CarriedImpulses& carried) const;
+    void remove_those_who_go(SceneCore& scene);
+    void list_copies_pushed(const SceneCore& scene);
+    static void find_rows(const SceneCore& scene, Border& border);
+    void send(Border& border, const float* velocities);
+    void receive(Border& border);
+    static void unpack(const Border& border, float* velocities);
+};
+
+}  // namespace motley

@@ -1,0 +1,278 @@
+// A crowd on several ranks has the bits of the same crowd in one process. The program is run by mpirun with 1, 2, 3, 4 and
+// 7 ranks; each test runs on all of them.
+#include "motley/mpi/distributed_crowd.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "walkers.h"
+
+namespace motley::testing {
+namespace {
+
+constexpr float dt = 1.0F / 60;
+
+int rank()
+{
+    int own = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &own);
+    return own;
+}
+int ranks()
+{
+    int all = 1;
+    MPI_Comm_size(MPI_COMM_WORLD, &all);
+    return all;
+}
+std::int64_t sum(std::int64_t value)
+{
+    MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
+    return value;
+}
+
+/// The hash after every `every` steps in one process, computed by rank 0 for all.
+template <class Change>
+std::vector<std::uint64_t> hashes_of_one_process(const Walkers& walkers, const SolverSettings& settings,
+                                                 int steps, int every, const Change& change)
+{
+    std::vector<std::uint64_t> hashes(static_cast<std::size_t>(steps / every), 0);
+    if (rank() == 0) {
+        WalkersOnOneScene one(walkers, settings, {});
+        for (int step = 1; step <= steps; ++step) {
+            change(one, step);
+            const StepReport report = one.step(dt);
+            EXPECT_EQ(report.status, StepStatus::done) << report.error;
+            if (step % every == 0) hashes[static_cast<std::size_t>(step / every - 1)] = one.hash();
+        }
+    }
+    MPI_Bcast(hashes.data(), static_cast<int>(hashes.size()), MPI_UINT64_T, 0, MPI_COMM_WORLD);
+    return hashes;
+}
+
+/// Adds each person on some rank, whatever the person's place.
+void add_all(DistributedCrowd& crowd, const Walkers& walkers)
+{
+    walkers.add_walls(crowd.scene());
+    for (std::size_t i = 0; i < walkers.numbers.size(); ++i) {
+        if (static_cast<int>(i * 7919 % 101) % ranks() != rank()) continue;
+        crowd.add_people({&walkers.numbers[i], 1}, {&walkers.bodies[i], 1}, {&walkers.discs[i], 1});
+    }
+}
+
+struct Case {
+    WalkersOptions walkers{};
+    SolverSettings settings{};
+    SolverOptions options{};
+    int steps = 240;
+};
+
+void expect_the_bits_of_one_process(const Case& c)
+{
+    const Walkers walkers(c.walkers);
+    constexpr int every = 10;
+    const std::vector<std::uint64_t> expected =
+        hashes_of_one_process(walkers, c.settings, c.steps, every, [](WalkersOnOneScene&, int) {});
+    DistributedCrowd crowd(MPI_COMM_WORLD, c.settings, c.options);
+    add_all(crowd, walkers);
+    for (int step = 1; step <= c.steps; ++step) {
+        walkers.steer(crowd.scene(), crowd.people());
+        const StepReport report = crowd.step(dt);
+        ASSERT_EQ(report.status, StepStatus::done) << report.error;
+        if (step % every == 0) {
+            ASSERT_EQ(crowd.hash(), expected[static_cast<std::size_t>(step / every - 1)]) << "step " << step;
+        }
+    }
+    const DistributedFigures figures = crowd.figures();
+    EXPECT_EQ(sum(figures.people), c.walkers.people);
+    if (ranks() > 1 && c.walkers.people > 1000) {
+        EXPECT_GT(sum(figures.crossings), c.walkers.people / 2);
+        EXPECT_GT(sum(figures.pushed), 0);
+    }
+}
+
+TEST(DistributedCrowd, HasTheBitsOfOneProcess)
+{
+    expect_the_bits_of_one_process({});
+}
+
+TEST(DistributedCrowd, HasThemWithFrictionAndTwoThreads)
+{
+    expect_the_bits_of_one_process({{.people = 4000, .spacing = 0.45, .friction = 0.4F},
+                                    {.gravity = {}},
+                                    {.threads = 2, .alone_below = 0}});
+}
+
+TEST(DistributedCrowd, HasThemUnderEveryInstructionSet)
+{
+    for (const Isa isa : available_isas())
+        expect_the_bits_of_one_process({.walkers = {.people = 1500}, .options = {.isa = isa}, .steps = 60});
+}
+
+TEST(DistributedCrowd, HasThemUnderEveryMethod)
+{
+    for (const SolverSettings& settings :
+         {SolverSettings{.substeps = 1}, SolverSettings{.substeps = 2, .iterations = 3, .relaxations = 2},
+          SolverSettings{.method = Method::sequential_impulse}})
+        expect_the_bits_of_one_process({.walkers = {.people = 2000}, .settings = settings, .steps = 60});
+}
+
+TEST(DistributedCrowd, HasThemWithFewerPeopleThanARegionHolds)
+{
+    for (const int people : {0, 1, 5, 600})
+        expect_the_bits_of_one_process({.walkers = {.people = people, .speed = 3}, .steps = 60});
+}
+
+/// All press into one corner: the worst rank stays within a fifth of the mean.
+TEST(DistributedCrowd, KeepsItsBalanceInAStampede)
+{
+    const WalkersOptions options{.people = 24000, .to_corner = true, .speed = 3};
+    expect_the_bits_of_one_process({.walkers = options, .steps = 60});
+    const Walkers walkers(options);
+    DistributedCrowd crowd(MPI_COMM_WORLD);
+    add_all(crowd, walkers);
+    double worst = 0;
+    for (int step = 1; step <= 240; ++step) {
+        walkers.steer(crowd.scene(), crowd.people());
+        ASSERT_EQ(crowd.step(dt).status, StepStatus::done);
+        std::int64_t most = crowd.figures().people;
+        MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
+        worst = std::max(worst, static_cast<double>(most) * ranks() / options.people);
+    }
+    // A region is whole bands of some hundred people, who cannot be shared out more evenly.
+    if (ranks() <= 4) {
+        EXPECT_LT(worst, 1.2);
+    }
+    RecordProperty("worst_over_mean", std::to_string(worst));
+    if (rank() == 0) std::printf("worst rank over mean: %.3f\n", worst);
+}
+
+/// People leave and enter, are thrown about and stopped, on whatever rank they are.
+TEST(DistributedCrowd, HasThemWhenPeopleComeAndGo)
+{
+    const Walkers walkers({.people = 2500, .spacing = 0.55, .friction = 0.2F});
+    constexpr int steps = 120, every = 10;
+    const auto leaves = [](std::uint64_t number, int step) {
+        return step % 7 == 0 && number % 97 == static_cast<std::uint64_t>(step % 97);
+    };
+    const auto is_thrown = [](std::uint64_t number, int step) {
+        return step % 11 == 0 && number % 53 == static_cast<std::uint64_t>(step % 53);
+    };
+    const auto change = [&](auto& scene, std::span<const OwnPerson> people, int step, const auto& remove) {
+        std::vector<std::uint64_t> gone;
+        for (const OwnPerson& person : people) {
+            if (is_thrown(person.number, step)) {
+                const BodyState state = scene.state(person.body);
+                scene.set_pose(person.body, state.position + Vec3<double>{0.05, 0.03, 0}, state.orientation,
+                               state.yaw);
+                scene.set_velocity(person.body, {1, -1, 0}, {0, 0, 2});
+            }
+            if (leaves(person.number, step)) gone.push_back(person.number);
+        }
+        remove(gone);
+    };
+    const std::vector<std::uint64_t> expected =
+        hashes_of_one_process(walkers, {}, steps, every, [&](WalkersOnOneScene& one, int step) {
+            change(one.scene, one.people, step, [&](const std::vector<std::uint64_t>& gone) {
+                for (const std::uint64_t number : gone) {
+                    const auto person = std::find_if(one.people.begin(), one.people.end(),
+                                                     [&](const OwnPerson& p) { return p.number == number; });
+                    one.scene.remove_body(person->body);
+                    one.people.erase(person);
+                }
+            });
+        });
+    DistributedCrowd crowd(MPI_COMM_WORLD);
+    add_all(crowd, walkers);
+    for (int step = 1; step <= steps; ++step) {
+        change(crowd.scene(), crowd.people(), step,
+               [&](const std::vector<std::uint64_t>& gone) { crowd.remove_people(gone); });
+        walkers.steer(crowd.scene(), crowd.people());
+        ASSERT_EQ(crowd.step(dt).status, StepStatus::done);
+        if (step % every == 0) {
+            ASSERT_EQ(crowd.hash(), expected[static_cast<std::size_t>(step / every - 1)]) << "step " << step;
+        }
+    }
+    EXPECT_LT(sum(crowd.figures().people), 2400);
+}
+
+TEST(DistributedCrowd, RefusesOnAllRanksWhatOneOfThemCannotDo)
+{
+    const Walkers walkers({.people = 600});
+    DistributedCrowd crowd(MPI_COMM_WORLD);
+    add_all(crowd, walkers);
+    const std::uint64_t before = crowd.hash();
+    StepReport report = crowd.step(rank() == 0 ? 2.0F : dt);
+    EXPECT_EQ(report.status, StepStatus::refused);
+    if (ranks() > 1) {
+        report = crowd.step(rank() == 0 ? 0.01F : dt);
+        EXPECT_NE(report.error.find("not the same on all ranks"), std::string::npos) << report.error;
+    }
+    ConstraintId joint{};
+    BodyId post{};
+    if (rank() == ranks() - 1) {
+        post = crowd.scene().add_body({.position = {1, 2, 3}});
+        joint = crowd.scene().add_joint(BallSocketDefinition{crowd.scene().ground(), post, {1, 2, 3}, {}});
+    }
+    report = crowd.step(dt);
+    EXPECT_EQ(report.status, StepStatus::refused);
+    EXPECT_NE(report.error.find("joints"), std::string::npos) << report.error;
+    if (rank() == ranks() - 1) crowd.scene().remove_body(post);
+    EXPECT_EQ(crowd.hash(), before);
+    EXPECT_EQ(crowd.step(dt).status, StepStatus::done);
+
+    // A giant reaches further than the strips are made for.
+    const std::uint64_t giant = 1000;
+    const BodyDefinition body{.model = BodyModel::planar,
+                              .position = {-40, -40, 0},
+                              .mass = 1000,
+                              .inertia = {1, 0, 0, 1, 0, 1e5F}};
+    if (rank() == 0) crowd.add_people({&giant, 1}, {&body, 1}, std::vector<DiscDefinition>{{.radius = 20}});
+    report = crowd.step(dt);
+    EXPECT_EQ(report.status, StepStatus::refused);
+    EXPECT_NE(report.error.find("reach further"), std::string::npos) << report.error;
+    if (crowd.find(giant) != BodyId{}) crowd.remove_people({&giant, 1});
+    EXPECT_EQ(crowd.step(dt).status, StepStatus::done);
+}
+
+TEST(DistributedCrowd, RefusesBadPeopleAndSettingsByName)
+{
+    for (const SolverSettings& settings :
+         {SolverSettings{.method = Method::direct}, SolverSettings{.tolerance = 0.1F},
+          SolverSettings{.sleep_speed = 0.1F}, SolverSettings{.exact_contacts = true},
+          SolverSettings{.budget_ms = 1}})
+        EXPECT_THROW(DistributedCrowd(MPI_COMM_WORLD, settings), InvalidInput);
+    DistributedCrowd crowd(MPI_COMM_WORLD);
+    const std::vector<std::uint64_t> twice{3, 3}, one{3};
+    const BodyDefinition planar{.model = BodyModel::planar};
+    const std::vector<BodyDefinition> bodies{planar, planar};
+    const std::vector<DiscDefinition> discs(2);
+    EXPECT_THROW(crowd.add_people(twice, bodies, discs), InvalidInput);
+    EXPECT_THROW(crowd.add_people(one, bodies, discs), InvalidInput);
+    EXPECT_THROW(crowd.add_people(one, std::vector<BodyDefinition>{{}}, {discs.data(), 1}), InvalidInput);
+    EXPECT_THROW(crowd.add_people(one, {bodies.data(), 1}, std::vector<DiscDefinition>{{.radius = -1}}),
+                 InvalidInput);
+    EXPECT_EQ(crowd.scene().body_count(), 0U);
+    EXPECT_THROW(crowd.remove_people(one), InvalidInput);
+    EXPECT_EQ(crowd.find(3), BodyId{});
+    EXPECT_EQ(crowd.step(dt).status, StepStatus::done);
+}
+
+}  // namespace
+}  // namespace motley::testing
+
+/// Only rank 0 prints, but each of them may fail.
+int main(int argc, char** argv)
+{
+    int provided = 0;
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
+    ::testing::InitGoogleTest(&argc, argv);
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
+    if (rank != 0) delete listeners.Release(listeners.default_result_printer());
+    int failed = RUN_ALL_TESTS();
+    MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Finalize();
+    return failed;
+}
