@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "commands/distributed_run.h"
 #include "commands/solver_command.h"
 #include "measuring/runner.h"
 
@@ -100,6 +101,9 @@ struct RunCommand {
         if (!dials.pick_isa()) return 2;
         options.settings = dials.settings;
         options.solver = dials.solver;
+#ifdef MOTLEY_HAS_MPI
+        if (is_started_by_mpi()) return run_distributed(scene, options, outputs, json);
+#endif
         const RunResult result = run_scene(*entry, options, outputs);
         fmt::print("{}", table_of(result));
         if (!json.empty()) write_text(json, json_of(result));

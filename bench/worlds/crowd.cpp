@@ -179,25 +179,18 @@ void Crowd::steer(Scene& scene, Executor& executor)
         scene.set_forces(bodies_, std::span<const Vec3<float>>(forces_), torques);
         return;
     }
-    parallel_for(
-        executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk,
-        [&](std::int64_t begin, std::int64_t end) {
-            for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-                const Agent& agent = agents[i];
-                const auto dx = static_cast<float>(agent.goal.x - positions[i].x),
-                           dy = static_cast<float>(agent.goal.y - positions[i].y);
-                const float speed = agent.desired_speed / std::max(std::sqrt(dx * dx + dy * dy), 1e-3F);
-                const float gain = agent.mass / relaxation_time;
-                forces_[i] = {gain * (speed * dx - velocities[i].x), gain * (speed * dy - velocities[i].y),
-                              0};
-            }
-            // The chunks have no body in common, and nobody else calls the scene meanwhile: see Scene for what may
-            // run at once.
-            const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-            scene.set_forces(std::span<const BodyId>(bodies_).subspan(first, count),
-                             std::span<const Vec3<float>>(forces_).subspan(first, count),
-                             are_torsos ? torques.subspan(first, count) : torques);
-        });
+    parallel_for(executor, static_cast<std::int64_t>(agents.size()), agents_per_chunk,
+                 [&](std::int64_t begin, std::int64_t end) {
+                     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+                         forces_[i] = walking_force(agents[i], relaxation_time, positions[i], velocities[i]);
+                     // The chunks have no body in common, and nobody else calls the scene meanwhile: see Scene for what may
+                     // run at once.
+                     const auto first = static_cast<std::size_t>(begin),
+                                count = static_cast<std::size_t>(end - begin);
+                     scene.set_forces(std::span<const BodyId>(bodies_).subspan(first, count),
+                                      std::span<const Vec3<float>>(forces_).subspan(first, count),
+                                      are_torsos ? torques.subspan(first, count) : torques);
+                 });
 }
 
 std::span<const Contact> Crowd::find_contacts(const Scene& scene, Executor& executor)

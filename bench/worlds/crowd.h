@@ -2,6 +2,7 @@
 // a crowd simulation; this is just enough of a host for real scenes.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -22,6 +23,17 @@ struct Agent {
     float desired_speed = 1.34F;  ///< m/s
     Vec2<double> goal{};          ///< m
 };
+
+/// Plain steering: the force that brings a person to the desired velocity, m (v0 e - v) / tau, e towards the goal, N.
+inline Vec3<float> walking_force(const Agent& agent, float relaxation_time, const Vec3<double>& position,
+                                 const Vec3<float>& velocity)
+{
+    const auto dx = static_cast<float>(agent.goal.x - position.x),
+               dy = static_cast<float>(agent.goal.y - position.y);
+    const float speed = agent.desired_speed / std::max(std::sqrt(dx * dx + dy * dy), 1e-3F);
+    const float gain = agent.mass / relaxation_time;
+    return {gain * (speed * dx - velocity.x), gain * (speed * dy - velocity.y), 0};
+}
 
 /// A wall: a segment of no thickness, touched from both sides.
 struct Wall {
@@ -76,8 +88,7 @@ class Crowd {
 
     /// Reads positions and velocities from the scene.
     void observe(const Scene& scene, Executor& executor);
-    /// The forces of `steering`; without one those that bring everyone to the desired velocity: m (v0 e - v) / tau, e
-    /// towards the goal.
+    /// The forces of `steering`; without one walking_force().
     void steer(Scene& scene, Executor& executor);
     /// The contacts of the observed positions.
     std::span<const Contact> find_contacts(const Scene& scene, Executor& executor);

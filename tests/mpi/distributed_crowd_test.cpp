@@ -5,6 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <numbers>
 
 #include "walkers.h"
 
@@ -194,6 +198,139 @@ TEST(DistributedCrowd, HasThemWhenPeopleComeAndGo)
         }
     }
     EXPECT_LT(sum(crowd.figures().people), 2400);
+}
+
+/// Pressures at a border are those of one process, bit for bit, and forces of all contacts add up to what people gained.
+TEST(DistributedCrowd, ReadsTheLoadsOfOneProcess)
+{
+    const Walkers walkers({.people = 3000, .spacing = 0.42, .friction = 0.3F});
+    constexpr int steps = 40;
+    std::vector<BodyLoad> expected(walkers.numbers.size());
+    if (rank() == 0) {
+        WalkersOnOneScene one(walkers, {}, {});
+        for (int step = 0; step < steps; ++step) one.step(dt);
+        std::vector<BodyId> ids;
+        std::vector<float> circumferences;
+        for (const OwnPerson& person : one.people) {
+            ids.push_back(person.body);
+            circumferences.push_back(2 * std::numbers::pi_v<float> * walkers.discs[person.number].radius);
+        }
+        one.scene.read_loads(ids, {}, std::span<BodyLoad>(expected), std::span<const float>(circumferences));
+    }
+    MPI_Bcast(expected.data(), static_cast<int>(sizeof(BodyLoad) * expected.size()), MPI_BYTE, 0,
+              MPI_COMM_WORLD);
+    DistributedCrowd crowd(MPI_COMM_WORLD);
+    add_all(crowd, walkers);
+    for (int step = 0; step < steps; ++step) {
+        walkers.steer(crowd.scene(), crowd.people());
+        ASSERT_EQ(crowd.step(dt).status, StepStatus::done);
+    }
+    const std::vector<BodyLoad> loads = crowd.read_loads();
+    ASSERT_EQ(loads.size(), crowd.people().size());
+    float most = 0;
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+        const BodyLoad& load = expected[crowd.people()[i].number];
+        EXPECT_EQ(loads[i].normal_force, load.normal_force);
+        EXPECT_EQ(loads[i].largest_normal_force, load.largest_normal_force);
+        EXPECT_EQ(loads[i].net_force.x, load.net_force.x);
+        EXPECT_EQ(loads[i].net_force.y, load.net_force.y);
+        EXPECT_EQ(loads[i].pressure, load.pressure);
+        most = std::max(most, load.pressure);
+    }
+    EXPECT_GT(most, 100);
+}
+
+std::string checkpoint_file()
+{
+    return ::testing::TempDir() + "motley_checkpoint_of_" + std::to_string(ranks()) + "_ranks";
+}
+
+/// A run that ends is taken up again from its checkpoint, on as many ranks as there were and on fewer; with the bits of one
+/// process that searches for contacts in the same step.
+TEST(DistributedCrowd, GoesOnFromACheckpointOnAnyNumberOfRanks)
+{
+    const Walkers walkers({.people = 3000, .spacing = 0.45, .friction = 0.3F});
+    constexpr int saved_at = 47, steps = 100;
+    const std::vector<std::uint64_t> expected =
+        hashes_of_one_process(walkers, {}, steps, steps, [&](WalkersOnOneScene& one, int step) {
+            if (step == saved_at + 1) one.scene.set_disc(one.people[0].body, walkers.discs[0]);
+        });
+    const std::string path = checkpoint_file();
+    {
+        DistributedCrowd crowd(MPI_COMM_WORLD);
+        add_all(crowd, walkers);
+        for (int step = 1; step <= steps; ++step) {
+            walkers.steer(crowd.scene(), crowd.people());
+            ASSERT_EQ(crowd.step(dt).status, StepStatus::done);
+            if (step == saved_at) crowd.save(path);
+        }
+        EXPECT_EQ(crowd.hash(), expected[0]);
+    }
+    for (const int fewer : {ranks(), 1, 2, 5}) {
+        if (fewer > ranks()) continue;
+        MPI_Comm some = MPI_COMM_NULL;
+        MPI_Comm_split(MPI_COMM_WORLD, rank() < fewer ? 0 : MPI_UNDEFINED, rank(), &some);
+        if (some == MPI_COMM_NULL) continue;
+        {
+            DistributedCrowd crowd(some);
+            walkers.add_walls(crowd.scene());
+            crowd.load(path);
+            EXPECT_EQ(crowd.figures().steps, saved_at);
+            for (int step = saved_at + 1; step <= steps; ++step) {
+                walkers.steer(crowd.scene(), crowd.people());
+                ASSERT_EQ(crowd.step(dt).status, StepStatus::done);
+            }
+            EXPECT_EQ(crowd.hash(), expected[0]) << "on " << fewer << " ranks";
+        }
+        MPI_Comm_free(&some);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (rank() == 0) std::remove(path.c_str());
+}
+
+TEST(DistributedCrowd, RefusesCheckpointsThatAreNotWhole)
+{
+    const Walkers walkers({.people = 300});
+    const std::string path = checkpoint_file();
+    DistributedCrowd crowd(MPI_COMM_WORLD);
+    add_all(crowd, walkers);
+    for (int step = 0; step < 5; ++step) crowd.step(dt);
+    crowd.save(path);
+    EXPECT_THROW(crowd.load(path), InvalidInput);  // it has people
+    EXPECT_THROW(crowd.save("/nowhere/at/all"), std::runtime_error);
+    DistributedCrowd other(MPI_COMM_WORLD);
+    EXPECT_THROW(other.load("/nowhere/at/all"), std::runtime_error);
+    EXPECT_THROW(other.load(path), std::runtime_error);  // it has no walls
+    walkers.add_walls(other.scene());
+    std::string whole;
+    {
+        std::ifstream file(path, std::ios::binary);
+        whole.assign(std::istreambuf_iterator<char>(file), {});
+    }
+    const auto refuses = [&](const std::string& bytes) {
+        MPI_Barrier(MPI_COMM_WORLD);
+        if (rank() == 0) std::ofstream(path, std::ios::binary) << bytes;
+        MPI_Barrier(MPI_COMM_WORLD);
+        EXPECT_THROW(other.load(path), std::runtime_error);
+        EXPECT_TRUE(other.people().empty());
+    };
+    for (const std::size_t length : {std::size_t{0}, std::size_t{8}, std::size_t{71}, whole.size() - 1})
+        refuses(whole.substr(0, length));
+    refuses(whole + "x");
+    // A byte of the magic, of the version, of the number of people, of a person, of an impulse's place, of an impulse.
+    for (const std::size_t at : {std::size_t{0}, std::size_t{8}, std::size_t{16}, std::size_t{200},
+                                 std::size_t{72 + 112}, whole.size() - 20}) {
+        std::string damaged = whole;
+        damaged[at] = static_cast<char>(damaged[at] ^ 0x40);
+        refuses(damaged);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (rank() == 0) std::ofstream(path, std::ios::binary) << whole;
+    MPI_Barrier(MPI_COMM_WORLD);
+    other.load(path);
+    EXPECT_EQ(other.hash(), crowd.hash());
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (rank() == 0) std::remove(path.c_str());
 }
 
 TEST(DistributedCrowd, RefusesOnAllRanksWhatOneOfThemCannotDo)

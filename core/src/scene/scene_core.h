@@ -16,6 +16,12 @@
 
 namespace motley {
 
+/// Impulses of a body's contacts in the last step, N s.
+struct Borne {
+    double normal = 0, largest = 0;
+    Vec3<double> net{};
+};
+
 struct JointBodies;
 struct JointStores;
 extern template class Boxed<JointStores>;
@@ -88,6 +94,10 @@ struct SceneCore {
     /// Calls work(DiscImpulse) for each contact of discs that pushed in the last step.
     template <class Work>
     void for_each_disc_impulse(const Work& work) const;
+    /// Adds what discs bore to `borne`, by slot.
+    void bear_disc_impulses(std::span<Borne> borne) const;
+    /// What this is as a load on a body with such a circumference, m; 0: not known.
+    [[nodiscard]] BodyLoad load_of(const Borne& borne, float circumference) const;
 
     // ---- capsules and half-spaces: scene_shapes.cpp ----
     /// Refuses what Scene::add_capsule and Scene::add_half_space refuse.

@@ -7,15 +7,6 @@
 #include "scene/disc_impulses.h"
 
 namespace motley {
-namespace {
-
-/// Impulses of a body's contacts, N s.
-struct Borne {
-    double normal = 0, largest = 0;
-    Vec3<double> net{};
-};
-
-}  // namespace
 
 void SceneCore::require_list_of_last_step(std::span<const Contact> list, const char* what) const
 {
@@ -61,7 +52,14 @@ void Scene::read_loads(std::span<const BodyId> bodies, std::span<const Contact> 
     };
     bear_all(contacts, contact_impulses());
     bear_all(core_->shapes.contacts, core_->shape_impulses());
-    core_->for_each_disc_impulse([&](const DiscImpulse& contact) {
+    core_->bear_disc_impulses(borne);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        loads[i] = core_->load_of(borne[bodies[i].slot], circumferences.empty() ? 0 : circumferences[i]);
+}
+
+void SceneCore::bear_disc_impulses(std::span<Borne> borne) const
+{
+    for_each_disc_impulse([&](const DiscImpulse& contact) {
         const Vec3<double> on_b{contact.on_b().x, contact.on_b().y, 0};
         const auto bear = [&](std::uint32_t slot, const Vec3<double>& push) {
             Borne& all = borne[slot];
@@ -72,15 +70,15 @@ void Scene::read_loads(std::span<const BodyId> bodies, std::span<const Contact> 
         bear(contact.slot_a, -on_b);
         bear(contact.slot_b, on_b);
     });
-    const double per_second = core_->last_step > 0 ? 1 / static_cast<double>(core_->last_step) : 0;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const Borne& all = borne[bodies[i].slot];
-        const double force = per_second * all.normal;
-        loads[i] = {
-            static_cast<float>(force), static_cast<float>(per_second * all.largest),
-            convert<float>(per_second * all.net),
-            circumferences.empty() ? 0 : static_cast<float>(force / static_cast<double>(circumferences[i]))};
-    }
+}
+
+BodyLoad SceneCore::load_of(const Borne& borne, float circumference) const
+{
+    const double per_second = last_step > 0 ? 1 / static_cast<double>(last_step) : 0;
+    const double force = per_second * borne.normal;
+    return {static_cast<float>(force), static_cast<float>(per_second * borne.largest),
+            convert<float>(per_second * borne.net),
+            circumference > 0 ? static_cast<float>(force / static_cast<double>(circumference)) : 0};
 }
 
 }  // namespace motley

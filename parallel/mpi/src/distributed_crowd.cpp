@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <cstring>
+#include <numbers>
 #include <unordered_set>
 #include <vector>
 
@@ -108,6 +109,11 @@ const Scene& DistributedCrowd::scene() const
     return impl_->scene;
 }
 
+Executor& DistributedCrowd::executor()
+{
+    return impl_->solver.executor();
+}
+
 void DistributedCrowd::add_people(std::span<const std::uint64_t> numbers,
                                   std::span<const BodyDefinition> bodies,
                                   std::span<const DiscDefinition> discs)
@@ -204,6 +210,29 @@ StepReport DistributedCrowd::step(float dt)
     }
     if (report.status != StepStatus::refused) ++region.figures.steps;
     return report;
+}
+
+void DistributedCrowd::save(const std::string& path)
+{
+    impl_->region.save(path);
+}
+void DistributedCrowd::load(const std::string& path)
+{
+    impl_->region.load(path);
+}
+
+std::vector<BodyLoad> DistributedCrowd::read_loads() const
+{
+    const SceneCore& scene = core_of(impl_->scene);
+    std::vector<Borne> borne(scene.bodies.slot_count());
+    impl_->region.bear_from_below(scene, borne);
+    scene.bear_disc_impulses(borne);
+    std::vector<BodyLoad> loads;
+    for (const OwnPerson& person : impl_->region.people) {
+        const float radius = scene.discs.shapes[person.body.slot].radius;
+        loads.push_back(scene.load_of(borne[person.body.slot], 2 * std::numbers::pi_v<float> * radius));
+    }
+    return loads;
 }
 
 std::uint64_t DistributedCrowd::hash() const

@@ -105,7 +105,8 @@ void Region::move_people(SceneCore& scene, const DiscStrips& strips, CarriedImpu
     for (std::uint32_t row = 1; row < rows.size(); ++row) {
         if (rows.slot[row] != 0) strip_of_[row] = static_cast<std::size_t>(strip_of(scene, strips, row));
     }
-    const std::vector<std::vector<ImpulseRecord>> impulses = take_out_impulses(scene, carried);
+    std::vector<std::vector<ImpulseRecord>> impulses = take_out_impulses(scene, carried);
+    send_waiting_impulses(scene, impulses);
     std::vector<std::vector<PersonRecord>> going(static_cast<std::size_t>(ranks_));
     for (const OwnPerson& person : people) {
         const std::uint32_t slot = person.body.slot;

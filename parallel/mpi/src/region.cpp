@@ -14,7 +14,7 @@
 namespace motley {
 namespace {
 
-enum Tag { states_tag = 1, pushed_tag, velocities_tag };
+enum Tag { states_tag = 1, pushed_tag, velocities_tag, loads_tag };
 
 constexpr std::size_t floats_a_person = 3;  // vx vy w
 
@@ -190,6 +190,24 @@ void Region::list_copies_pushed(const SceneCore& scene)
     });
     for (std::uint32_t i = 0; i < is_pushed.size(); ++i) {
         if (is_pushed[i] != 0) above_.pushed.push_back(i);
+    }
+}
+
+void Region::bear_from_below(const SceneCore& scene, std::span<Borne> borne)
+{
+    std::vector<Borne> here(borne.size());
+    if (above_.rank != nobody) scene.bear_disc_impulses(here);
+    std::vector<Borne> outgoing, incoming(below_.pushed.size());
+    for (const std::uint32_t index : above_.pushed) {
+        const BodyId body = above_.people[index];
+        outgoing.push_back(scene.bodies.is_alive(body) ? here[body.slot] : Borne{});
+    }
+    MPI_Sendrecv(outgoing.data(), static_cast<int>(outgoing.size() * sizeof(Borne)), MPI_BYTE, above_.rank,
+                 loads_tag, incoming.data(), static_cast<int>(incoming.size() * sizeof(Borne)), MPI_BYTE,
+                 below_.rank, loads_tag, comm_, MPI_STATUS_IGNORE);
+    for (std::size_t i = 0; i < incoming.size() && below_.rank != nobody; ++i) {
+        const BodyId body = below_.people[below_.pushed[i]];
+        if (scene.bodies.is_alive(body)) borne[body.slot] = incoming[i];
     }
 }
 

@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <cstdint>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -29,6 +30,13 @@ class Region final : public RegionLink {
     void forget_person(std::uint64_t number);
     /// Makes room for the numbers of bodies that were added.
     void grow_with_slots();
+
+    /// What people of the first band bore from contacts of the region below: the sums of one process begin with these.
+    void bear_from_below(const SceneCore& scene, std::span<Borne> borne);
+
+    // Checkpoints: see DistributedCrowd.
+    void save(const std::string& path);
+    void load(const std::string& path);
 
     [[nodiscard]] std::size_t first_band() const override { return first_; }
     [[nodiscard]] std::size_t last_band() const override { return last_; }
@@ -69,7 +77,8 @@ class Region final : public RegionLink {
     std::vector<std::size_t> strip_of_;  ///< by row, while people move
     Border above_, below_;
     bool is_dealt_anew_ = false;
-    std::vector<std::uint8_t> is_copy_;  ///< by slot
+    std::vector<ImpulseRecord> waiting_impulses_;  ///< from a checkpoint, for the first search
+    std::vector<std::uint8_t> is_copy_;            ///< by slot
     std::vector<PersonState> outgoing_states_, incoming_states_;
     std::vector<MPI_Request> requests_;
     bool has_spoken_ = false, refused_together_ = false;
@@ -81,6 +90,8 @@ class Region final : public RegionLink {
     std::vector<Record> exchange(const std::vector<std::vector<Record>>& outgoing);
     std::vector<std::vector<ImpulseRecord>> take_out_impulses(const SceneCore& scene,
                                                               CarriedImpulses& carried) const;
+    [[nodiscard]] std::vector<std::vector<ImpulseRecord>> impulses_by_person(const SceneCore& scene) const;
+    void send_waiting_impulses(const SceneCore& scene, std::vector<std::vector<ImpulseRecord>>& records);
     void take_in_people(SceneCore& scene, std::span<const PersonRecord> people);
     void take_in_impulses(const SceneCore& scene, std::span<const ImpulseRecord> impulses,
                           CarriedImpulses& carried) const;

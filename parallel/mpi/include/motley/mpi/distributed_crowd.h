@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "motley/core/scene.h"
 #include "motley/parallel/solver.h"
@@ -64,6 +65,9 @@ class DistributedCrowd {
     [[nodiscard]] Scene& scene();
     [[nodiscard]] const Scene& scene() const;
 
+    /// The threads of this rank's solver.
+    [[nodiscard]] Executor& executor();
+
     /// Adds people to this rank, wherever they are: planar, dynamic bodies with these discs. Numbers are the host's, and each may
     /// be on one rank only, which is not checked on others. Throws InvalidInput for different lengths, for a number that this
     /// rank has, and as Scene::add_bodies and Scene::set_discs do, and then changes nothing.
@@ -81,6 +85,19 @@ class DistributedCrowd {
     /// by MPI_Abort, with a line that says so.
     StepReport step(float dt);
 
+    /// Collective: writes all people and their impulses to one file, which replaces an older one only when it is whole. Afterwards
+    /// this crowd goes on with the bits of one that loads the file: both search for contacts in the next step. So a run
+    /// that saves has other bits than one that does not. Throws std::runtime_error on all ranks when the file cannot be
+    /// written, and InvalidInput while people are contained.
+    void save(const std::string& path);
+    /// Collective: reads such a file, written by any number of ranks, into a crowd without people, whose walls are those of the
+    /// crowd that was saved. Throws std::runtime_error on all ranks for a file that cannot be read, is of other walls, is cut
+    /// short or damaged, and InvalidInput for a crowd with people; then nothing is changed.
+    void load(const std::string& path);
+
+    /// Collective: what contacts put on the people of this rank in the last step, in the order of people(); also those with people
+    /// of other ranks, which Scene::read_loads and Scene::disc_contacts of one rank lack. `pressure` is of a disc's circumference.
+    [[nodiscard]] std::vector<BodyLoad> read_loads() const;
     /// Collective: a hash of the bits of all people, which does not depend on who has them; compare it with people_hash().
     [[nodiscard]] std::uint64_t hash() const;
     [[nodiscard]] DistributedFigures figures() const;
