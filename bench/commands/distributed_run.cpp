@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,7 +41,8 @@ Vec2<double> unpack(std::uint64_t bits)
 /// The open crowd on this rank and all others.
 class DistributedOpenCrowd {
   public:
-    DistributedOpenCrowd(const RunOptions& options, int rank, int ranks)
+    /// Goes on from the checkpoint `restart`, if that is not empty.
+    DistributedOpenCrowd(const RunOptions& options, const std::string& restart, int rank, int ranks)
         : crowd(MPI_COMM_WORLD, options.settings, options.solver), who_(options)
     {
         const double side = who_.side;
@@ -46,28 +50,11 @@ class DistributedOpenCrowd {
             {{0, 0}, {side, 0}}, {{side, 0}, {side, side}}, {{side, side}, {0, side}}, {{0, side}, {0, 0}}};
         for (const std::vector<Vec2<double>>& wall : walls)
             crowd.scene().add_wall({.points = wall, .friction = friction_of(options)});
-        // Each rank brings its share of the numbers; the first step takes them to the ranks of their places.
-        const auto share = [&](int of) {
-            return who_.count * static_cast<std::size_t>(of) / static_cast<std::size_t>(ranks);
-        };
-        std::vector<std::uint64_t> numbers;
-        std::vector<BodyDefinition> bodies;
-        std::vector<DiscDefinition> discs;
-        for (std::size_t number = share(rank); number < share(rank + 1); ++number) {
-            const Agent agent = who_.person(number);
-            const Vec2<double> at = who_.start_of(number);
-            BodyDefinition body;
-            body.model = BodyModel::planar;
-            body.position = {at.x, at.y, 0};
-            body.mass = agent.mass;
-            body.inertia.zz = 0.5F * agent.mass * agent.radius * agent.radius;
-            numbers.push_back(number);
-            bodies.push_back(body);
-            discs.push_back({.radius = agent.radius, .friction = friction_of(options)});
+        if (restart.empty()) {
+            add_share(options, rank, ranks);
+        } else {
+            crowd.load(restart);
         }
-        crowd.add_people(numbers, bodies, discs);
-        for (std::size_t i = 0; i < numbers.size(); ++i)
-            crowd.scene().set_user_data(crowd.find(numbers[i]), pack(who_.person(numbers[i]).goal));
         note_people();
     }
 
@@ -107,6 +94,32 @@ class DistributedOpenCrowd {
     }
 
   private:
+    /// Each rank brings its share of the numbers; the first step takes them to the ranks of their places.
+    void add_share(const RunOptions& options, int rank, int ranks)
+    {
+        const auto share = [&](int of) {
+            return who_.count * static_cast<std::size_t>(of) / static_cast<std::size_t>(ranks);
+        };
+        std::vector<std::uint64_t> numbers;
+        std::vector<BodyDefinition> bodies;
+        std::vector<DiscDefinition> discs;
+        for (std::size_t number = share(rank); number < share(rank + 1); ++number) {
+            const Agent agent = who_.person(number);
+            const Vec2<double> at = who_.start_of(number);
+            BodyDefinition body;
+            body.model = BodyModel::planar;
+            body.position = {at.x, at.y, 0};
+            body.mass = agent.mass;
+            body.inertia.zz = 0.5F * agent.mass * agent.radius * agent.radius;
+            numbers.push_back(number);
+            bodies.push_back(body);
+            discs.push_back({.radius = agent.radius, .friction = friction_of(options)});
+        }
+        crowd.add_people(numbers, bodies, discs);
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+            crowd.scene().set_user_data(crowd.find(numbers[i]), pack(who_.person(numbers[i]).goal));
+    }
+
     static constexpr float relaxation_time = 0.5F;  // s, as Crowd's
     OpenCrowdPeople who_;
     std::int64_t searches_ = 0;
@@ -153,13 +166,114 @@ const char* refusal_of(const std::string& scene, const RunOptions& options, cons
     return nullptr;
 }
 
-/// What a run was, in the order in which it is printed: name, value, format.
+/// A line of the table of a run, and its key in JSON.
 struct Line {
     const char* name;
     const char* key;
     double value;
     int digits;
 };
+
+/// What this rank has measured.
+struct Measured {
+    std::int64_t steps = 0;
+    std::vector<double> step_seconds, solver_seconds;
+    double fullest = 0;  ///< most people of a rank in any step
+};
+
+std::vector<Line> lines_of(const Measured& run, const DistributedFigures& own, double people, int ranks)
+{
+    // The first step allocates, and brings everybody to the right rank.
+    const auto later = [](std::vector<double> seconds) {
+        if (seconds.size() > 1) seconds.erase(seconds.begin());
+        return seconds;
+    };
+    const std::vector<double> steps = later(run.step_seconds), solver = later(run.solver_seconds);
+    const double total = std::accumulate(solver.begin(), solver.end(), 0.0);
+    const double mean = reduce(total / static_cast<double>(solver.size()), MPI_MAX);
+    const double all_ranks =
+        reduce(std::accumulate(run.solver_seconds.begin(), run.solver_seconds.end(), 0.0), MPI_SUM);
+    const auto count = static_cast<double>(run.steps);
+    const double pushed = reduce(static_cast<double>(own.pushed), MPI_SUM);
+    const double bytes = reduce(static_cast<double>(own.bytes), MPI_SUM) / count;
+    return {{"people", "people", people, 0},
+            {"people of the fullest rank / mean, most", "fullest_over_mean", run.fullest * ranks / people, 3},
+            {"agent-steps/s, solver alone (M)", "solver_agent_steps_per_second_M", 1e-6 * people / mean, 3},
+            {"whole step, median (ms)", "whole_step_ms", 1e3 * reduce(median(steps), MPI_MAX), 3},
+            {"solver, median (ms)", "solver_step_ms", 1e3 * reduce(median(solver), MPI_MAX), 3},
+            {"messages of sweeps (% of the solver's time)", "sweep_message_percent",
+             100 * reduce(own.seconds_sweeping, MPI_SUM) / all_ranks, 2},
+            {"all other messages (% of the solver's time)", "other_message_percent",
+             100 * reduce(own.seconds_agreeing, MPI_SUM) / all_ranks, 2},
+            {"searches that dealt out the plane (per step)", "searches_per_step",
+             static_cast<double>(own.searches) / count, 3},
+            {"people who changed rank (per step)", "crossings_per_step",
+             reduce(static_cast<double>(own.crossings), MPI_SUM) / count, 1},
+            {"people pushed across a border, last search", "pushed_across_borders", pushed, 0},
+            {"bytes to neighbours (per step)", "neighbour_bytes_per_step", bytes, 0},
+            {"bytes to neighbours per person pushed across a border (per step)",
+             "neighbour_bytes_per_pushed_person", pushed > 0 ? bytes / pushed : 0, 0},
+            {"bytes of people who moved (per step)", "moved_bytes_per_step",
+             reduce(static_cast<double>(own.moved_bytes), MPI_SUM) / count, 0}};
+}
+
+void print(const std::vector<Line>& lines, std::uint64_t hash, int ranks, int threads, std::int64_t steps)
+{
+    fmt::print("crowd: {} rank{} of {} thread{}, {} steps\n", ranks, ranks == 1 ? "" : "s", threads,
+               threads == 1 ? "" : "s", steps);
+    for (const Line& line : lines) fmt::print("  {:<66}{:.{}f}\n", line.name, line.value, line.digits);
+    fmt::print("  {:<66}{:016x}\n", "people hash", hash);
+}
+
+void write_json(const std::string& path, const std::vector<Line>& lines, std::uint64_t hash, int ranks,
+                int threads, std::int64_t steps)
+{
+    nlohmann::ordered_json out{{"scene", "crowd"}, {"ranks", ranks}, {"threads", threads}, {"steps", steps}};
+    for (const Line& line : lines) out[line.key] = line.value;
+    out["people_hash"] = fmt::format("{:016x}", hash);
+    std::ofstream file(path);
+    file << out.dump(2) << '\n';
+    file.close();
+    if (!file) throw std::runtime_error(path + ": cannot be written");
+}
+
+/// Throws on all ranks alike, or ends them all.
+void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Checkpoints& checkpoints,
+               const std::string& json, int rank, int ranks)
+{
+    DistributedOpenCrowd all(options, checkpoints.restart, rank, ranks);
+    const auto last = static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));
+    Measured run;
+    for (std::int64_t step = all.crowd.figures().steps; step < last; ++step) {
+        const double began = now();
+        all.steer(step);
+        const double steered = now();
+        const StepReport report = all.crowd.step(options.dt);
+        const double ended = now();
+        if (report.status != StepStatus::done)
+            throw std::runtime_error(fmt::format("step {} refused: {}", step, report.error));
+        ++run.steps;
+        run.step_seconds.push_back(ended - began);
+        run.solver_seconds.push_back(ended - steered);
+        run.fullest = std::max(run.fullest, reduce(static_cast<double>(all.crowd.people().size()), MPI_MAX));
+        if (outputs.hash_every > 0 && (step + 1) % outputs.hash_every == 0) {
+            const std::uint64_t hash = all.crowd.hash();
+            if (rank == 0) fmt::print("step {} hash {:016x}\n", step + 1, hash);
+        }
+        if (!checkpoints.file.empty() && (step + 1) % checkpoints.every == 0)
+            all.crowd.save(checkpoints.file);
+        if (outputs.progress && rank == 0 && step * 4 / last != (step + 1) * 4 / last)
+            fmt::print(stderr, "crowd: {} %\n", 25 * ((step + 1) * 4 / last));
+    }
+    if (run.steps == 0)
+        throw std::runtime_error("--restart: the checkpoint is at or beyond the end of --seconds");
+    const std::vector<Line> lines =
+        lines_of(run, all.crowd.figures(), static_cast<double>(options.agents), ranks);
+    const std::uint64_t hash = all.crowd.hash();
+    if (rank != 0) return;
+    print(lines, hash, ranks, options.solver.threads, run.steps);
+    if (!json.empty()) write_json(json, lines, hash, ranks, options.solver.threads, run.steps);
+}
 
 }  // namespace
 
@@ -172,110 +286,25 @@ bool is_started_by_mpi()
 }
 
 int run_distributed(const std::string& scene, RunOptions options, const RunOutputs& outputs,
-                    const std::string& json)
+                    const Checkpoints& checkpoints, const std::string& json)
 {
-    int threads_allowed = 0, rank = 0, ranks = 1;
+    int threads_allowed = 0, rank = 0, ranks = 1, code = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads_allowed);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-    int code = 0;
-    if (const char* const refused = refusal_of(scene, options, outputs)) {
-        if (rank == 0) fmt::print(stderr, "motley: {}\n", refused);
-        MPI_Finalize();
-        return 2;
-    }
     if (options.agents == 0) options.agents = 10000;
     if (options.seconds == 0) options.seconds = 10;
-    {
-        DistributedOpenCrowd all(options, rank, ranks);
-        const auto steps =
-            static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));
-        std::vector<double> step_seconds, solver_seconds;
-        double worst = 0;  // people of the fullest rank, as a share of the mean
-        for (std::int64_t step = 0; step < steps && code == 0; ++step) {
-            const double began = now();
-            all.steer(step);
-            const double steered = now();
-            const StepReport report = all.crowd.step(options.dt);
-            const double ended = now();
-            if (report.status != StepStatus::done) {
-                if (rank == 0) fmt::print(stderr, "motley: step {} refused: {}\n", step, report.error);
-                code = 1;
-                break;
-            }
-            step_seconds.push_back(ended - began);
-            solver_seconds.push_back(ended - steered);
-            worst = std::max(worst, reduce(static_cast<double>(all.crowd.people().size()), MPI_MAX));
-            if (outputs.hash_every > 0 && (step + 1) % outputs.hash_every == 0) {
-                const std::uint64_t hash = all.crowd.hash();
-                if (rank == 0) fmt::print("step {} hash {:016x}\n", step + 1, hash);
-            }
-            if (outputs.progress && rank == 0 && step * 4 / steps != (step + 1) * 4 / steps)
-                fmt::print(stderr, "crowd: {} %\n", 25 * ((step + 1) * 4 / steps));
+    try {
+        if (const char* const refused = refusal_of(scene, options, outputs)) {
+            code = 2;
+            throw std::runtime_error(refused);
         }
-        if (code == 0) {
-            // The first step allocates, and brings everybody to the right rank.
-            const auto typical = [](std::vector<double> seconds) {
-                if (seconds.size() > 1) seconds.erase(seconds.begin());
-                return median(seconds);
-            };
-            const DistributedFigures own = all.crowd.figures();
-            const double count = static_cast<double>(steps), people = static_cast<double>(options.agents);
-            const double whole = reduce(typical(step_seconds), MPI_MAX),
-                         solver = reduce(typical(solver_seconds), MPI_MAX);
-            double total = 0, after_first = 0;
-            for (const double seconds : solver_seconds) total += seconds;
-            if (steps > 1) after_first = total - solver_seconds.front();
-            const double all_ranks = reduce(total, MPI_SUM);
-            const double slowest = reduce(steps > 1 ? after_first / (count - 1) : total, MPI_MAX);
-            const double pushed = reduce(static_cast<double>(own.pushed), MPI_SUM);
-            const double bytes = reduce(static_cast<double>(own.bytes), MPI_SUM) / count;
-            const std::uint64_t hash = all.crowd.hash();
-            const std::vector<Line> lines{
-                {"people", "people", people, 0},
-                {"people of the fullest rank / mean, most", "fullest_over_mean", worst * ranks / people, 3},
-                {"agent-steps/s, solver alone (M)", "solver_agent_steps_per_second_M",
-                 1e-6 * people / slowest, 3},
-                {"whole step, median (ms)", "whole_step_ms", 1e3 * whole, 3},
-                {"solver, median (ms)", "solver_step_ms", 1e3 * solver, 3},
-                {"messages of sweeps (% of the solver's time)", "sweep_message_percent",
-                 100 * reduce(own.seconds_sweeping, MPI_SUM) / all_ranks, 2},
-                {"all other messages (% of the solver's time)", "other_message_percent",
-                 100 * reduce(own.seconds_agreeing, MPI_SUM) / all_ranks, 2},
-                {"searches that dealt out the plane (per step)", "searches_per_step",
-                 static_cast<double>(own.searches) / count, 3},
-                {"people who changed rank (per step)", "crossings_per_step",
-                 reduce(static_cast<double>(own.crossings), MPI_SUM) / count, 1},
-                {"people pushed across a border, last search", "pushed_across_borders", pushed, 0},
-                {"bytes to neighbours (per step)", "neighbour_bytes_per_step", bytes, 0},
-                {"bytes to neighbours per person pushed across a border (per step)",
-                 "neighbour_bytes_per_pushed_person", pushed > 0 ? bytes / pushed : 0, 0},
-                {"bytes of people who moved (per step)", "moved_bytes_per_step",
-                 reduce(static_cast<double>(own.moved_bytes), MPI_SUM) / count, 0}};
-            if (rank == 0) {
-                fmt::print("crowd: {} rank{} of {} thread{}, {} steps\n", ranks, ranks == 1 ? "" : "s",
-                           options.solver.threads, options.solver.threads == 1 ? "" : "s", steps);
-                for (const Line& line : lines)
-                    fmt::print("  {:<66}{:.{}f}\n", line.name, line.value, line.digits);
-                fmt::print("  {:<66}{:016x}\n", "people hash", hash);
-                if (!json.empty()) {
-                    nlohmann::ordered_json out{{"scene", scene},
-                                               {"ranks", ranks},
-                                               {"threads", options.solver.threads},
-                                               {"steps", steps}};
-                    for (const Line& line : lines) out[line.key] = line.value;
-                    out["people_hash"] = fmt::format("{:016x}", hash);
-                    std::ofstream file(json);
-                    file << out.dump(2) << '\n';
-                    file.close();
-                    if (!file) {
-                        fmt::print(stderr, "motley: {}: cannot be written\n", json);
-                        code = 1;
-                    }
-                }
-            }
-        }
+        run_crowd(options, outputs, checkpoints, json, rank, ranks);
+    } catch (const std::exception& error) {
+        if (rank == 0) fmt::print(stderr, "motley: {}\n", error.what());
+        code = std::max(code, 1);
     }
+    MPI_Bcast(&code, 1, MPI_INT, 0, MPI_COMM_WORLD);
     MPI_Finalize();
     return code;
 }

@@ -37,6 +37,7 @@ struct RunCommand {
     SolverCommand dials;
     RunOptions options;
     RunOutputs outputs;
+    Checkpoints checkpoints;
 
     void declare(CLI::App& app)
     {
@@ -87,6 +88,15 @@ struct RunCommand {
         app.add_option("--frame-every", outputs.frame_every, "steps between pictures")
             ->check(CLI::PositiveNumber)
             ->capture_default_str();
+#ifdef MOTLEY_HAS_MPI
+        app.add_option("--checkpoint", checkpoints.file, "under mpirun: a file to go on from");
+        app.add_option("--checkpoint-every", checkpoints.every, "steps between two checkpoints")
+            ->check(CLI::PositiveNumber)
+            ->capture_default_str();
+        app.add_option("--restart", checkpoints.restart,
+                       "under mpirun: go on from this checkpoint, on any number of ranks")
+            ->check(CLI::ExistingFile);
+#endif
         app.add_option("--hash-every", outputs.hash_every, "print the state hash every so many steps")
             ->check(CLI::PositiveNumber);
     }
@@ -102,8 +112,12 @@ struct RunCommand {
         options.settings = dials.settings;
         options.solver = dials.solver;
 #ifdef MOTLEY_HAS_MPI
-        if (is_started_by_mpi()) return run_distributed(scene, options, outputs, json);
+        if (is_started_by_mpi()) return run_distributed(scene, options, outputs, checkpoints, json);
 #endif
+        if (!checkpoints.file.empty() || !checkpoints.restart.empty()) {
+            fmt::print(stderr, "motley: --checkpoint and --restart are for runs under mpirun\n");
+            return 2;
+        }
         const RunResult result = run_scene(*entry, options, outputs);
         fmt::print("{}", table_of(result));
         if (!json.empty()) write_text(json, json_of(result));

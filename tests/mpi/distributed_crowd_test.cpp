@@ -237,6 +237,7 @@ TEST(DistributedCrowd, ReadsTheLoadsOfOneProcess)
         EXPECT_EQ(loads[i].pressure, load.pressure);
         most = std::max(most, load.pressure);
     }
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_FLOAT, MPI_MAX, MPI_COMM_WORLD);
     EXPECT_GT(most, 100);
 }
 
@@ -398,7 +399,16 @@ TEST(DistributedCrowd, RefusesBadPeopleAndSettingsByName)
 }  // namespace
 }  // namespace motley::testing
 
-/// Only rank 0 prints, but each of them may fail.
+/// Only rank 0 prints all, but each of them may fail.
+class Failures final : public ::testing::EmptyTestEventListener {
+    void OnTestPartResult(const ::testing::TestPartResult& result) override
+    {
+        if (result.failed())
+            std::fprintf(stderr, "on another rank: %s:%d: %s\n", result.file_name(), result.line_number(),
+                         result.message());
+    }
+};
+
 int main(int argc, char** argv)
 {
     int provided = 0;
@@ -407,7 +417,10 @@ int main(int argc, char** argv)
     int rank = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
-    if (rank != 0) delete listeners.Release(listeners.default_result_printer());
+    if (rank != 0) {
+        delete listeners.Release(listeners.default_result_printer());
+        listeners.Append(new Failures);
+    }
     int failed = RUN_ALL_TESTS();
     MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
     MPI_Finalize();

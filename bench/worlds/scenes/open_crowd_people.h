@@ -68,13 +68,13 @@ class OpenCrowdPeople {
         bits ^= bits >> 31;
         return static_cast<double>(bits >> 40) / 8388608.0 - 1;
     }
-    /// In floats, which a rank sends to another as 64 bits.
+    /// On a grid of 1/1024 m, so that two floats hold it, which a rank sends to another as 64 bits.
     [[nodiscard]] Vec2<double> goal_near(const Vec2<double>& at, std::size_t number,
                                          std::uint64_t purpose) const
     {
         constexpr double walk = 20;  // m
         const auto within = [&](double x) {
-            return static_cast<double>(static_cast<float>(std::clamp(x, 0.3, side - 0.3)));
+            return std::round(1024 * std::clamp(x, 0.3, side - 0.3)) / 1024;
         };
         return {within(at.x + walk * symmetric(number, purpose)),
                 within(at.y + walk * symmetric(number, purpose + 1))};
