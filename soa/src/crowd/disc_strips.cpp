@@ -35,9 +35,11 @@ float DiscStrips::upper_end_of(int bucket)
     return bit_cast<float>(static_cast<std::uint32_t>(bucket + 1 + ((127 - 20) << 3)) << 20);
 }
 
+/// A disc whose speed is no number is contained when this step ends; until then it is taken for one at rest.
 float DiscStrips::skin_at(double speed, float dt, double steps)
 {
-    return skin_at_rest + static_cast<float>(std::min(speed * static_cast<double>(dt) * steps, 1e9));
+    const double goes = speed * static_cast<double>(dt) * steps;
+    return skin_at_rest + static_cast<float>(goes > 0 ? std::min(goes, 1e9) : 0);
 }
 float DiscStrips::skin_at(double speed, float dt)
 {

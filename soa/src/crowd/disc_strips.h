@@ -159,7 +159,7 @@ class DiscStrips {
     [[nodiscard]] std::int32_t strip_at(double across) const
     {
         const double s = across * frame_.per_metre;
-        return s <= 0 ? 0 : s >= strips_ - 1 ? strips_ - 1 : static_cast<std::int32_t>(s);
+        return !(s > 0) ? 0 : s >= strips_ - 1 ? strips_ - 1 : static_cast<std::int32_t>(s);
     }
     /// Where a strip begins across the strips, m.
     [[nodiscard]] double low_edge_of(std::int32_t s) const
