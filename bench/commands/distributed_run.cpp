@@ -210,6 +210,8 @@ std::vector<Line> lines_of(const Measured& run, const DistributedFigures& own, d
             {"people who changed rank (per step)", "crossings_per_step",
              reduce(static_cast<double>(own.crossings), MPI_SUM) / count, 1},
             {"people pushed across a border, last search", "pushed_across_borders", pushed, 0},
+            {"messages to neighbours (per step)", "neighbour_messages_per_step",
+             reduce(static_cast<double>(own.messages), MPI_SUM) / count, 1},
             {"bytes to neighbours (per step)", "neighbour_bytes_per_step", bytes, 0},
             {"bytes to neighbours per person pushed across a border (per step)",
              "neighbour_bytes_per_pushed_person", pushed > 0 ? bytes / pushed : 0, 0},
