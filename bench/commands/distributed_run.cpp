@@ -11,10 +11,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "commands/distributed_trajectories.h"
 #include "measuring/clock.h"
 #include "measuring/median.h"
 #include "motley/mpi/distributed_crowd.h"
@@ -160,9 +162,9 @@ const char* refusal_of(const std::string& scene, const RunOptions& options, cons
         return "--listed, --measures and --direct-every need all people in one process";
     if (options.steering != SteeringModel::plain || options.torsos)
         return "on several ranks people are discs with plain steering";
-    if (!outputs.trajectories.empty() || !outputs.frames.empty() || !outputs.recording.empty() ||
-        !outputs.problem.empty() || outputs.densities)
-        return "--trajectories, --frames, --record and --densities need all people in one process";
+    if (!outputs.frames.empty() || !outputs.recording.empty() || !outputs.problem.empty() ||
+        outputs.densities)
+        return "--frames, --record and --densities need all people in one process";
     return nullptr;
 }
 
@@ -245,8 +247,13 @@ void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Check
 {
     DistributedOpenCrowd all(options, checkpoints.restart, rank, ranks);
     const auto last = static_cast<std::int64_t>(std::ceil(options.seconds / static_cast<double>(options.dt)));
+    std::optional<DistributedTrajectories> trajectories;
+    if (!outputs.trajectories.empty())
+        trajectories.emplace(outputs.trajectories, 1 / static_cast<double>(options.dt));
     Measured run;
     for (std::int64_t step = all.crowd.figures().steps; step < last; ++step) {
+        // As one process does, from where people are when the step begins.
+        if (trajectories) trajectories->write(all.crowd, step);
         const double began = now();
         all.steer(step);
         const double steered = now();
@@ -267,6 +274,7 @@ void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Check
         if (outputs.progress && rank == 0 && step * 4 / last != (step + 1) * 4 / last)
             fmt::print(stderr, "crowd: {} %\n", 25 * ((step + 1) * 4 / last));
     }
+    if (trajectories) trajectories->close();
     if (run.steps == 0)
         throw std::runtime_error("--restart: the checkpoint is at or beyond the end of --seconds");
     const std::vector<Line> lines =

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
 
@@ -58,11 +59,22 @@ Trajectories read_trajectories(const std::string& path)
     return result;
 }
 
+std::string trajectory_head(double frames_a_second)
+{
+    return fmt::format("# written by motley\n# framerate: {:.6g}\n# id frame x/m y/m z/m\n", frames_a_second);
+}
+
+void append_trajectory_point(std::string& text, const TrajectoryPoint& point)
+{
+    fmt::format_to(std::back_inserter(text), "{}\t{}\t{:.4f}\t{:.4f}\t{:.2f}\n", point.id, point.frame,
+                   point.x, point.y, 0.0);
+}
+
 TrajectoryWriter::TrajectoryWriter(const std::string& path, double frames_a_second)
     : path_(path), part_(path + ".part"), file_(std::fopen(part_.c_str(), "w"))
 {
     if (file_ == nullptr) throw std::runtime_error(fmt::format("{}: cannot be written", path));
-    fmt::print(file_, "# written by motley\n# framerate: {:.6g}\n# id frame x/m y/m z/m\n", frames_a_second);
+    fmt::print(file_, "{}", trajectory_head(frames_a_second));
 }
 
 TrajectoryWriter::~TrajectoryWriter()
@@ -74,10 +86,11 @@ TrajectoryWriter::~TrajectoryWriter()
 
 void TrajectoryWriter::write(const Crowd& crowd, std::int64_t frame)
 {
-    for (std::size_t i = 0; i < crowd.positions.size(); ++i) {
-        fmt::print(file_, "{}\t{}\t{:.4f}\t{:.4f}\t{:.2f}\n", crowd.number_of(i) + 1, frame,
-                   crowd.positions[i].x, crowd.positions[i].y, 0.0);
-    }
+    std::string text;
+    for (std::size_t i = 0; i < crowd.positions.size(); ++i)
+        append_trajectory_point(
+            text, {std::int64_t{crowd.number_of(i)} + 1, frame, crowd.positions[i].x, crowd.positions[i].y});
+    fmt::print(file_, "{}", text);
 }
 
 void TrajectoryWriter::close()

@@ -23,6 +23,10 @@ struct Trajectories {
 /// Reads a file; throws std::runtime_error naming the file, the line and what is wrong with it.
 Trajectories read_trajectories(const std::string& path);
 
+/// The first lines of a file, and a line of it.
+std::string trajectory_head(double frames_a_second);
+void append_trajectory_point(std::string& text, const TrajectoryPoint& point);
+
 /// Writes a file that PedPy reads, a frame at a time. Nothing is left behind at `path` unless close() succeeds.
 class TrajectoryWriter {
   public:

@@ -132,7 +132,8 @@ class DiscFinder {
     void list_rows(DiscStore& discs, std::uint32_t first, std::uint32_t last) const;
     void make_strips_of(SceneCore& scene);
     void begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers);
-    void go_on_with_fillers(DiscBand& found, std::size_t band, Worker& worker, std::size_t numbers);
+    static void go_on_with_fillers(DiscBand& found, Worker& worker, std::size_t bodies,
+                                   const BodyNumbers& numbers);
     void renew(SceneCore& scene, std::uint32_t row, std::size_t band, float dt);
     void cut_leaving_into_bands(const DiscStore& discs);
     [[nodiscard]] PlacedDisc place_now(const SceneCore& scene, std::uint32_t row) const;

@@ -210,24 +210,22 @@ bool DiscFinder::add_late(SceneCore& scene, std::size_t band, int worker)
 {
     Worker& own = workers_[static_cast<std::size_t>(worker)];
     DiscBand& found = scene.discs.bands[band];
-    const std::size_t numbers =
+    const std::size_t bodies =
         band == 0 ? scene.bodies.rows(BodyKind::planar).size() : numbers_of(scene, band);
-    const auto number_of = [&](std::uint32_t row) {
-        return band == 0 ? row : places_[row] - first_place(band);
-    };
+    const BodyNumbers numbers = band == 0 ? BodyNumbers{} : BodyNumbers{places_.data(), first_place(band)};
     bool is_begun = false;
     const auto add_of = [&](const LateList& list) {
         for (const LateContact& contact : list.contacts) {
             if (contact.band != band) continue;
-            if (!is_begun) go_on_with_fillers(found, band, own, numbers);
+            if (!is_begun) go_on_with_fillers(found, own, bodies, numbers);
             is_begun = true;
             const PlacedDisc a = place_now(scene, contact.a);
             if (contact.is_wall) {
                 const PlacedSegment segment = place_segment(scene.discs, contact.b);
-                add_touch(scene, found, own, segment, a, {}, number_of(contact.a));
+                add_touch(scene, found, own, segment, a, {}, numbers.of(contact.a));
             } else {
-                add_pair(scene, found, own, a, place_now(scene, contact.b), {}, number_of(contact.a),
-                         number_of(contact.b));
+                add_pair(scene, found, own, a, place_now(scene, contact.b), {}, numbers.of(contact.a),
+                         numbers.of(contact.b));
             }
         }
     };
@@ -244,29 +242,16 @@ bool DiscFinder::add_late(SceneCore& scene, std::size_t band, int worker)
 }
 
 /// Continues the blocks of a band.
-void DiscFinder::go_on_with_fillers(DiscBand& found, std::size_t band, Worker& worker, std::size_t numbers)
+void DiscFinder::go_on_with_fillers(DiscBand& found, Worker& worker, std::size_t bodies,
+                                    const BodyNumbers& numbers)
 {
-    const auto number_of = [&](std::int32_t offset) {
-        const std::uint32_t row = row_at(offset, BodyKind::planar).row();
-        return band == 0 ? row : places_[row] - first_place(band);
-    };
     for_each_disc_class([&](auto c) {
         using Fields = DiscFieldsOf<c.value>;
         const auto i = static_cast<std::size_t>(c.value);
-        const auto go_on = [&](BlockFiller& filler, DiscBlocks& blocks) {
-            filler.go_on(blocks, Fields::row_floats, Fields::impulse_floats, numbers,
-                         [&](std::size_t block, std::size_t lane) -> std::array<std::uint32_t, 2> {
-                             const BlockBodies& bodies = blocks.bodies[block];
-                             const std::uint32_t b = number_of(bodies.b[lane]);
-                             if constexpr (is_wall(c.value)) {
-                                 return {BlockFiller::no_body, b};
-                             } else {
-                                 return {number_of(bodies.a[lane]), b};
-                             }
-                         });
-        };
-        go_on(worker.fillers[i], found.blocks[i]);
-        go_on(worker.resting_fillers[i], found.resting[i]);
+        worker.fillers[i].go_on(found.blocks[i], Fields::row_floats, Fields::impulse_floats, bodies, numbers,
+                                is_wall(c.value));
+        worker.resting_fillers[i].go_on(found.resting[i], Fields::row_floats, Fields::impulse_floats, bodies,
+                                        numbers, is_wall(c.value));
     });
 }
 
