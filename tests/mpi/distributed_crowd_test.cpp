@@ -5,10 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <numbers>
+#include <thread>
 
 #include "walkers.h"
 
@@ -125,6 +129,23 @@ TEST(DistributedCrowd, HasThemWithFewerPeopleThanARegionHolds)
 {
     for (const int people : {0, 1, 5, 600})
         expect_the_bits_of_one_process({.walkers = {.people = people, .speed = 3}, .steps = 60});
+}
+
+/// A rank that is late makes the others wait, and nothing else.
+TEST(DistributedCrowd, HasThemWhenRanksAreLateInTurn)
+{
+    const Walkers walkers({.people = 2500});
+    constexpr int steps = 60;
+    const std::vector<std::uint64_t> expected =
+        hashes_of_one_process(walkers, {}, steps, steps, [](WalkersOnOneScene&, int) {});
+    DistributedCrowd crowd(MPI_COMM_WORLD);
+    add_all(crowd, walkers);
+    for (int step = 0; step < steps; ++step) {
+        walkers.steer(crowd.scene(), crowd.people());
+        if (step % ranks() == rank()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        ASSERT_EQ(crowd.step(dt).status, StepStatus::done);
+    }
+    EXPECT_EQ(crowd.hash(), expected[0]);
 }
 
 /// All press into one corner: the worst rank stays within a fifth of the mean.
@@ -289,6 +310,29 @@ TEST(DistributedCrowd, GoesOnFromACheckpointOnAnyNumberOfRanks)
     if (rank() == 0) std::remove(path.c_str());
 }
 
+/// The checkpoint with 8 bytes of its first person, from byte `at` of the record on, changed, and a checksum that agrees.
+std::string forge(std::string bytes, std::size_t at, double value)
+{
+    constexpr std::size_t head = 80, record = 120, check_at = 56;
+    const auto hash = [&] {
+        std::uint64_t sum = 0x9E3779B97F4A7C15ULL;
+        for (std::size_t word = head; word < head + record; word += 8) {
+            std::uint64_t bits = 0;
+            std::memcpy(&bits, &bytes[word], 8);
+            sum = (sum ^ bits) * 0xBF58476D1CE4E5B9ULL;
+            sum ^= sum >> 29;
+        }
+        return sum;
+    };
+    const std::uint64_t before = hash();
+    std::memcpy(&bytes[head + at], &value, 8);
+    std::uint64_t check = 0;
+    std::memcpy(&check, &bytes[check_at], 8);
+    check += hash() - before;
+    std::memcpy(&bytes[check_at], &check, 8);
+    return bytes;
+}
+
 TEST(DistributedCrowd, RefusesCheckpointsThatAreNotWhole)
 {
     const Walkers walkers({.people = 300});
@@ -315,21 +359,35 @@ TEST(DistributedCrowd, RefusesCheckpointsThatAreNotWhole)
         EXPECT_THROW(other.load(path), std::runtime_error);
         EXPECT_TRUE(other.people().empty());
     };
-    for (const std::size_t length : {std::size_t{0}, std::size_t{8}, std::size_t{71}, whole.size() - 1})
+    for (const std::size_t length : {std::size_t{0}, std::size_t{8}, std::size_t{79}, whole.size() - 1})
         refuses(whole.substr(0, length));
     refuses(whole + "x");
-    // A byte of the magic, of the version, of the number of people, of a person, of an impulse's place, of an impulse.
-    for (const std::size_t at : {std::size_t{0}, std::size_t{8}, std::size_t{16}, std::size_t{200},
-                                 std::size_t{72 + 112}, whole.size() - 20}) {
+    // A byte of the magic, of the version, of the size of a person, of the number of people, of a person, of an impulse's place, of an impulse.
+    for (const std::size_t at : {std::size_t{0}, std::size_t{8}, std::size_t{16}, std::size_t{24},
+                                 std::size_t{200}, std::size_t{80 + 112}, whole.size() - 20}) {
         std::string damaged = whole;
         damaged[at] = static_cast<char>(damaged[at] ^ 0x40);
         refuses(damaged);
     }
+    // A place that is no number, and one that is too far away; velocities, forces, a mass, a radius that are none.
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    refuses(forge(whole, 8, none));
+    refuses(forge(whole, 16, 1e13));
+    for (const std::size_t at : {std::size_t{40}, std::size_t{52}, std::size_t{72}, std::size_t{80}})
+        refuses(forge(whole, at, none));
     MPI_Barrier(MPI_COMM_WORLD);
     if (rank() == 0) std::ofstream(path, std::ios::binary) << whole;
     MPI_Barrier(MPI_COMM_WORLD);
     other.load(path);
     EXPECT_EQ(other.hash(), crowd.hash());
+    MPI_Barrier(MPI_COMM_WORLD);
+    // That forging itself is not what is refused: a place a millimetre off is one that a crowd could have.
+    if (rank() == 0) std::ofstream(path, std::ios::binary) << forge(whole, 8, 0.251);
+    MPI_Barrier(MPI_COMM_WORLD);
+    DistributedCrowd forged(MPI_COMM_WORLD);
+    walkers.add_walls(forged.scene());
+    forged.load(path);
+    EXPECT_NE(forged.hash(), crowd.hash());
     MPI_Barrier(MPI_COMM_WORLD);
     if (rank() == 0) std::remove(path.c_str());
 }

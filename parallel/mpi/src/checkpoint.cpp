@@ -4,11 +4,13 @@
 // another. It is written beside its place and moved there when it is whole.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <unordered_set>
 
 #include "maths/bit_cast.h"
 #include "motley/core/invalid_input.h"
@@ -18,9 +20,14 @@
 namespace motley {
 namespace {
 
+struct SavedPerson {
+    PersonRecord person;
+    std::uint64_t first_impulse = 0;  ///< of all impulses in the file
+};
 struct CheckpointHead {
     std::array<char, 8> magic{'m', 'o', 't', 'l', 'e', 'y', 'M', 'P'};
     std::uint64_t version = 1;
+    std::uint64_t person_bytes = sizeof(SavedPerson);  ///< fewer where positions are floats
     std::uint64_t people = 0, impulses = 0;
     std::uint64_t steps = 0;
     std::uint64_t walls = 0;  ///< a hash of them
@@ -28,13 +35,9 @@ struct CheckpointHead {
     float last_step = 0, last_substep = 0;
     std::uint64_t is_turned = 0;  ///< StripFrame::is_turned
 };
-struct SavedPerson {
-    PersonRecord person;
-    std::uint64_t first_impulse = 0;  ///< of all impulses in the file
-};
 // Files have no undefined bytes.
-static_assert(sizeof(CheckpointHead) == 72);
-static_assert(sizeof(SavedPerson) == 120 && sizeof(ImpulseRecord) == 32);
+static_assert(sizeof(CheckpointHead) == 80 && sizeof(ImpulseRecord) == 32);
+static_assert(sizeof(SavedPerson) == 4 * sizeof(PoseReal) + 88);
 
 std::uint64_t mix(std::uint64_t hash, std::uint64_t value)
 {
@@ -63,6 +66,28 @@ std::uint64_t hash_of_walls(const SceneCore& scene)
         hash = mix(hash, bit_cast<std::uint32_t>(segment.friction));
     }
     return hash;
+}
+
+/// Whether a person of a file is one whom a crowd could have had.
+bool is_fit(const PersonRecord& person)
+{
+    const auto is_within = [](double value, double low, double high) {
+        return value >= low && value <= high;
+    };
+    const PersonState& state = person.state;
+    const auto real = [](auto value) { return static_cast<double>(value); };
+    bool good =
+        is_within(real(state.pose.position.x), -1e12, 1e12) &&
+        is_within(real(state.pose.position.y), -1e12, 1e12) &&
+        is_within(real(state.pose.position.z), -1e12, 1e12) && is_within(real(state.pose.yaw), -1e15, 1e15) &&
+        is_within(real(person.inverse_mass), 1e-10, 1e10) &&
+        is_within(real(person.inverse_inertia), 1e-20, 1e20) &&
+        is_within(real(person.shape.radius), 1e-6, 1e6) && is_within(real(person.shape.friction), 0, 1e9) &&
+        is_within(real(state.damping.linear), 0, 1e6) && is_within(real(state.damping.angular), 0, 1e6) &&
+        person.is_copy == 0;
+    for (const float value : state.velocity) good = good && is_within(real(value), -1e30, 1e30);
+    for (const float value : state.acceleration) good = good && is_within(real(value), -1e38, 1e38);
+    return good;
 }
 
 /// A file that all ranks have open. Errors of one rank are errors of all.
@@ -222,6 +247,7 @@ void Region::load(const std::string& path)
     const CheckpointHead& head = heads[0];
     require(head.magic == CheckpointHead().magic, "no checkpoint of motley");
     require(head.version == CheckpointHead().version, "a checkpoint of another version");
+    require(head.person_bytes == sizeof(SavedPerson), "of a build whose positions have other digits");
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
     require(
         head.people <= most && head.impulses <= 64 * most &&
@@ -247,6 +273,15 @@ void Region::load(const std::string& path)
     std::uint64_t check = check_of(saved) + check_of(impulses);
     MPI_Allreduce(MPI_IN_PLACE, &check, 1, MPI_UINT64_T, MPI_SUM, comm_);
     require(check == head.check, "damaged: its checksum is wrong");
+
+    std::unordered_set<std::uint64_t> numbers;
+    bool are_fit = true;
+    for (const SavedPerson& person : saved)
+        are_fit = are_fit && is_fit(person.person) && numbers.insert(person.person.number).second;
+    for (const ImpulseRecord& impulse : impulses)
+        are_fit = are_fit && std::isfinite(impulse.normal) && std::isfinite(impulse.tangent) &&
+                  (impulse.is_wall == 0 || impulse.b < scene.discs.segments.size());
+    require(are_fit, "holds a person or an impulse that no crowd has");
 
     std::vector<PersonRecord> coming;
     for (const SavedPerson& person : saved) coming.push_back(person.person);
