@@ -283,8 +283,9 @@ void Region::load(const std::string& path)
                   (impulse.is_wall == 0 || impulse.b < scene.discs.segments.size());
     require(are_fit, "holds a person or an impulse that no crowd has");
 
-    std::vector<PersonRecord> coming;
-    for (const SavedPerson& person : saved) coming.push_back(person.person);
+    std::vector<PersonRecord> coming(saved.size());
+    std::transform(saved.begin(), saved.end(), coming.begin(),
+                   [](const SavedPerson& person) { return person.person; });
     take_in_people(scene, coming);
     waiting_impulses_ = std::move(impulses);
     figures = {};
