@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -47,13 +48,12 @@ class DistributedOpenCrowd {
     DistributedOpenCrowd(const RunOptions& options, const std::string& restart, int rank, int ranks)
         : crowd(MPI_COMM_WORLD, options.settings, options.solver), who_(options)
     {
-        const double side = who_.side;
-        const std::vector<std::vector<Vec2<double>>> walls{
-            {{0, 0}, {side, 0}}, {{side, 0}, {side, side}}, {{side, side}, {0, side}}, {{0, side}, {0, 0}}};
-        for (const std::vector<Vec2<double>>& wall : walls)
-            crowd.scene().add_wall({.points = wall, .friction = friction_of(options)});
+        for (const Wall& wall : who_.walls()) {
+            const std::array<Vec2<double>, 2> ends{wall.from, wall.to};
+            crowd.scene().add_wall({.points = ends, .friction = who_.friction});
+        }
         if (restart.empty()) {
-            add_share(options, rank, ranks);
+            add_share(rank, ranks);
         } else {
             crowd.load(restart);
         }
@@ -80,14 +80,14 @@ class DistributedOpenCrowd {
                          Agent agent;
                          for (std::size_t i = first; i < first + count; ++i) {
                              agent.goal = goals_[i];
-                             forces_[i] =
-                                 walking_force(agent, relaxation_time, positions_[i], velocities_[i]);
+                             forces_[i] = walking_force(agent, Crowd::default_relaxation_time, positions_[i],
+                                                        velocities_[i]);
                          }
                          scene.set_forces(some, std::span<const Vec3<float>>(forces_).subspan(first, count));
                      });
         for (std::size_t i = 0; i < bodies_.size(); ++i) {
             const std::uint64_t number = numbers_[i];
-            if (!OpenCrowdPeople::looks(number, step) ||
+            if (number % OpenCrowdPeople::one_in != OpenCrowdPeople::first_to_look(step) ||
                 !OpenCrowdPeople::has_reached(goals_[i], positions_[i]))
                 continue;
             goals_[i] = who_.next_goal(number, positions_[i], step);
@@ -97,7 +97,7 @@ class DistributedOpenCrowd {
 
   private:
     /// Each rank brings its share of the numbers; the first step takes them to the ranks of their places.
-    void add_share(const RunOptions& options, int rank, int ranks)
+    void add_share(int rank, int ranks)
     {
         const auto share = [&](int of) {
             return who_.count * static_cast<std::size_t>(of) / static_cast<std::size_t>(ranks);
@@ -107,22 +107,15 @@ class DistributedOpenCrowd {
         std::vector<DiscDefinition> discs;
         for (std::size_t number = share(rank); number < share(rank + 1); ++number) {
             const Agent agent = who_.person(number);
-            const Vec2<double> at = who_.start_of(number);
-            BodyDefinition body;
-            body.model = BodyModel::planar;
-            body.position = {at.x, at.y, 0};
-            body.mass = agent.mass;
-            body.inertia.zz = 0.5F * agent.mass * agent.radius * agent.radius;
             numbers.push_back(number);
-            bodies.push_back(body);
-            discs.push_back({.radius = agent.radius, .friction = friction_of(options)});
+            bodies.push_back(body_of(agent, who_.start_of(number)));
+            discs.push_back({.radius = agent.radius, .friction = who_.friction});
         }
         crowd.add_people(numbers, bodies, discs);
         for (std::size_t i = 0; i < numbers.size(); ++i)
             crowd.scene().set_user_data(crowd.find(numbers[i]), pack(who_.person(numbers[i]).goal));
     }
 
-    static constexpr float relaxation_time = 0.5F;  // s, as Crowd's
     OpenCrowdPeople who_;
     std::int64_t searches_ = 0;
     std::vector<std::uint64_t> numbers_;
@@ -131,10 +124,6 @@ class DistributedOpenCrowd {
     std::vector<Vec3<double>> positions_;
     std::vector<Vec3<float>> velocities_, forces_;
 
-    static float friction_of(const RunOptions& options)
-    {
-        return options.friction < 0 ? 0 : options.friction;
-    }
     void note_people()
     {
         searches_ = crowd.figures().searches;
@@ -302,8 +291,9 @@ int run_distributed(const std::string& scene, RunOptions options, const RunOutpu
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads_allowed);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-    if (options.agents == 0) options.agents = 10000;
-    if (options.seconds == 0) options.seconds = 10;
+    const SceneEntry& entry = *find_scene("crowd");
+    if (options.agents == 0) options.agents = entry.agents;
+    if (options.seconds == 0) options.seconds = entry.seconds;
     try {
         if (const char* const refused = refusal_of(scene, options, outputs)) {
             code = 2;

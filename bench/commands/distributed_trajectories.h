@@ -1,13 +1,11 @@
 // The trajectories of a crowd on several ranks as one file, which all ranks write at once by MPI-IO.
 #pragma once
 
-#include <mpi.h>
-
 #include <cstdint>
-#include <span>
 #include <string>
 
 #include "motley/mpi/distributed_crowd.h"
+#include "shared_file.h"
 
 namespace motley::bench {
 
@@ -17,19 +15,14 @@ class DistributedTrajectories {
   public:
     /// Throws std::runtime_error, on all ranks, when the file cannot be made.
     DistributedTrajectories(const std::string& path, double frames_a_second);
-    DistributedTrajectories(const DistributedTrajectories&) = delete;
-    DistributedTrajectories& operator=(const DistributedTrajectories&) = delete;
-    ~DistributedTrajectories();
     void write(const DistributedCrowd& crowd, std::int64_t frame);
-    void close();
+    void close() { file_.finish(); }
 
   private:
-    std::string path_, part_;
-    MPI_File file_ = MPI_FILE_NULL;
-    std::int64_t end_ = 0;  ///< bytes written by all ranks
+    SharedFile file_;
+    std::uint64_t end_ = 0;  ///< bytes written by all ranks
 
     void write_all(const std::string& text);
-    void require(bool is_good) const;
 };
 
 }  // namespace motley::bench

@@ -113,11 +113,11 @@ struct RunCommand {
         options.solver = dials.solver;
 #ifdef MOTLEY_HAS_MPI
         if (is_started_by_mpi()) return run_distributed(scene, options, outputs, checkpoints, json);
-#endif
         if (!checkpoints.file.empty() || !checkpoints.restart.empty()) {
             fmt::print(stderr, "motley: --checkpoint and --restart are for runs under mpirun\n");
             return 2;
         }
+#endif
         const RunResult result = run_scene(*entry, options, outputs);
         fmt::print("{}", table_of(result));
         if (!json.empty()) write_text(json, json_of(result));

@@ -17,12 +17,7 @@ constexpr std::uint64_t wall_bits = 0xFFFF;
 
 void Crowd::add(Scene& scene, Agent agent, Vec2<double> position)
 {
-    BodyDefinition body;
-    body.model = BodyModel::planar;
-    body.position = {position.x, position.y, 0};
-    body.mass = agent.mass;
-    body.inertia.zz = 0.5F * agent.mass * agent.radius * agent.radius;
-    agent.body = scene.add_body(body);
+    agent.body = scene.add_body(body_of(agent, position));
     agents.push_back(agent);
     bodies_.push_back(agent.body);
     radii_.push_back(agent.radius);

@@ -24,6 +24,17 @@ struct Agent {
     Vec2<double> goal{};          ///< m
 };
 
+/// A person as a planar body: a uniform disc.
+inline BodyDefinition body_of(const Agent& agent, const Vec2<double>& position)
+{
+    BodyDefinition body;
+    body.model = BodyModel::planar;
+    body.position = {position.x, position.y, 0};
+    body.mass = agent.mass;
+    body.inertia.zz = 0.5F * agent.mass * agent.radius * agent.radius;
+    return body;
+}
+
 /// Plain steering: the force that brings a person to the desired velocity, m (v0 e - v) / tau, e towards the goal, N.
 inline Vec3<float> walking_force(const Agent& agent, float relaxation_time, const Vec3<double>& position,
                                  const Vec3<float>& velocity)
@@ -53,8 +64,9 @@ struct Touch {
 
 class Crowd {
   public:
-    float relaxation_time = 0.5F;  ///< s: how fast people take up their desired velocity
-    float friction = 0;            ///< between people, and between people and walls
+    static constexpr float default_relaxation_time = 0.5F;  ///< s
+    float relaxation_time = default_relaxation_time;  ///< s: how fast people take up their desired velocity
+    float friction = 0;                               ///< between people, and between people and walls
     float contact_margin =
         0.03F;  ///< m: gaps up to this become contacts, so that nothing is missed within a step
 
@@ -73,7 +85,7 @@ class Crowd {
     AlignedVector<Vec3<float>> velocities;
     AlignedVector<double> yaws;  ///< rad; of torsos only
 
-    /// Adds a person as a planar body: a uniform disc.
+    /// Adds a person by body_of().
     void add(Scene& scene, Agent agent, Vec2<double> position);
     /// Forgets agent `index` and removes its body; the last agent takes its place.
     void remove(Scene& scene, std::size_t index);

@@ -86,11 +86,13 @@ TrajectoryWriter::~TrajectoryWriter()
 
 void TrajectoryWriter::write(const Crowd& crowd, std::int64_t frame)
 {
-    std::string text;
-    for (std::size_t i = 0; i < crowd.positions.size(); ++i)
+    std::string line;
+    for (std::size_t i = 0; i < crowd.positions.size(); ++i) {
+        line.clear();
         append_trajectory_point(
-            text, {std::int64_t{crowd.number_of(i)} + 1, frame, crowd.positions[i].x, crowd.positions[i].y});
-    fmt::print(file_, "{}", text);
+            line, {std::int64_t{crowd.number_of(i)} + 1, frame, crowd.positions[i].x, crowd.positions[i].y});
+        fmt::print(file_, "{}", line);
+    }
 }
 
 void TrajectoryWriter::close()

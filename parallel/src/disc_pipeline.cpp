@@ -39,21 +39,22 @@ void DiscPipeline::find(SceneCore& scene, float dt)
     discs.wall_ends = wall_ends_;
     sort_into_strips(scene, dt);
     find_contacts(scene);
-    find_those_of_fast_discs(scene, dt);
+    const bool is_whole = add_those_of_fast_discs(scene, dt);
     DiscFinder::make_room_for_pairs(discs);
     discs.wants_sorting = discs.steps_since_sorting == DiscStore::least_steps_between_sortings &&
                           DiscFinder::are_rows_scattered(discs);
     discs.age = 0;
     discs.is_divided = true;
-    discs.is_stale = discs.is_torn = false;
+    discs.is_stale = !is_whole;
+    discs.is_torn = false;
 }
 
-/// After a search of all discs: adds the contacts of those who leave the skins that they have in it in this very step. Where
-/// they are too close for this, the next step searches again.
-void DiscPipeline::find_those_of_fast_discs(SceneCore& scene, float dt)
+/// After a search of all discs: adds the contacts of fast discs, whose skins were cut so short that they leave them in this very
+/// step. Returns false where people are too close together for this; then the next step must search for all again.
+bool DiscPipeline::add_those_of_fast_discs(SceneCore& scene, float dt)
 {
     list_leaving(scene, dt);
-    if (vote(scene, false).leaving > 0) find_late(scene, dt);
+    return vote(scene, false).leaving == 0 || find_late(scene, dt);
 }
 
 /// Whether the contacts are those of the last step, and those that are added here.
@@ -219,8 +220,7 @@ void DiscPipeline::deal_out_bands(SceneCore& scene, float dt)
     region->add_up(all);
     strips.choose(scene.discs, all);
     runner_.run(strips.chunk_count(), [&](std::int64_t chunk) { strips.anchor(scene, chunk); });
-    const std::int64_t wide =
-        strips.count_by_strip(scene, [&](std::uint32_t slot) { return region->is_copy(slot); });
+    const std::int64_t wide = strips.count_by_strip(scene);
     region->refuse_everywhere("discs of a crowd on several ranks that reach further than most others", wide,
                               "0");
     region->add_up(strips.discs_by_strip());

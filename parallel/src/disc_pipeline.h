@@ -44,7 +44,7 @@ class DiscPipeline {
     void list_leaving(const SceneCore& scene, float dt);
     [[nodiscard]] SearchVote vote(const SceneCore& scene, bool must_search) const;
     bool find_late(SceneCore& scene, float dt);
-    void find_those_of_fast_discs(SceneCore& scene, float dt);
+    bool add_those_of_fast_discs(SceneCore& scene, float dt);
     void measure(SceneCore& scene, float dt);
     void deal_out_bands(SceneCore& scene, float dt);
     void sort_into_strips(SceneCore& scene, float dt);

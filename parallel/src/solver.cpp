@@ -242,6 +242,7 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> ho
         if (dt == 0 || !report.error.empty()) return clock.leave();
         clock.enter(Stage::colour);
         sleep.wake({scene, contacts, dt, settings});
+        // Before the layout is cut, because people of other regions may come: see RegionLink.
         discs.find(scene, dt);
         lay_out(scene, contacts, report);
         if (!report.error.empty()) return clock.leave();

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -14,6 +15,7 @@
 #include <numbers>
 #include <thread>
 
+#include "maths/hash.h"
 #include "walkers.h"
 
 namespace motley::testing {
@@ -315,14 +317,9 @@ std::string forge(std::string bytes, std::size_t at, double value)
 {
     constexpr std::size_t head = 80, record = 120, check_at = 56;
     const auto hash = [&] {
-        std::uint64_t sum = 0x9E3779B97F4A7C15ULL;
-        for (std::size_t word = head; word < head + record; word += 8) {
-            std::uint64_t bits = 0;
-            std::memcpy(&bits, &bytes[word], 8);
-            sum = (sum ^ bits) * 0xBF58476D1CE4E5B9ULL;
-            sum ^= sum >> 29;
-        }
-        return sum;
+        std::array<std::uint64_t, record / 8> words;
+        std::memcpy(words.data(), &bytes[head], record);
+        return hash_bytes(0, words.data(), words.size());
     };
     const std::uint64_t before = hash();
     std::memcpy(&bytes[head + at], &value, 8);

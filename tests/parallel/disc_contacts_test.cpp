@@ -208,6 +208,18 @@ TEST(DiscContacts, OfACrowdThatIsContainedAreNone)
     EXPECT_EQ(solver.step(crowd.scene, dt).status, StepStatus::done);
 }
 
+/// Somebody runs at 400 people on one spot, too many to add one by one. What was not added must not count as found.
+TEST(DiscContacts, OfARunnerAtTooManyAreSearchedForAgain)
+{
+    DiscCrowd crowd({.people = 401, .speed = 0, .walls = false});
+    for (std::size_t i = 0; i < crowd.people.size(); ++i)
+        crowd.scene.set_pose(crowd.people[i], {i == 0 ? 0.0 : 0.72, 0, 0}, {0, 0, 0, 1}, 0);
+    crowd.scene.set_velocity(crowd.people[0], {13, 0, 0}, {});
+    Solver solver(SolverSettings{});
+    EXPECT_EQ(solver.step(crowd.scene, dt).status, StepStatus::done);
+    EXPECT_TRUE(core_of(crowd.scene).discs.is_stale);
+}
+
 TEST(DiscContacts, MissNoOverlapWhateverTheSpeedAndSize)
 {
     for (const float speed : {0.0F, 2.0F, 20.0F}) {

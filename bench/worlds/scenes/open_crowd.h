@@ -10,11 +10,9 @@ class OpenCrowd final : public CrowdScene {
   public:
     explicit OpenCrowd(const RunOptions& options) : who_(options)
     {
-        people.friction = options.friction < 0 ? 0.0F : options.friction;
+        people.friction = who_.friction;
         for (std::size_t i = 0; i < who_.count; ++i) people.add(scene, who_.person(i), who_.start_of(i));
-        const double side = who_.side;
-        people.walls = {
-            {{0, 0}, {side, 0}}, {{side, 0}, {side, side}}, {{side, side}, {0, side}}, {{0, side}, {0, 0}}};
+        for (const Wall& wall : who_.walls()) people.walls.push_back(wall);
         people.steering = make_steering(options.steering);
         share_out_contacts(options);
     }
@@ -22,9 +20,9 @@ class OpenCrowd final : public CrowdScene {
     void steer(double time, Executor& executor) override
     {
         CrowdScene::steer(time, executor);
-        for (std::size_t i = 0; i < people.agents.size(); ++i) {
-            if (OpenCrowdPeople::looks(i, step_) &&
-                OpenCrowdPeople::has_reached(people.agents[i].goal, people.positions[i]))
+        for (std::size_t i = OpenCrowdPeople::first_to_look(step_); i < people.agents.size();
+             i += OpenCrowdPeople::one_in) {
+            if (OpenCrowdPeople::has_reached(people.agents[i].goal, people.positions[i]))
                 people.agents[i].goal = who_.next_goal(i, people.positions[i], step_);
         }
         ++step_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -12,10 +13,10 @@ namespace motley::bench {
 
 class OpenCrowdPeople {
   public:
-    static constexpr double default_density = 5;  ///< people per m2
-
-    explicit OpenCrowdPeople(const RunOptions& options) : seed_(options.seed)
+    explicit OpenCrowdPeople(const RunOptions& options)
+        : friction(options.friction < 0 ? 0.0F : options.friction), seed_(options.seed)
     {
+        constexpr double default_density = 5;  // people per m2
         count = static_cast<std::size_t>(options.agents);
         const double density = options.density > 0 ? options.density : default_density;
         side = std::sqrt(static_cast<double>(count) / density);
@@ -24,7 +25,13 @@ class OpenCrowdPeople {
 
     std::size_t count = 0;
     double side = 0;  ///< m, of the walled square
+    float friction;   ///< of people and walls
 
+    [[nodiscard]] std::array<Wall, 4> walls() const
+    {
+        return {
+            {{{0, 0}, {side, 0}}, {{side, 0}, {side, side}}, {{side, side}, {0, side}}, {{0, side}, {0, 0}}}};
+    }
     [[nodiscard]] Vec2<double> start_of(std::size_t number) const
     {
         const double pitch = side / static_cast<double>(columns_);
@@ -39,11 +46,12 @@ class OpenCrowdPeople {
         agent.goal = goal_near(start_of(number), number, 4);
         return agent;
     }
-    /// Whether a person looks in this step whether the goal is reached: each one in sixty does, which is often enough for walks
-    /// that take seconds.
-    [[nodiscard]] static bool looks(std::size_t number, std::int64_t step)
+    /// In each step one person in so many looks whether the goal is reached, which is often enough for walks that take seconds:
+    /// those of this number, and of every so many on.
+    static constexpr std::size_t one_in = 60;
+    [[nodiscard]] static std::size_t first_to_look(std::int64_t step)
     {
-        return number % 60 == static_cast<std::size_t>(step % 60);
+        return static_cast<std::size_t>(step) % one_in;
     }
     [[nodiscard]] static bool has_reached(const Vec2<double>& goal, const Vec3<double>& at)
     {

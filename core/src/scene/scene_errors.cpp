@@ -1,33 +1,11 @@
 // A scene as a whole: the hash of its state, its errors, energy and momentum.
+#include "maths/hash.h"
 #include "scene/scene_core.h"
 #include "stores/joint_store.h"
 
 #include <cmath>
 
 namespace motley {
-
-namespace {
-
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value)
-{
-    // One round of a multiply-xorshift hash: every bit of the state moves about half of the result.
-    hash ^= value + 0x9E3779B97F4A7C15ULL + (hash << 6) + (hash >> 2);
-    hash *= 0xFF51AFD7ED558CCDULL;
-    return hash ^ (hash >> 33);
-}
-
-template <class T>
-std::uint64_t hash_bytes(std::uint64_t hash, const T* values, std::size_t count)
-{
-    for (std::size_t i = 0; i < count; ++i) {
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &values[i], sizeof(T));
-        hash = mix(hash, bits);
-    }
-    return hash;
-}
-
-}  // namespace
 
 std::uint64_t Scene::state_hash() const
 {

@@ -1,21 +1,22 @@
 // Checkpoints: all people of all ranks, and the impulses of their contacts, in one file by MPI-IO.
 //
 // The file: a CheckpointHead; a SavedPerson for each person; an ImpulseRecord for each impulse, those of one person after
-// another. It is written beside its place and moved there when it is whole.
+// another.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
-#include <stdexcept>
+#include <span>
 #include <string>
 #include <unordered_set>
 
 #include "maths/bit_cast.h"
+#include "maths/hash.h"
 #include "motley/core/invalid_input.h"
 #include "region.h"
-#include "stopwatch.h"
+#include "scene/body_checks.h"
+#include "shared_file.h"
 
 namespace motley {
 namespace {
@@ -39,11 +40,6 @@ struct CheckpointHead {
 static_assert(sizeof(CheckpointHead) == 80 && sizeof(ImpulseRecord) == 32);
 static_assert(sizeof(SavedPerson) == 4 * sizeof(PoseReal) + 88);
 
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value)
-{
-    hash = (hash ^ value) * 0xBF58476D1CE4E5B9ULL;
-    return hash ^ (hash >> 29);
-}
 template <class Record>
 std::uint64_t check_of(const std::vector<Record>& records)
 {
@@ -51,9 +47,7 @@ std::uint64_t check_of(const std::vector<Record>& records)
     for (const Record& record : records) {
         std::array<std::uint64_t, sizeof(Record) / 8> words;
         std::memcpy(words.data(), &record, sizeof record);
-        std::uint64_t hash = 0x9E3779B97F4A7C15ULL;
-        for (const std::uint64_t word : words) hash = mix(hash, word);
-        sum += hash;
+        sum += hash_bytes(0, words.data(), words.size());
     }
     return sum;
 }
@@ -71,83 +65,26 @@ std::uint64_t hash_of_walls(const SceneCore& scene)
 /// Whether a person of a file is one whom a crowd could have had.
 bool is_fit(const PersonRecord& person)
 {
-    const auto is_within = [](double value, double low, double high) {
-        return value >= low && value <= high;
-    };
     const PersonState& state = person.state;
-    const auto real = [](auto value) { return static_cast<double>(value); };
-    bool good =
-        is_within(real(state.pose.position.x), -1e12, 1e12) &&
-        is_within(real(state.pose.position.y), -1e12, 1e12) &&
-        is_within(real(state.pose.position.z), -1e12, 1e12) && is_within(real(state.pose.yaw), -1e15, 1e15) &&
-        is_within(real(person.inverse_mass), 1e-10, 1e10) &&
-        is_within(real(person.inverse_inertia), 1e-20, 1e20) &&
-        is_within(real(person.shape.radius), 1e-6, 1e6) && is_within(real(person.shape.friction), 0, 1e9) &&
-        is_within(real(state.damping.linear), 0, 1e6) && is_within(real(state.damping.angular), 0, 1e6) &&
-        person.is_copy == 0;
-    for (const float value : state.velocity) good = good && is_within(real(value), -1e30, 1e30);
-    for (const float value : state.acceleration) good = good && is_within(real(value), -1e38, 1e38);
-    return good;
+    const DiscShape& shape = person.shape;
+    try {
+        check_disc({shape.radius, shape.friction, shape.category, shape.mask});
+        check_damping("PersonRecord", state.damping.linear, state.damping.angular);
+    } catch (const InvalidInput&) {
+        return false;
+    }
+    const auto is_within = [](auto value, double low, double high) {
+        const auto number = static_cast<double>(value);
+        return number >= low && number <= high;
+    };
+    const Vec3<double> at = convert<double>(state.pose.position);
+    bool is_good = is_coordinate(at.x) && is_coordinate(at.y) && is_coordinate(at.z) &&
+                   is_within(state.pose.yaw, -1e15, 1e15) && is_within(person.inverse_mass, 1e-10, 1e10) &&
+                   is_within(person.inverse_inertia, 1e-20, 1e20) && person.is_copy == 0;
+    for (const float value : state.velocity) is_good = is_good && is_within(value, -1e30, 1e30);
+    for (const float value : state.acceleration) is_good = is_good && is_within(value, -1e38, 1e38);
+    return is_good;
 }
-
-/// A file that all ranks have open. Errors of one rank are errors of all.
-class SharedFile {
-  public:
-    SharedFile(MPI_Comm comm, const std::string& path, int mode) : comm_(comm), path_(path)
-    {
-        require(MPI_File_open(comm, path.c_str(), mode, MPI_INFO_NULL, &file_), "cannot be opened");
-    }
-    ~SharedFile()
-    {
-        if (file_ != MPI_FILE_NULL) MPI_File_close(&file_);
-    }
-    SharedFile(const SharedFile&) = delete;
-    SharedFile& operator=(const SharedFile&) = delete;
-
-    template <class Record>
-    void write(std::uint64_t at, const std::vector<Record>& records)
-    {
-        require(MPI_File_write_at_all(file_, static_cast<MPI_Offset>(at), records.data(), count_of(records),
-                                      MPI_UINT64_T, MPI_STATUS_IGNORE),
-                "cannot be written");
-    }
-    template <class Record>
-    void read(std::uint64_t at, std::vector<Record>& records)
-    {
-        require(MPI_File_read_at_all(file_, static_cast<MPI_Offset>(at), records.data(), count_of(records),
-                                     MPI_UINT64_T, MPI_STATUS_IGNORE),
-                "cannot be read");
-    }
-    [[nodiscard]] std::uint64_t size()
-    {
-        MPI_Offset bytes = 0;
-        require(MPI_File_get_size(file_, &bytes), "cannot be read");
-        return static_cast<std::uint64_t>(bytes);
-    }
-    /// The bytes are on the disk when this returns.
-    void finish()
-    {
-        require(MPI_File_sync(file_), "cannot be written");
-        require(MPI_File_close(&file_), "cannot be written");
-    }
-
-  private:
-    MPI_Comm comm_;
-    std::string path_;
-    MPI_File file_ = MPI_FILE_NULL;
-
-    template <class Record>
-    static int count_of(const std::vector<Record>& records)
-    {
-        return static_cast<int>(records.size() * (sizeof(Record) / 8));
-    }
-    void require(int result, const char* what)
-    {
-        int failed = result == MPI_SUCCESS ? 0 : 1;
-        MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, comm_);
-        if (failed != 0) throw std::runtime_error(path_ + ": " + what);
-    }
-};
 
 }  // namespace
 
@@ -160,18 +97,16 @@ std::vector<std::vector<ImpulseRecord>> Region::impulses_by_person(const SceneCo
     for (std::size_t band = 0; band < scene.discs.band_count; ++band) carried.keep(scene.discs, band);
     const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
     std::vector<std::vector<ImpulseRecord>> records(people.size());
-    carried.take_out([&](std::uint32_t row, std::uint32_t other, bool is_wall,
-                         const CarriedImpulses::Impulse& impulse) {
-        // The impulse is of a person of this rank; the second one may be of the region above.
-        if (!is_wall && is_copy(slots[row])) std::swap(row, other);
-        const std::uint64_t number = scene.discs.numbers[slots[row]];
-        const auto own = index_of.find(number);
-        if (own == index_of.end()) return false;  // removed since
-        records[own->second].push_back({number,
-                                        is_wall ? std::uint64_t{other} : scene.discs.numbers[slots[other]],
-                                        impulse.normal, impulse.tangent, impulse.side, is_wall ? 1U : 0U});
-        return false;
-    });
+    carried.take_out(
+        [&](std::uint32_t row, std::uint32_t other, bool is_wall, const CarriedImpulses::Impulse& impulse) {
+            // The impulse is of a person of this rank; the second one may be of the region above.
+            if (!is_wall && is_copy(slots[row])) std::swap(row, other);
+            const std::uint64_t number = scene.discs.numbers[slots[row]];
+            const auto own = index_of.find(number);
+            if (own == index_of.end()) return false;  // removed since
+            records[own->second].push_back(record_of(scene, row, other, is_wall, impulse));
+            return false;
+        });
     return records;
 }
 
@@ -208,24 +143,12 @@ void Region::save(const std::string& path)
     head.last_substep = scene.last_substep;
     head.is_turned = scene.discs.frame.is_turned != 0 ? 1 : 0;
 
-    const std::string part = path + ".part";
-    SharedFile file(comm_, part, MPI_MODE_CREATE | MPI_MODE_WRONLY);
-    file.write(0, rank_ == 0 ? std::vector<CheckpointHead>{head} : std::vector<CheckpointHead>{});
-    file.write(sizeof head + before[0] * sizeof(SavedPerson), saved);
-    file.write(sizeof head + head.people * sizeof(SavedPerson) + before[1] * sizeof(ImpulseRecord), impulses);
+    SharedFile file(comm_, path, SharedFile::Use::write);
+    file.write(0, std::span<const CheckpointHead>(&head, rank_ == 0 ? 1 : 0));
+    file.write(sizeof head + before[0] * sizeof(SavedPerson), std::span<const SavedPerson>(saved));
+    file.write(sizeof head + head.people * sizeof(SavedPerson) + before[1] * sizeof(ImpulseRecord),
+               std::span<const ImpulseRecord>(impulses));
     file.finish();
-    int failed = 0;
-    if (rank_ == 0) {
-        std::error_code error;
-        // A longer file of an earlier run may have lain there.
-        std::filesystem::resize_file(
-            part, sizeof head + head.people * sizeof(SavedPerson) + head.impulses * sizeof(ImpulseRecord),
-            error);
-        if (!error) std::filesystem::rename(part, path, error);
-        failed = error ? 1 : 0;
-    }
-    MPI_Bcast(&failed, 1, MPI_INT, 0, comm_);
-    if (failed != 0) throw std::runtime_error(path + ": cannot be written");
     // Who goes on from the file searches for contacts, and so does who has written it.
     scene.discs.is_stale = true;
 }
@@ -236,24 +159,20 @@ void Region::load(const std::string& path)
     std::int64_t present = static_cast<std::int64_t>(people.size());
     MPI_Allreduce(MPI_IN_PLACE, &present, 1, MPI_INT64_T, MPI_SUM, comm_);
     if (present > 0) refuse("people of a crowd that loads a checkpoint", static_cast<double>(present), "0");
-    SharedFile file(comm_, path, MPI_MODE_RDONLY);
+    SharedFile file(comm_, path, SharedFile::Use::read);
     const std::uint64_t bytes = file.size();
-    const auto require = [&](bool is_good, const char* what) {
-        if (!is_so_everywhere(is_good)) throw std::runtime_error(path + ": " + what);
-    };
-    require(bytes >= sizeof(CheckpointHead), "no checkpoint of motley, or cut short");
-    std::vector<CheckpointHead> heads(1);
-    file.read(0, heads);
-    const CheckpointHead& head = heads[0];
-    require(head.magic == CheckpointHead().magic, "no checkpoint of motley");
-    require(head.version == CheckpointHead().version, "a checkpoint of another version");
-    require(head.person_bytes == sizeof(SavedPerson), "of a build whose positions have other digits");
+    file.require(bytes >= sizeof(CheckpointHead), "no checkpoint of motley, or cut short");
+    CheckpointHead head;
+    file.read(0, std::span<CheckpointHead>(&head, 1));
+    file.require(head.magic == CheckpointHead().magic, "no checkpoint of motley");
+    file.require(head.version == CheckpointHead().version, "a checkpoint of another version");
+    file.require(head.person_bytes == sizeof(SavedPerson), "of a build whose positions have other digits");
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-    require(
+    file.require(
         head.people <= most && head.impulses <= 64 * most &&
             bytes == sizeof head + head.people * sizeof(SavedPerson) + head.impulses * sizeof(ImpulseRecord),
         "cut short, or longer than it says");
-    require(head.walls == hash_of_walls(scene), "of a crowd between other walls");
+    file.require(head.walls == hash_of_walls(scene), "of a crowd between other walls");
 
     const auto share = [&](int rank) {
         return head.people * static_cast<std::uint64_t>(rank) / static_cast<std::uint64_t>(ranks_);
@@ -261,18 +180,18 @@ void Region::load(const std::string& path)
     const std::uint64_t first = share(rank_), last = share(rank_ + 1);
     // One more, if there is one, says where the impulses of the last one end.
     std::vector<SavedPerson> saved(static_cast<std::size_t>(std::min(last + 1, head.people) - first));
-    file.read(sizeof head + first * sizeof(SavedPerson), saved);
+    file.read(sizeof head + first * sizeof(SavedPerson), std::span<SavedPerson>(saved));
     const bool has_next = last < head.people;
     const std::uint64_t first_impulse = saved.empty() ? head.impulses : saved.front().first_impulse;
     const std::uint64_t last_impulse = has_next ? saved.back().first_impulse : head.impulses;
     if (has_next) saved.pop_back();
-    require(first_impulse <= last_impulse && last_impulse <= head.impulses, "damaged");
+    file.require(first_impulse <= last_impulse && last_impulse <= head.impulses, "damaged");
     std::vector<ImpulseRecord> impulses(static_cast<std::size_t>(last_impulse - first_impulse));
     file.read(sizeof head + head.people * sizeof(SavedPerson) + first_impulse * sizeof(ImpulseRecord),
-              impulses);
+              std::span<ImpulseRecord>(impulses));
     std::uint64_t check = check_of(saved) + check_of(impulses);
     MPI_Allreduce(MPI_IN_PLACE, &check, 1, MPI_UINT64_T, MPI_SUM, comm_);
-    require(check == head.check, "damaged: its checksum is wrong");
+    file.require(check == head.check, "damaged: its checksum is wrong");
 
     std::unordered_set<std::uint64_t> numbers;
     bool are_fit = true;
@@ -281,7 +200,7 @@ void Region::load(const std::string& path)
     for (const ImpulseRecord& impulse : impulses)
         are_fit = are_fit && std::isfinite(impulse.normal) && std::isfinite(impulse.tangent) &&
                   (impulse.is_wall == 0 || impulse.b < scene.discs.segments.size());
-    require(are_fit, "holds a person or an impulse that no crowd has");
+    file.require(are_fit, "holds a person or an impulse that no crowd has");
 
     std::vector<PersonRecord> coming(saved.size());
     std::transform(saved.begin(), saved.end(), coming.begin(),

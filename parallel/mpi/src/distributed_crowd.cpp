@@ -3,11 +3,11 @@
 
 #include <array>
 #include <cstdio>
-#include <cstring>
 #include <numbers>
 #include <unordered_set>
 #include <vector>
 
+#include "maths/hash.h"
 #include "motley/core/invalid_input.h"
 #include "region.h"
 #include "solver_access.h"
@@ -39,29 +39,13 @@ const char* unfit_in(const Scene& scene)
     return "";
 }
 
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value)
-{
-    // As splitmix64 does: every bit of the value moves about half of the result.
-    hash += value + 0x9E3779B97F4A7C15ULL;
-    hash = (hash ^ (hash >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    hash = (hash ^ (hash >> 27)) * 0x94D049BB133111EBULL;
-    return hash ^ (hash >> 31);
-}
-
 std::uint64_t hash_of(const SceneCore& scene, std::uint64_t number, BodyId body)
 {
     const PersonState state = read_state(scene, body.slot);
-    std::uint64_t hash = mix(0, number);
-    const auto add = [&](const auto& value) {
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &value, sizeof value);
-        hash = mix(hash, bits);
-    };
-    for (const PoseReal value :
-         {state.pose.position.x, state.pose.position.y, state.pose.position.z, state.pose.yaw})
-        add(value);
-    for (const float value : state.velocity) add(value);
-    return hash;
+    const Vec3<PoseReal>& at = state.pose.position;
+    const std::array<PoseReal, 4> pose{at.x, at.y, at.z, state.pose.yaw};
+    const std::uint64_t hash = hash_bytes(mix(0, number), pose.data(), pose.size());
+    return hash_bytes(hash, state.velocity.data(), state.velocity.size());
 }
 
 MPI_Comm duplicate(MPI_Comm comm)

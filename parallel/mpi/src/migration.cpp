@@ -3,8 +3,8 @@
 #include <numeric>
 
 #include "region.h"
+#include "shared_file.h"
 #include "stopwatch.h"
-#include "stores/growth.h"
 
 namespace motley {
 namespace {
@@ -71,24 +71,22 @@ template <class Record>
 std::vector<Record> Region::exchange(const std::vector<std::vector<Record>>& outgoing)
 {
     const auto ranks = static_cast<std::size_t>(ranks_);
-    std::vector<int> send_bytes(ranks), send_at(ranks), take_bytes(ranks), take_at(ranks);
+    std::vector<int> sent(ranks), sent_at(ranks), taken(ranks), taken_at(ranks);
     std::vector<Record> all;
     for (std::size_t rank = 0; rank < ranks; ++rank) {
-        send_at[rank] = static_cast<int>(all.size() * sizeof(Record));
-        send_bytes[rank] = static_cast<int>(outgoing[rank].size() * sizeof(Record));
+        sent_at[rank] = static_cast<int>(all.size());
+        sent[rank] = static_cast<int>(outgoing[rank].size());
         all.insert(all.end(), outgoing[rank].begin(), outgoing[rank].end());
-        if (static_cast<int>(rank) != rank_) figures.moved_bytes += send_bytes[rank];
+        if (static_cast<int>(rank) != rank_)
+            figures.moved_bytes += static_cast<std::int64_t>(sizeof(Record) * outgoing[rank].size());
     }
-    MPI_Alltoall(send_bytes.data(), 1, MPI_INT, take_bytes.data(), 1, MPI_INT, comm_);
-    int bytes = 0;
-    for (std::size_t rank = 0; rank < ranks; ++rank) {
-        take_at[rank] = bytes;
-        bytes += take_bytes[rank];
-    }
-    std::vector<Record> taken(static_cast<std::size_t>(bytes) / sizeof(Record));
-    MPI_Alltoallv(all.data(), send_bytes.data(), send_at.data(), MPI_BYTE, taken.data(), take_bytes.data(),
-                  take_at.data(), MPI_BYTE, comm_);
-    return taken;
+    MPI_Alltoall(sent.data(), 1, MPI_INT, taken.data(), 1, MPI_INT, comm_);
+    std::exclusive_scan(taken.begin(), taken.end(), taken_at.begin(), 0);
+    std::vector<Record> coming(static_cast<std::size_t>(taken_at.back() + taken.back()));
+    const RecordType<Record> type;
+    MPI_Alltoallv(all.data(), sent.data(), sent_at.data(), type.get(), coming.data(), taken.data(),
+                  taken_at.data(), type.get(), comm_);
+    return coming;
 }
 
 void Region::leave_copies_out(SceneCore& scene)
@@ -129,6 +127,17 @@ void Region::move_people(SceneCore& scene, const DiscStrips& strips, CarriedImpu
     figures.people = static_cast<std::int64_t>(people.size());
 }
 
+ImpulseRecord Region::record_of(const SceneCore& scene, std::uint32_t row, std::uint32_t other, bool is_wall,
+                                const CarriedImpulses::Impulse& impulse)
+{
+    const auto number_of = [&](std::uint32_t of) {
+        return scene.discs.numbers[scene.bodies.rows(BodyKind::planar).slot[of]];
+    };
+    return {number_of(row), is_wall ? std::uint64_t{other} : number_of(other),
+            impulse.normal, impulse.tangent,
+            impulse.side,   is_wall ? 1U : 0U};
+}
+
 /// Takes out the impulses of contacts that another rank will find, and of people whose rows change, as the records that
 /// go to each rank.
 std::vector<std::vector<ImpulseRecord>> Region::take_out_impulses(const SceneCore& scene,
@@ -136,19 +145,16 @@ std::vector<std::vector<ImpulseRecord>> Region::take_out_impulses(const SceneCor
 {
     std::vector<std::vector<ImpulseRecord>> records(static_cast<std::size_t>(ranks_));
     const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
-    const std::vector<std::uint64_t>& numbers = scene.discs.numbers;
     const auto stays = [&](std::uint32_t row) {
         return !is_copy(slots[row]) && owners_[strip_of_[row]] == rank_;
     };
-    carried.take_out(
-        [&](std::uint32_t row, std::uint32_t other, bool is_wall, const CarriedImpulses::Impulse& impulse) {
-            const int finder = owners_[is_wall ? strip_of_[row] : std::min(strip_of_[row], strip_of_[other])];
-            if (finder == rank_ && stays(row) && (is_wall || stays(other))) return false;
-            records[static_cast<std::size_t>(finder)].push_back(
-                {numbers[slots[row]], is_wall ? std::uint64_t{other} : numbers[slots[other]], impulse.normal,
-                 impulse.tangent, impulse.side, is_wall ? 1U : 0U});
-            return true;
-        });
+    carried.take_out([&](std::uint32_t row, std::uint32_t other, bool is_wall,
+                         const CarriedImpulses::Impulse& impulse) {
+        const int finder = owners_[is_wall ? strip_of_[row] : std::min(strip_of_[row], strip_of_[other])];
+        if (finder == rank_ && stays(row) && (is_wall || stays(other))) return false;
+        records[static_cast<std::size_t>(finder)].push_back(record_of(scene, row, other, is_wall, impulse));
+        return true;
+    });
     return records;
 }
 
@@ -190,6 +196,7 @@ void Region::take_in_people(SceneCore& scene, std::span<const PersonRecord> comi
     for (std::size_t i = 0; i < coming.size(); ++i) {
         const BodyId body = bodies[i];
         write_person(scene, body.slot, coming[i]);
+        if (coming[i].user_data != 0) scene_.set_user_data(body, coming[i].user_data);
         is_copy_[body.slot] = coming[i].is_copy != 0 ? 1 : 0;
         if (coming[i].is_copy != 0) {
             above_.people.push_back(body);  // in their order once they are sorted

@@ -1,8 +1,6 @@
 // See person_record.h.
 #include "person_record.h"
 
-#include "stores/growth.h"
-
 namespace motley {
 namespace {
 
@@ -55,9 +53,6 @@ void write_person(SceneCore& scene, std::uint32_t slot, const PersonRecord& pers
     write_state(scene, slot, person.state);
     scene.discs.numbers[slot] = person.number;
     scene.discs.set_shape(slot, person.shape);
-    if (person.user_data == 0 && slot >= scene.user_data.size()) return;
-    if (slot >= scene.user_data.size()) scene.user_data.resize(scene.bodies.slot_count());
-    scene.user_data[slot] = person.user_data;
 }
 
 }  // namespace motley

@@ -30,7 +30,7 @@ PersonState read_state(const SceneCore& scene, std::uint32_t slot);
 void write_state(SceneCore& scene, std::uint32_t slot, const PersonState& state);
 /// `is_copy` is left to the caller.
 PersonRecord read_person(const SceneCore& scene, std::uint32_t slot);
-/// Writes a person into a planar body that was added for it.
+/// Writes a person, but for the host's own number of it, into a planar body that was added for it.
 void write_person(SceneCore& scene, std::uint32_t slot, const PersonRecord& person);
 
 /// An impulse that waits for its contact to be found again, by the numbers of its people.

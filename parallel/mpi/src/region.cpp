@@ -64,7 +64,7 @@ void Region::renew_copies(SceneCore& scene)
 void Region::agree(SearchVote& vote)
 {
     const Stopwatch watch(figures.seconds_agreeing);
-    // Copies have discs too.
+    // Not vote.discs, which counts copies as well.
     std::array<std::int64_t, 4> sums{static_cast<std::int64_t>(people.size()), vote.leaving, vote.late,
                                      vote.must_search ? 1 : 0};
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_INT64_T, MPI_SUM, comm_);

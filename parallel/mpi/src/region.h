@@ -23,8 +23,9 @@ class Region final : public RegionLink {
     std::unordered_map<std::uint64_t, std::uint32_t> index_of;  ///< in `people`, by number
 
     [[nodiscard]] MPI_Comm comm() const { return comm_; }
-    /// Whether something has been sent since begin_step(), and all ranks have refused this step.
     void begin_step() { has_spoken_ = refused_together_ = false; }
+    /// Whether this rank, if its step is refused now, is waited for: it has sent something since begin_step(), and the others have
+    /// not refused the step too.
     [[nodiscard]] bool has_left_others_waiting() const { return has_spoken_ && !refused_together_; }
     /// Takes a person off the list; the body stays.
     void forget_person(std::uint64_t number);
@@ -85,7 +86,8 @@ class Region final : public RegionLink {
 
     [[nodiscard]] int rank_of(std::size_t band) const;
     void deal_out(const DiscStrips& strips);
-    void find_neighbours(std::size_t bands);
+    static ImpulseRecord record_of(const SceneCore& scene, std::uint32_t row, std::uint32_t other,
+                                   bool is_wall, const CarriedImpulses::Impulse& impulse);
     template <class Record>
     std::vector<Record> exchange(const std::vector<std::vector<Record>>& outgoing);
     std::vector<std::vector<ImpulseRecord>> take_out_impulses(const SceneCore& scene,

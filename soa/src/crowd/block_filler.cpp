@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "stores/disc_fields.h"
+#include "stores/growth.h"
 
 namespace motley {
 

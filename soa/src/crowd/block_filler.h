@@ -2,14 +2,12 @@
 // neither of the two bodies. At most 32 blocks are open at a time, so that contacts stay near their neighbours.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <vector>
 
 #include "stores/disc_store.h"
-#include "stores/growth.h"
 
 namespace motley {
 

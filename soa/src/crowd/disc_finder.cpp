@@ -8,6 +8,7 @@
 #include "motley/core/invalid_input.h"
 #include "scene/wall_ends.h"
 #include "stores/disc_fields.h"
+#include "stores/growth.h"
 
 namespace motley {
 namespace {
@@ -164,7 +165,7 @@ void DiscFinder::place_segments(const DiscStore& discs)
         segments_[0].push_back(segment);
         const std::int32_t low = strips.strip_at(std::min(segment.from.y, segment.to.y) - reach);
         const std::int32_t high = strips.strip_at(std::max(segment.from.y, segment.to.y) + reach);
-        for (std::size_t band = band_of(low); band <= band_of(high); ++band)
+        for (std::size_t band = strips.band_of(low); band <= strips.band_of(high); ++band)
             segments_[band].push_back(segment);
     }
 }
@@ -193,7 +194,7 @@ void DiscFinder::find(SceneCore& scene, std::size_t band, int worker)
 
 void DiscFinder::leave(DiscStore& discs, std::size_t band)
 {
-    list_rows(discs, first_place(band), first_place(band + 1));
+    list_rows(discs, strips.first_place(band), strips.first_place(band + 1));
     for_each_disc_blocks(discs.bands[band], [](auto, DiscBlocks& blocks) { blocks.count = 0; });
     discs.bands[band].half_awake = 0;
 }
@@ -203,7 +204,7 @@ std::size_t DiscFinder::numbers_of(const SceneCore& scene, std::size_t band) con
     // Contacts of discs that reach far are with any disc: rows are their numbers.
     if (band == 0) return strips.wide().empty() ? 0 : scene.bodies.rows(BodyKind::planar).size();
     const auto last_band = static_cast<std::size_t>(strips.band_count());
-    return first_place(std::min(band + 1, last_band) + 1) - first_place(band);
+    return strips.first_place(std::min(band + 1, last_band) + 1) - strips.first_place(band);
 }
 
 void DiscFinder::begin_fillers(DiscBand& band, Worker& worker, std::size_t numbers)

@@ -140,10 +140,8 @@ class DiscFinder {
     std::size_t list_late_pairs(const SceneCore& scene, const PlacedDisc& me, std::size_t band,
                                 LateList& list);
     void list_late_walls(const SceneCore& scene, const PlacedDisc& me, std::size_t band, LateList& list);
-    [[nodiscard]] std::uint32_t first_place(std::size_t band) const { return strips.first_place(band); }
     /// How many discs a band has and the next one has, whose numbers they get among its contacts.
     [[nodiscard]] std::size_t numbers_of(const SceneCore& scene, std::size_t band) const;
-    [[nodiscard]] std::size_t band_of(std::int32_t strip) const { return strips.band_of(strip); }
     void find_in_strips(SceneCore& scene, std::size_t band, Worker& worker);
     void find_wide(SceneCore& scene, Worker& worker);
     void count_pairs(const DiscStore& discs, std::size_t more);

@@ -2,6 +2,7 @@
 #include "crowd/disc_split.h"
 
 #include "stores/disc_fields.h"
+#include "stores/growth.h"
 
 namespace motley {
 namespace {

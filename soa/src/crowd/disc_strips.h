@@ -52,8 +52,9 @@ struct PlacedDisc {
 class DiscStrips {
   public:
     static constexpr int buckets = 320;  ///< of reaches, eight an octave
+    /// Where some discs are, and how many reach how far.
     struct Measured {
-        Vec2<double> low{1e300, 1e300}, high{-1e300, -1e300};
+        Vec2<double> low{1e300, 1e300}, high{-1e300, -1e300};  ///< m, world: corners
         std::int64_t discs = 0;
         std::array<std::int32_t, buckets> reaches{};
     };
@@ -90,16 +91,14 @@ class DiscStrips {
     void sort(const SceneCore& scene, std::int64_t group);
     /// Divides the strips into bands of some hundred discs.
     void divide();
-    /// Where other scenes have discs in the same strips: how many there are in each strip of this scene, besides `is_left_out`
-    /// and the wide ones, whose number is returned...
-    template <class IsLeftOut>
-    std::int64_t count_by_strip(const SceneCore& scene, const IsLeftOut& is_left_out)
+    /// Where other scenes have discs in the same strips: how many there are in each strip of this scene, besides the wide ones,
+    /// whose number is returned...
+    std::int64_t count_by_strip(const SceneCore& scene)
     {
         in_strip_.assign(static_cast<std::size_t>(strips_), 0);
         std::int64_t wide = 0;
         for (std::int64_t chunk = 0; chunk < chunks_; ++chunk) {
             for_each_disc(scene, chunk, [&](std::uint32_t row, const BodyRows& rows) {
-                if (is_left_out(rows.slot[row])) return;
                 const DiscAnchor& anchor = scene.discs.found_at[row];
                 const bool is_wide =
                     scene.discs.shapes[rows.slot[row]].radius + anchor.skin > frame_.most_reach;

@@ -85,7 +85,7 @@ void DiscFinder::cut_leaving_into_bands(const DiscStore& discs)
         list.last = next;
     };
     for (std::size_t band = 1; band < discs.band_count; ++band)
-        take_below(late_[band], first_place(band + 1));
+        take_below(late_[band], strips.first_place(band + 1));
     take_below(late_[0], UINT32_MAX);
     // Each list gets the room of the longest, so that a step to come seldom allocates.
     std::size_t room = 64;
@@ -172,7 +172,7 @@ std::size_t DiscFinder::list_late_pairs(const SceneCore& scene, const PlacedDisc
     const double reach = static_cast<double>(me.reach) + static_cast<double>(discs.late_drift) +
                          static_cast<double>(std::max(strips.most_reach(), discs.late_reach));
     for (std::int32_t s = strips.strip_at(me.across - reach); s <= strips.strip_at(me.across + reach); ++s) {
-        const std::size_t owner = std::min(band, band_of(s));
+        const std::size_t owner = std::min(band, strips.band_of(s));
         strips.for_each_between(s, me.along - reach, me.along + reach,
                                 [&](const PlacedDisc& placed) { try_pair(placed, owner); });
     }
@@ -190,8 +190,8 @@ void DiscFinder::list_late_walls(const SceneCore& scene, const PlacedDisc& me, s
     const PlacedDisc before{then.x, then.y, me.radius + was.skin, me.radius, me.inverse_mass, me.row};
     const double reach = static_cast<double>(me.reach) + static_cast<double>(discs.wall_skin);
     const auto own = static_cast<std::ptrdiff_t>(list.contacts.size());
-    const std::size_t last = band_of(strips.strip_at(me.across + reach));
-    for (std::size_t near = band_of(strips.strip_at(me.across - reach)); near <= last; ++near) {
+    const std::size_t last = strips.band_of(strips.strip_at(me.across + reach));
+    for (std::size_t near = strips.band_of(strips.strip_at(me.across - reach)); near <= last; ++near) {
         for (const PlacedSegment& segment : segments_[near]) {
             if (!is_near(discs, segment, me) || is_near(discs, segment, before)) continue;
             const std::uint64_t key = late_wall_key(me.row, segment.index);
@@ -212,7 +212,8 @@ bool DiscFinder::add_late(SceneCore& scene, std::size_t band, int worker)
     DiscBand& found = scene.discs.bands[band];
     const std::size_t bodies =
         band == 0 ? scene.bodies.rows(BodyKind::planar).size() : numbers_of(scene, band);
-    const BodyNumbers numbers = band == 0 ? BodyNumbers{} : BodyNumbers{places_.data(), first_place(band)};
+    const BodyNumbers numbers =
+        band == 0 ? BodyNumbers{} : BodyNumbers{places_.data(), strips.first_place(band)};
     bool is_begun = false;
     const auto add_of = [&](const LateList& list) {
         for (const LateContact& contact : list.contacts) {
