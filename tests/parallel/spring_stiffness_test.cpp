@@ -258,6 +258,55 @@ TEST(Armature, BesideALightLinkGivesNoEnergy)
     }
 }
 
+/// A spring that turns a rotor swings what hangs on them by a light link. All energy comes from the spring: k 1^2 / 2.
+TEST(Armature, WarmStartsDoNotThrowALightLink)
+{
+    for (const float rotor : {0.0F, 0.02F, 0.2F}) {
+        Scene scene;
+        const BodyId link = scene.add_body(box({0, 0, 0}, 0.002F)), arm = scene.add_body(box({0.5, 0, 0}));
+        hang_on(scene, scene.ground(), link,
+                {.spring_stiffness = 100, .spring_target = 1, .armature = rotor});
+        scene.add_joint(FixedDefinition{link, arm, {{0.25F, 0, 0}}, {{-0.25F, 0, 0}}});
+        Solver solver;
+        double most = 0;
+        for (int step = 0; step < 600; ++step) {
+            ASSERT_EQ(solver.step(scene, frame_time).status, StepStatus::done);
+            most = std::max(most, scene.errors().kinetic_energy);
+        }
+        EXPECT_LT(most, 0.5 * 100) << rotor;
+    }
+}
+
+/// Two heavy bodies turn in a cross of two hinges with limits, which weighs nearly nothing, as the links of people do. Its
+/// limits bear all torques, and may take energy from what turns but never give any.
+TEST(Torque, ThroughALightCrossGivesNoEnergy)
+{
+    for (const float mass : {0.1F, 1e-3F, 1e-5F}) {
+        Scene scene;
+        const BodyId one = scene.add_body(box({0, 0, 0}, 10)), cross = scene.add_body(box({0.5, 0, 0}, mass)),
+                     two = scene.add_body(box({1, 0, 0}, 10));
+        const auto join = [&](BodyId a, BodyId b, int axis) {
+            const JointFrame at_a{{0.25F, 0, 0}, axis_along(axis)}, at_b{{-0.25F, 0, 0}, axis_along(axis)};
+            scene.add_joint(HingeDefinition{a, b, at_a, at_b});
+            scene.add_joint(TwistDriveDefinition{
+                .body_a = a, .body_b = b, .frame_a = at_a, .frame_b = at_b, .lower = -0.5F, .upper = 0.5F});
+        };
+        join(one, cross, 2);
+        join(cross, two, 1);
+        scene.set_velocity(two, {0, 3, 2}, {6, -15, 18});
+        const double at_start = scene.errors().kinetic_energy;
+        Solver solver;
+        double most = 0;
+        for (int step = 0; step < 1200; ++step) {
+            const StepReport report = solver.step(scene, frame_time);
+            ASSERT_EQ(report.status, StepStatus::done);
+            ASSERT_EQ(report.bodies_contained, 0) << mass;
+            most = std::max(most, scene.errors().kinetic_energy);
+        }
+        EXPECT_LT(most, 1.01 * at_start) << mass;
+    }
+}
+
 /// A fixed joint has one stiffness for all of its rows. One that gives in translation by one frequency and in rotation by
 /// another, or by none, is a point servo beside a rotation lock.
 TEST(SpringStiffness, OfTranslationAndRotationApartIsAPointServoBesideARotationLock)

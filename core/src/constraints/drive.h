@@ -37,6 +37,7 @@ struct Drive : ConstraintTraits {
     using Definition = DriveDefinition<drive_axis>;
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr bool slides = drive_axis == DriveAxis::slide;
+    static constexpr bool has_torque = !slides;
     static constexpr bool is_euler = drive_axis == DriveAxis::euler;
     /// Few joints have Euler angles.
     static constexpr bool is_rare = is_euler;
@@ -205,6 +206,25 @@ struct Drive : ConstraintTraits {
         return row;
     }
 
+    template <class Real, class Row, class Impulse>
+    static Real torque(const Row& row, const Impulse& impulse)
+    {
+        Real length(0.5F);  // t of a twist turns half as far as each body
+        if constexpr (is_euler) {
+            const Vec3<Real> n = cross(axis_z(row.start_frame_b), axis_x(row.start_frame_a));
+            length = row.which.y + (row.which.x + row.which.z) * euler_length(n);
+        }
+        return length * absolute(impulse.motor + impulse.spring + impulse.limit);
+    }
+
+    template <class Impulse, class Real>
+    static void scale(Impulse& impulse, const Real& share)
+    {
+        impulse.motor = share * impulse.motor;
+        impulse.spring = share * impulse.spring;
+        impulse.limit = share * impulse.limit;
+    }
+
     template <class Real, class Row, class Impulse, class Substep, class A, class B>
     static void prepare_substep(const Row& row, const Impulse& impulse, Substep& substep, const A& a,
                                 const B& b)
@@ -321,16 +341,21 @@ struct Drive : ConstraintTraits {
         if (angle == EulerAngle::y) return std::atan2(dot(x_a, z_b), std::sqrt(dot(n, n)));
         return std::atan2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));
     }
+    /// The length of t of the Euler angles x and z. It must never be shorter than 1, or the impulse that reaches a given
+    /// speed along t would grow without bound. Within 1.5 degrees of a right angle of y it, 1 / |n|, is held at 38.
+    template <class Real>
+    static Real euler_length(const Vec3<Real>& n)
+    {
+        return minimum(Real(1) / square_root(maximum(dot(n, n), Real(1e-30F))), Real(38));
+    }
     /// t and C of the Euler angle of each lane.
     template <class Real, class Substep>
     static void build_euler(const Which<Real>& which, const Quat<Real>& frame_a, const Quat<Real>& frame_b,
                             Substep& substep)
     {
         const Vec3<Real> x_a = axis_x(frame_a), z_b = axis_z(frame_b), n = cross(z_b, x_a);
-        // t must never be shorter than 1, or the impulse that reaches a given speed along it would grow without bound.
-        // Within 1.5 degrees of a right angle of y the length of t of x and z, 1 / |n|, is held at 38.
         const Real over_length = Real(1) / square_root(maximum(dot(n, n), Real(1e-30F)));
-        const Real steepness = minimum(over_length, Real(38));
+        const Real steepness = euler_length(n);
         substep.axis = (which.x * steepness * over_length) * cross(n, z_b) + (which.y * over_length) * n +
                        (which.z * steepness * over_length) * cross(x_a, n);
         const Real x = full_arc_tangent2(-dot(axis_y(frame_a), z_b), dot(axis_z(frame_a), z_b)),

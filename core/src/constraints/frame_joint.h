@@ -41,6 +41,7 @@ struct FrameJoint : ConstraintTraits {
     static constexpr int angular_rows = rows_of(angular_lock);
     static constexpr int rows = linear_rows + angular_rows;
     static constexpr bool pulls_at_arms = linear_rows > 0;
+    static constexpr bool has_torque = angular_rows > 0;
     static constexpr int equality_count = rows;
     static constexpr bool locks_point = linear_lock == LinearLock::point;
 
@@ -143,6 +144,20 @@ struct FrameJoint : ConstraintTraits {
             meet_half_way(arm_a, arm_b, row.start.separation);
         }
         return {arm_a, arm_b, -push, push};
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Real torque(const Row&, const Impulse& impulse)
+    {
+        Real sum(0);
+        for (int i = linear_rows; i < rows; ++i) sum = sum + absolute(impulse.lambda[i]);
+        return Real(0.5F) * sum;  // the rows turn half as far as each body
+    }
+
+    template <class Impulse, class Real>
+    static void scale(Impulse& impulse, const Real& share)
+    {
+        for (int i = 0; i < rows; ++i) impulse.lambda[i] = share * impulse.lambda[i];
     }
 
     template <class Real, class Row, class Impulse, class Substep, class A, class B>

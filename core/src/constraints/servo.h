@@ -171,6 +171,7 @@ struct PointServo : ConstraintTraits {
 struct AngularServo : ConstraintTraits {
     using Definition = AngularServoDefinition;
     static constexpr bool only_pulls = true;
+    static constexpr bool has_torque = true;
     static constexpr bool needs_bodies_that_turn = true;
 
     template <class Real>
@@ -233,6 +234,18 @@ struct AngularServo : ConstraintTraits {
             servo.target_velocity,
             {Real(step.substep) * servo.max_torque,
              softness_or(step, servo.hertz, servo.damping_ratio, Softness{0, 1, 0})}};
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Real torque(const Row&, const Impulse& impulse)
+    {
+        return absolute(impulse.turn.x) + absolute(impulse.turn.y) + absolute(impulse.turn.z);
+    }
+
+    template <class Impulse, class Real>
+    static void scale(Impulse& impulse, const Real& share)
+    {
+        impulse.turn = share * impulse.turn;
     }
 
     template <class Real, class Row, class Impulse, class Substep, class A, class B>

@@ -19,6 +19,7 @@ namespace motley {
 struct SwingLimit : ConstraintTraits {
     using Definition = SwingLimitDefinition;
     static constexpr bool needs_bodies_that_turn = true;
+    static constexpr bool has_torque = true;
 
     template <class Real>
     struct Parameters {
@@ -67,6 +68,18 @@ struct SwingLimit : ConstraintTraits {
         impulse.limit = Real(step.warm_start_scale) * memory.limit;
         return Row<Real, A::kind, B::kind>{to_world(pose.orientation_a, limit.axis_a),
                                            to_world(pose.orientation_b, limit.axis_b), limit.max_angle};
+    }
+
+    template <class Real, class Row, class Impulse>
+    static Real torque(const Row&, const Impulse& impulse)
+    {
+        return impulse.limit;
+    }
+
+    template <class Impulse, class Real>
+    static void scale(Impulse& impulse, const Real& share)
+    {
+        impulse.limit = share * impulse.limit;
     }
 
     template <class Real, class Row, class Impulse, class Substep, class A, class B>

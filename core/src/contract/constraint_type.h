@@ -32,6 +32,8 @@
 //     prepare(start, parameters, memory, a, b, impulse&) -> Row       see StepStart; writes the impulses to start from
 //     tension<Real>(row, impulse) -> Tension                          with pulls_at_arms: see tension.h
 //   each substep
+//     torque<Real>(row, impulse) -> Real                              with has_torque: norm of its angular impulses or more
+//     scale(impulse&, share)                                          with has_torque: keeps a share of the impulses
 //     prepare_substep<Real>(row, impulse, substep&, a, b)             J, C and K^-1 where the bodies are now
 //     warm_start<Real>(row, substep, impulse, a&, b&)                 v += M^-1 J^T lambda
 //     solve<Real>(step, in_sweep, substep, impulse&, a&, b&)          one sweep, as soft as `step` says: rigid to relax
@@ -51,6 +53,7 @@
 #include "maths/equality_row.h"
 #include "maths/step_constants.h"
 #include "maths/tension.h"
+#include "maths/torque.h"
 #include "maths/wrench.h"
 #include "motley/core/joint_report.h"
 #include "scene/joint_checks.h"
@@ -72,6 +75,8 @@ struct ConstraintTraits {
     static constexpr bool only_pulls = false;
     /// Pulls at the ends of arms, so that heavy loads make them stiff: has tension().
     static constexpr bool pulls_at_arms = false;
+    /// Has angular impulses, of which light bodies bear only so many: has torque() and scale(). See torque.h.
+    static constexpr bool has_torque = false;
     /// Is defined by points of the world: has world_points(definition), and start.from_world_points().
     static constexpr bool has_world_points = false;
     /// Rows of J that exact joints may lock.

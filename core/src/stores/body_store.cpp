@@ -9,6 +9,11 @@
 namespace motley {
 namespace {
 
+float trace_of(const Sym3<float>& i)
+{
+    return i.xx + i.yy + i.zz;
+}
+
 void set_quad(AlignedVector<float>& rows, std::size_t quad, float x, float y, float z, float w)
 {
     float* q = &rows[quad * 4];
@@ -227,6 +232,7 @@ void BodyStore::write(std::uint32_t slot, BodyRow where, const Content& content,
             if (kind == BodyKind::rigid) {
                 r.inertia[row] = inertia;
                 r.inverse_inertia[row] = inverse_of(inertia);
+                note_response(trace_of(r.inverse_inertia[row]));
                 refresh_world_inertia(row);
             }
             break;
@@ -258,6 +264,7 @@ void BodyStore::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
     } else if (where.kind() == BodyKind::rigid) {
         r.inertia[where.row()] = inertia;
         r.inverse_inertia[where.row()] = inverse_of(inertia);
+        note_response(trace_of(r.inverse_inertia[where.row()]));
         if (moves) refresh_world_inertia(where.row());
     }
 }
@@ -346,7 +353,10 @@ void BodyStore::derive()
             velocity[3] = 0;
             if (slot == 0) std::fill_n(&r.acceleration[4 * quads * row], 4 * quads, 0.0F);
             if (quads == 2) delta[7] = 1;
-            if (kind == BodyKind::rigid && slot != 0) r.inverse_inertia[row] = inverse_of(r.inertia[row]);
+            if (kind == BodyKind::rigid && slot != 0) {
+                r.inverse_inertia[row] = inverse_of(r.inertia[row]);
+                note_response(trace_of(r.inverse_inertia[row]));
+            }
             if (!moves) continue;
             velocity[3] = inverse_masses[slot];
             if (kind == BodyKind::planar) delta[3] = inverse_inertias[slot];

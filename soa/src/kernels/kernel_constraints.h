@@ -190,6 +190,29 @@ struct Kernels {
         }
     }
 
+    /// Before a substep: see torque.h. Few joints bear more than any body of the scene can: only those load their bodies,
+    /// which load_bodies() gives.
+    template <class LoadBodies>
+    [[gnu::always_inline]] static void bound_warm_start(const KernelContext& context, const Bundle& bundle,
+                                                        const LoadBodies& load_bodies)
+    {
+        if constexpr (Type::has_torque) {
+            const Lanes torque =
+                Type::template torque<Lanes>(load_row<Row>(bundle.row), load_row<Impulse>(bundle.impulse));
+            if (any(Lanes(context.step.substep * context.largest_response) * torque > Lanes(2))) [[unlikely]]
+                keep_share(context, bundle, torque, load_bodies);
+        }
+    }
+    template <class LoadBodies>
+    [[gnu::noinline, gnu::cold]] static void keep_share(const KernelContext& context, const Bundle& bundle,
+                                                        const Lanes& torque, const LoadBodies& load_bodies)
+    {
+        const auto [a, b] = load_bodies();
+        auto impulse = load_row<Impulse>(bundle.impulse);
+        Type::scale(impulse, bearable_share(a, b, torque, Lanes(context.step.substep)));
+        store_row(impulse, bundle.impulse);
+    }
+
     /// Makes the substep row, and applies the impulses of the last substep.
     [[gnu::always_inline]] static void begin_substep(const Bundle& bundle, A& a, B& b)
     {
@@ -207,6 +230,9 @@ struct Kernels {
         for (std::int32_t block = begin; block < end; ++block) {
             prefetch<sees_delta_once>(context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+                bound_warm_start(context, bundle, [&] {
+                    return std::pair{bundle.load_a(), bundle.load_b()};
+                });
                 A a = bundle.load_a();
                 B b = bundle.load_b();
                 begin_substep(bundle, a, b);
@@ -391,6 +417,10 @@ struct Kernels {
                                   std::int32_t block, float* body_a, float* body_b)
     {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+            bound_warm_start(context, bundle, [&] {
+                return std::pair{load_copy<kind_a>(body_a + bundle.lane),
+                                 load_copy<kind_b>(body_b + bundle.lane)};
+            });
             A a = load_copy<kind_a>(body_a + bundle.lane);
             B b = load_copy<kind_b>(body_b + bundle.lane);
             begin_substep(bundle, a, b);

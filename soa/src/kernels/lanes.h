@@ -22,6 +22,7 @@ class Mask {
   public:
     explicit Mask(xsimd::batch_bool<float, Arch> m) : bits(m) {}
     friend Mask operator&(const Mask& x, const Mask& y) { return Mask(x.bits & y.bits); }
+    friend bool any(const Mask& x) { return xsimd::any(x.bits); }
     xsimd::batch_bool<float, Arch> bits;
 };
 

@@ -2,4 +2,8 @@
 // Included inside an anonymous namespace, once by each file of kernels: see constraint_kernels.cpp.
 
 using Lanes = float;
+[[gnu::always_inline]] inline bool any(bool mask)
+{
+    return mask;
+}
 #include "kernels/quads_scalar.h"

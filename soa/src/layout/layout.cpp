@@ -366,6 +366,7 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
                                 static_cast<std::int32_t>(rows.size()),
                                 static_cast<BodyKind>(kind) != BodyKind::fixed};
     }
+    context.largest_response = scene.bodies.largest_response;
     context.bodies_are_far = swept > second_level_cache();
     overloaded_ = false;
     context.overloaded = &overloaded_;
