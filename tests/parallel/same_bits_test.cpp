@@ -24,8 +24,8 @@ struct Way {
 #ifdef __EMSCRIPTEN__
 // WebAssembly cannot take denormals for zero. x86 without the flags of float_environment.h makes these hashes too.
 constexpr std::uint64_t golden_of_projection = 9312123720246324464ULL;
-constexpr std::uint64_t goldens_of_joints[] = {3007604585695495585ULL, 12868755470557197933ULL,
-                                               8422437900052035028ULL, 5694374309584148385ULL};
+constexpr std::uint64_t goldens_of_joints[] = {6212924887990467569ULL, 15332721083419712818ULL,
+                                               3558981412929525637ULL, 8128546056720004152ULL};
 #else
 constexpr std::uint64_t golden_of_projection = 10622580740719753038ULL;
 constexpr std::uint64_t goldens_of_joints[] = {7186357405904876240ULL, 15142478083413072073ULL,

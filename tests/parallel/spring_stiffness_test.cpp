@@ -1,4 +1,5 @@
-// Springs and dampers in N m/rad and N m s/rad, and armatures (rotors). Independent evidence: closed forms.
+// Springs and dampers in N m/rad and N m s/rad, armatures (rotors), and torques through light bodies. Independent
+// evidence: closed forms, and energy that must not grow.
 #include <numbers>
 
 #include "swing.h"
@@ -258,7 +259,7 @@ TEST(Armature, BesideALightLinkGivesNoEnergy)
     }
 }
 
-/// A spring that turns a rotor swings what hangs on them by a light link. All energy comes from the spring: k 1^2 / 2.
+/// A spring turns a rotor and, by a light link, an arm. All energy is that of the spring at the start, k 1^2 / 2.
 TEST(Armature, WarmStartsDoNotThrowALightLink)
 {
     for (const float rotor : {0.0F, 0.02F, 0.2F}) {
@@ -277,8 +278,8 @@ TEST(Armature, WarmStartsDoNotThrowALightLink)
     }
 }
 
-/// Two heavy bodies turn in a cross of two hinges with limits, which weighs nearly nothing, as the links of people do. Its
-/// limits bear all torques, and may take energy from what turns but never give any.
+/// Two heavy bodies are joined by two hinges with limits, and the cross between the hinges weighs nearly nothing, like
+/// that of an ankle. The limits bear all torques; they may take energy from what turns but never give any.
 TEST(Torque, ThroughALightCrossGivesNoEnergy)
 {
     for (const float mass : {0.1F, 1e-3F, 1e-5F}) {

@@ -212,7 +212,7 @@ struct Drive : ConstraintTraits {
         Real length(0.5F);  // t of a twist turns half as far as each body
         if constexpr (is_euler) {
             const Vec3<Real> n = cross(axis_z(row.start_frame_b), axis_x(row.start_frame_a));
-            length = row.which.y + (row.which.x + row.which.z) * euler_length(n);
+            length = row.which.y + (row.which.x + row.which.z) * steepness(over_length(n));
         }
         return length * absolute(impulse.motor + impulse.spring + impulse.limit);
     }
@@ -341,12 +341,17 @@ struct Drive : ConstraintTraits {
         if (angle == EulerAngle::y) return std::atan2(dot(x_a, z_b), std::sqrt(dot(n, n)));
         return std::atan2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));
     }
-    /// The length of t of the Euler angles x and z. It must never be shorter than 1, or the impulse that reaches a given
-    /// speed along t would grow without bound. Within 1.5 degrees of a right angle of y it, 1 / |n|, is held at 38.
     template <class Real>
-    static Real euler_length(const Vec3<Real>& n)
+    static Real over_length(const Vec3<Real>& n)
     {
-        return minimum(Real(1) / square_root(maximum(dot(n, n), Real(1e-30F))), Real(38));
+        return Real(1) / square_root(maximum(dot(n, n), Real(1e-30F)));
+    }
+    /// The length of t of the Euler angles x and z, from 1 / |n|. It must never be shorter than 1, or the impulse that
+    /// reaches a given speed along t would grow without bound. Within 1.5 degrees of a right angle of y it is held at 38.
+    template <class Real>
+    static Real steepness(const Real& over_length)
+    {
+        return minimum(over_length, Real(38));
     }
     /// t and C of the Euler angle of each lane.
     template <class Real, class Substep>
@@ -354,10 +359,9 @@ struct Drive : ConstraintTraits {
                             Substep& substep)
     {
         const Vec3<Real> x_a = axis_x(frame_a), z_b = axis_z(frame_b), n = cross(z_b, x_a);
-        const Real over_length = Real(1) / square_root(maximum(dot(n, n), Real(1e-30F)));
-        const Real steepness = euler_length(n);
-        substep.axis = (which.x * steepness * over_length) * cross(n, z_b) + (which.y * over_length) * n +
-                       (which.z * steepness * over_length) * cross(x_a, n);
+        const Real over = over_length(n), steep = steepness(over);
+        substep.axis = (which.x * steep * over) * cross(n, z_b) + (which.y * over) * n +
+                       (which.z * steep * over) * cross(x_a, n);
         const Real x = full_arc_tangent2(-dot(axis_y(frame_a), z_b), dot(axis_z(frame_a), z_b)),
                    y = arc_tangent2(dot(x_a, z_b), square_root(dot(n, n))),
                    z = full_arc_tangent2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));

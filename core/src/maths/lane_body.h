@@ -349,6 +349,12 @@ Real inverse_or_zero(const Real& x)
     return select(usable, Real(1) / select(usable, x, Real(1)), Real(0));
 }
 
+template <class Real>
+Real trace(const Sym3<Real>& k)
+{
+    return k.xx + k.yy + k.zz;
+}
+
 /// The inverse of a symmetric matrix. It is divided by its trace first, because determinants of bodies of 5e-20 kg m2
 /// and of 1e10 kg m2 leave the range of a float. Zero where the determinant of the scaled matrix is lost in rounding.
 template <class Real>
@@ -363,7 +369,7 @@ Sym2<Real> inverse(const Sym2<Real>& k)
 template <class Real>
 Sym3<Real> inverse(const Sym3<Real>& k)
 {
-    const Real scale = inverse_or_zero(k.xx + k.yy + k.zz);
+    const Real scale = inverse_or_zero(trace(k));
     const Sym3<Real> m{scale * k.xx, scale * k.xy, scale * k.xz, scale * k.yy, scale * k.yz, scale * k.zz};
     const Real d = scale * inverse_or_zero(determinant(m));
     return {d * (m.yy * m.zz - m.yz * m.yz), d * (m.xz * m.yz - m.xy * m.zz),

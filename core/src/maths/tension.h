@@ -35,7 +35,7 @@ Real unbearable_tension(const LaneBody<Real, kind>& body, const Vec3<Real>& arm,
 {
     if constexpr (kind == BodyKind::rigid) {
         const Sym3<Real>& i = body.inverse_inertia;
-        const Real across = (i.xx + i.yy + i.zz) - inverse_or_zero(dot(arm, arm)) * dot(arm, i * arm);
+        const Real across = trace(i) - inverse_or_zero(dot(arm, arm)) * dot(arm, i * arm);
         const Real beyond = substep * dot(arm, push) - inverse_or_zero(across);
         return select(across > Real(0), maximum(beyond, Real(0)), Real(0));
     } else if constexpr (kind == BodyKind::planar) {

@@ -1,10 +1,10 @@
 // Warm starts of joints that turn bodies much lighter than what they turn, such as the cross of two hinges.
 //
-// An angular impulse T of a substep h acts about an axis that turns with the bodies. Applied again in the next substep,
-// it misses by up to |T| times the angle by which the axis has turned since, and makes the body turn by I^-1 of that.
-// Beyond h |T| = 2 I each substep turns it further than the last: a blow on a limit then grows a thousandfold within a
-// step, however exactly the sweeps solve. So no substep is warm started with more than that, and the sweeps find the
-// rest again.
+// The angular impulse T of a substep h acts about an axis that turns with the bodies. When the next substep is warm
+// started with it, the axis has turned by an angle of h w, and T misses by up to |T| h w. That changes the angular
+// velocity w of a body of inertia I by I^-1 |T| h w: by more than w itself where h |T| I^-1 is above 1, and the next
+// substep misses by more again. A blow on a limit then grows a thousandfold within a step, however exactly the sweeps
+// solve. So no substep is warm started with more than h |T| tr I^-1 = 2, and the sweeps find the rest again.
 #pragma once
 
 #include "maths/lane_body.h"
@@ -17,8 +17,7 @@ template <class Real, BodyKind kind>
 Real largest_response(const LaneBody<Real, kind>& body)
 {
     if constexpr (kind == BodyKind::rigid) {
-        const Sym3<Real>& i = body.inverse_inertia;
-        return i.xx + i.yy + i.zz;
+        return trace(body.inverse_inertia);
     } else {
         return Real(0);
     }

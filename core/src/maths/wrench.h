@@ -92,7 +92,7 @@ Real linear_size(const LaneBody<Real, BodyKind::fixed>&)
 template <class Real>
 Real angular_size(const LaneBody<Real, BodyKind::rigid>& body)
 {
-    return body.inverse_inertia.xx + body.inverse_inertia.yy + body.inverse_inertia.zz;
+    return trace(body.inverse_inertia);
 }
 template <class Real>
 Real angular_size(const LaneBody<Real, BodyKind::planar>& body)

@@ -4,15 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "maths/lane_body.h"
 #include "stores/growth.h"
 
 namespace motley {
 namespace {
-
-float trace_of(const Sym3<float>& i)
-{
-    return i.xx + i.yy + i.zz;
-}
 
 void set_quad(AlignedVector<float>& rows, std::size_t quad, float x, float y, float z, float w)
 {
@@ -231,8 +227,7 @@ void BodyStore::write(std::uint32_t slot, BodyRow where, const Content& content,
             r.orientation[row] = content.orientation;
             if (kind == BodyKind::rigid) {
                 r.inertia[row] = inertia;
-                r.inverse_inertia[row] = inverse_of(inertia);
-                note_response(trace_of(r.inverse_inertia[row]));
+                invert_inertia(row);
                 refresh_world_inertia(row);
             }
             break;
@@ -263,8 +258,7 @@ void BodyStore::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
         if (moves) r.delta[first + 3] = inverse_inertia;
     } else if (where.kind() == BodyKind::rigid) {
         r.inertia[where.row()] = inertia;
-        r.inverse_inertia[where.row()] = inverse_of(inertia);
-        note_response(trace_of(r.inverse_inertia[where.row()]));
+        invert_inertia(where.row());
         if (moves) refresh_world_inertia(where.row());
     }
 }
@@ -302,6 +296,14 @@ void BodyStore::free_row(BodyRow where)
     }
     r.slot[where.row()] = 0;
     r.free_rows.push_back(where.row());
+}
+
+void BodyStore::invert_inertia(std::uint32_t row)
+{
+    BodyRows& r = rows(BodyKind::rigid);
+    r.inverse_inertia[row] = inverse_of(r.inertia[row]);
+    // The trace is the same in every orientation, but for rounding.
+    largest_response = std::fmax(largest_response, 1.01F * trace(r.inverse_inertia[row]));
 }
 
 void BodyStore::refresh_world_inertia(std::uint32_t row)
@@ -353,10 +355,7 @@ void BodyStore::derive()
             velocity[3] = 0;
             if (slot == 0) std::fill_n(&r.acceleration[4 * quads * row], 4 * quads, 0.0F);
             if (quads == 2) delta[7] = 1;
-            if (kind == BodyKind::rigid && slot != 0) {
-                r.inverse_inertia[row] = inverse_of(r.inertia[row]);
-                note_response(trace_of(r.inverse_inertia[row]));
-            }
+            if (kind == BodyKind::rigid && slot != 0) invert_inertia(row);
             if (!moves) continue;
             velocity[3] = inverse_masses[slot];
             if (kind == BodyKind::planar) delta[3] = inverse_inertias[slot];

@@ -12,7 +12,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -179,7 +178,7 @@ class BodyStore {
     /// For each slot the inverse mass, 1/kg; kept while the body is contained, for its revival.
     AlignedVector<float> inverse_masses;
     std::vector<float> inverse_inertias;  ///< likewise, planar only
-    /// 1/(kg m2): at least the trace of the inverse inertia of any rigid body in whatever orientation; never falls.
+    /// 1/(kg m2): at least the trace of the inverse inertia of each rigid body that there is or was; see torque.h.
     float largest_response = 0;
 
     std::vector<Damping> dampings;  ///< for each slot; none for bodies that are not dynamic
@@ -234,8 +233,8 @@ class BodyStore {
     [[nodiscard]] Content read(BodyRow where) const;
     /// Gives a slot a row with this content and, if it is planar or rigid, this inertia.
     void write(std::uint32_t slot, BodyRow where, const Content& content, const Sym3<float>& inertia);
-    /// For largest_response.
-    void note_response(float trace) { largest_response = std::fmax(largest_response, 1.01F * trace); }
+    /// The inverse inertia of a rigid row from its inertia, and largest_response.
+    void invert_inertia(std::uint32_t row);
     /// Takes the inverse mass and inertia from a row, so that nothing moves it; or gives them back.
     void freeze(std::uint32_t slot);
     void thaw(std::uint32_t slot);

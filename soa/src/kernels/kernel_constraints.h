@@ -190,8 +190,8 @@ struct Kernels {
         }
     }
 
-    /// Before a substep: see torque.h. Few joints bear more than any body of the scene can: only those load their bodies,
-    /// which load_bodies() gives.
+    /// Keeps as much of the impulses as the bodies bear: see torque.h. Hardly any joint has more than the lightest body of
+    /// the scene bears, so that is looked at first, and only then the joint's own bodies, which load_bodies() returns.
     template <class LoadBodies>
     [[gnu::always_inline]] static void bound_warm_start(const KernelContext& context, const Bundle& bundle,
                                                         const LoadBodies& load_bodies)

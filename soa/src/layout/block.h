@@ -105,7 +105,7 @@ struct KernelContext {
     bool discs_are_measured = false;
     bool bodies_are_far = false;  ///< they exceed a core's cache: sweeps prefetch those of the next block
     BodyArrays bodies[body_kind_count];
-    float largest_response = 0;  ///< see BodyStore
+    float largest_response = 0;  ///< 1/(kg m2): see BodyStore
     /// Set by prepare where a joint pulls harder than a substep can follow: then `stiffen` must be run. See
     /// tension.h.
     std::atomic<bool>* overloaded = nullptr;
