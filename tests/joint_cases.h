@@ -254,6 +254,9 @@ struct JointCases<DriveDefinition<axis>> {
         stiff.spring_damping = axis == DriveAxis::slide ? 3.0F : 0.3F;
         damper.spring_damping = axis == DriveAxis::slide ? 5.0F : 0.5F;
         Definition rotor = limits, geared = stiff;
+        // One limit: where C lands on a limit exactly, rounding decides whether there is room, and a second landing turns
+        // what that makes of C into a speed, over a substep.
+        rotor.lower = -std::numeric_limits<float>::infinity();
         rotor.armature = axis == DriveAxis::slide ? 3.0F : 0.3F;
         geared.armature = 2 * rotor.armature;
         if (axis == DriveAxis::euler) {

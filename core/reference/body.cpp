@@ -48,9 +48,8 @@ Matrix6 Body::inverse_mass() const
             m(5, 5) = 1 / inertia(2, 2);
             break;
         case BodyModel::rigid: {
-            const Eigen::Matrix3d r = orientation.toRotationMatrix();
             m.topLeftCorner<3, 3>().diagonal().setConstant(1 / mass);
-            m.bottomRightCorner<3, 3>() = r * inertia.inverse() * r.transpose();
+            m.bottomRightCorner<3, 3>() = inertia_at(inertia_kept_at.value_or(orientation)).inverse();
             break;
         }
     }
@@ -77,24 +76,36 @@ void Body::accelerate(const Eigen::Vector3d& gravity, double h)
     velocity.tail<3>() /= 1 + h * angular_damping;
 }
 
+Eigen::Matrix3d Body::inertia_at(const Eigen::Quaterniond& turned) const
+{
+    const Eigen::Matrix3d r = turned.toRotationMatrix();
+    return r * inertia * r.transpose();
+}
+
 void Body::move_on(double seconds)
 {
     if (motion == BodyMotion::static_body) return;
-    // A body that turns by a radian or more keeps its angular velocity, and with it its energy.
-    if (motion == BodyMotion::kinematic_body || model != BodyModel::rigid ||
-        seconds * velocity.tail<3>().norm() >= 1) {
+    if (motion == BodyMotion::kinematic_body || model != BodyModel::rigid) {
         advance(velocity, seconds);
         return;
     }
-    const auto speed = [&](const Eigen::Quaterniond& turned, const Eigen::Vector3d& momentum) {
-        return Eigen::Vector3d(turned * (inertia.inverse() * (turned.conjugate() * momentum)));
-    };
-    const Eigen::Vector3d momentum = orientation * (inertia * (orientation.conjugate() * velocity.tail<3>()));
+    const Eigen::Quaterniond before = inertia_kept_at.value_or(orientation);
     Body half_way = *this;
     half_way.advance(velocity, seconds / 2);
-    velocity.tail<3>() = speed(half_way.orientation, momentum);
+    const Eigen::Matrix3d then = inertia_at(before), between = inertia_at(half_way.orientation).inverse();
+    double change = is_swept ? (then * between).trace() - 3 : 0;
+    if (contacts_made_at) change = std::max(change, (inertia_at(*contacts_made_at) * between).trace() - 3);
+    inertia_kept_at.reset();
+    if (change > 0.125) inertia_kept_at = before;
+    // A body that turns by a radian or more keeps its angular velocity, and with it its energy.
+    if (inertia_kept_at || seconds * velocity.tail<3>().norm() >= 1) {
+        advance(velocity, seconds);
+        return;
+    }
+    const Eigen::Vector3d momentum = then * velocity.tail<3>();
+    velocity.tail<3>() = between * momentum;
     advance(velocity, seconds);
-    velocity.tail<3>() = speed(orientation, momentum);
+    velocity.tail<3>() = inertia_at(orientation).inverse() * momentum;
 }
 
 }  // namespace motley::reference

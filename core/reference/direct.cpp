@@ -183,7 +183,9 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
     }
     for (const auto& [at, row] : rotors) {
         row->joint->wrench += wrench_of(row->block.jacobian, assembly.group(at).lambda);
+        const double before = row->joint->rotor_speed;
         row->joint->rotor_speed = speed(row->joint->a, row->joint->b, row->block.jacobian)(0);
+        row->joint->rotor_change = row->joint->rotor_speed - before;
     }
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         ContactRow& row = contacts[i];

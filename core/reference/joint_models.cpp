@@ -143,11 +143,16 @@ class DriveModel : public JointModel {
     {
         const std::vector<Eigen::VectorXd>& impulses = joint.impulses;
         const std::size_t motor = impulses.size() - 2;
-        return {impulses[motor](0), motor > 0 ? impulses[0](0) : 0, impulses[motor + 1](0), joint.rotor_lag};
+        return {impulses[motor](0), motor > 0 ? impulses[0](0) : 0, impulses[motor + 1](0), joint.rotor_lag,
+                joint.rotor_change};
     }
     [[nodiscard]] double rotor_lag_in(const float* memory) const override
     {
         return static_cast<double>(memory[3]);
+    }
+    [[nodiscard]] double rotor_change_in(const float* memory) const override
+    {
+        return static_cast<double>(memory[4]);
     }
     void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const override
     {

@@ -104,6 +104,7 @@ DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& set
             joint.memory = {&store.memory[i * stride], stride};
             joint.travelled = joint.model->travelled_in(joint.memory.data());
             joint.rotor_lag = joint.model->rotor_lag_in(joint.memory.data());
+            joint.rotor_change = joint.model->rotor_change_in(joint.memory.data());
             world.joints.push_back(std::move(joint));
         }
     });

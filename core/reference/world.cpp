@@ -144,6 +144,11 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
             if (block.armature > 0) row.response(0, 0) = 1 / row.mass(0, 0);
         }
         apply(joint, block.jacobian, row.impulse());
+        if (block.armature > 0 && i == first) {
+            apply(joint, block.jacobian, Eigen::VectorXd::Constant(1, -block.armature * joint.rotor_change));
+            joint.rotor_start = joint.rotor_speed;
+            joint.rotor_speed += joint.rotor_change;
+        }
     }
 }
 
@@ -221,7 +226,10 @@ void World::solve_block(BlockRow& row, double h, const SolverSettings& settings,
                          row.response.cwiseAbs().rowwise().sum().maxCoeff(), row.bound());
     }
     apply(joint, row.block.jacobian, to_bodies * (wanted - held));
-    if (rotor > 0) joint.rotor_speed = speed(joint.a, joint.b, row.block.jacobian)(0);
+    if (rotor > 0) {
+        joint.rotor_speed = speed(joint.a, joint.b, row.block.jacobian)(0);
+        joint.rotor_change = joint.rotor_speed - joint.rotor_start;
+    }
     row.impulse() = wanted;
     double& peak = row.joint->peaks[row.index];
     peak = std::max(peak, wanted(0));
@@ -238,9 +246,23 @@ World::Soft World::contact_softness(int a, int b, double h, const SolverSettings
     return softness((on_fixed ? 2 : 1) * hertz, settings.contact_damping_ratio, h);
 }
 
+void World::note_swept(int a, int b, bool is_contact)
+{
+    for (const int end : {a, b}) {
+        Body& body = bodies[static_cast<std::size_t>(end)];
+        body.is_swept = true;
+        if (is_contact) body.contacts_made_at = body.orientation;
+    }
+}
+
 /// Notes poses and the speeds along the blocks of joints when a step begins.
 void World::begin_step()
 {
+    for (Body& body : bodies) {
+        body.is_swept = false;
+        body.contacts_made_at.reset();
+        body.inertia_kept_at.reset();
+    }
     start_ = bodies;
     for (Joint& joint : joints) {
         joint.wrench.setZero();
@@ -409,10 +431,15 @@ void World::step(double dt, const SolverSettings& asked, const std::vector<Conta
     const bool soft_step = settings.method == Method::soft_step;
     begin_step();
     for (Joint& joint : joints) {
+        note_swept(joint.a, joint.b, joint.model->keeps_rows_of_start());
         for (Eigen::VectorXd& impulse : joint.impulses) impulse *= warm;
+        joint.rotor_change *= warm;
     }
     std::vector<ContactRow> contacts;
-    for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, warm));
+    for (const ContactPoint& point : points) {
+        contacts.push_back(begin_contact(point, warm));
+        note_swept(point.a, point.b, true);
+    }
 
     for (int substep = 0; substep < settings.substeps; ++substep) {
         for (Body& body : bodies) body.accelerate(eigen(settings.gravity), h);

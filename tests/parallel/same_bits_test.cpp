@@ -24,12 +24,12 @@ struct Way {
 #ifdef __EMSCRIPTEN__
 // WebAssembly cannot take denormals for zero. x86 without the flags of float_environment.h makes these hashes too.
 constexpr std::uint64_t golden_of_projection = 9312123720246324464ULL;
-constexpr std::uint64_t goldens_of_joints[] = {6212924887990467569ULL, 15332721083419712818ULL,
-                                               3558981412929525637ULL, 8128546056720004152ULL};
+constexpr std::uint64_t goldens_of_joints[] = {720222684841466771ULL, 4555609273397524596ULL,
+                                               8580421944631302937ULL, 7105669609101903565ULL};
 #else
 constexpr std::uint64_t golden_of_projection = 10622580740719753038ULL;
-constexpr std::uint64_t goldens_of_joints[] = {7186357405904876240ULL, 15142478083413072073ULL,
-                                               8929270383992991837ULL, 13503692928411437508ULL};
+constexpr std::uint64_t goldens_of_joints[] = {10179545230908251787ULL, 6786521053750159034ULL,
+                                               15305297318813190699ULL, 3449722352098199374ULL};
 #endif
 
 std::vector<Way> ways()

@@ -83,6 +83,7 @@ struct Drive : ConstraintTraits {
         /// m/s or rad/s, by which the joint is faster than its rotor: sweeps that have not converged leave them apart. A rotor
         /// that took the joint's speed when a step begins would gain energy out of nothing.
         Real rotor_lag;
+        Real rotor_change;  ///< m/s or rad/s: what the last substep added to the rotor's speed
     };
     /// What a sweep reads of a row.
     template <class Real>
@@ -114,7 +115,9 @@ struct Drive : ConstraintTraits {
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
         Real motor, spring, limit;
-        Real rotor_speed;  ///< m/s or rad/s: not an impulse, but the speed that the last sweep left
+        Real
+            rotor_change;  ///< m/s or rad/s, of the rotor in the substep: I_r times it is what it took from the bodies
+        Real rotor_speed;  ///< m/s or rad/s, as the last sweep left it
     };
 
     static void validate(const Definition& drive, const JointBodies& bodies)
@@ -200,6 +203,7 @@ struct Drive : ConstraintTraits {
         impulse.motor = warm * memory.motor;
         impulse.spring = warm * memory.spring;
         impulse.limit = warm * memory.limit;
+        impulse.rotor_change = warm * memory.rotor_change;
         SubstepRow<Real, A::kind, B::kind> here;
         build<Real>(row, here, a, b);
         impulse.rotor_speed = speed_of(here, a, b) - memory.rotor_lag;
@@ -214,7 +218,10 @@ struct Drive : ConstraintTraits {
             const Vec3<Real> n = cross(axis_z(row.start_frame_b), axis_x(row.start_frame_a));
             length = row.which.y + (row.which.x + row.which.z) * steepness(over_length(n));
         }
-        return length * absolute(impulse.motor + impulse.spring + impulse.limit);
+        // What a rotor takes from a light body is handed on by the rows at the body's other end, and these are warm started
+        // too: so it counts as that of three joints.
+        const Real of_rotor = Real(3) * row.in_sweep.armature * absolute(impulse.rotor_change);
+        return length * maximum(absolute(to_bodies(row.in_sweep.armature, impulse)), of_rotor);
     }
 
     template <class Impulse, class Real>
@@ -223,6 +230,7 @@ struct Drive : ConstraintTraits {
         impulse.motor = share * impulse.motor;
         impulse.spring = share * impulse.spring;
         impulse.limit = share * impulse.limit;
+        impulse.rotor_change = share * impulse.rotor_change;
     }
 
     template <class Real, class Row, class Impulse, class Substep, class A, class B>
@@ -234,9 +242,9 @@ struct Drive : ConstraintTraits {
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
+    static void warm_start(const Row& row, const Substep& substep, const Impulse& impulse, A& a, B& b)
     {
-        push(substep, impulse.motor + impulse.spring + impulse.limit, a, b);
+        push(substep, to_bodies(row.in_sweep.armature, impulse), a, b);
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
@@ -245,9 +253,10 @@ struct Drive : ConstraintTraits {
     {
         const Real before = impulse.motor + impulse.spring + impulse.limit;
         Real speed = speed_of(substep, a, b);
-        const Real excess = speed - impulse.rotor_speed;
+        const Real rotor_speed = substep.start_speed + impulse.rotor_change;
+        const Real excess = speed - rotor_speed;
         const Real to_rotor = in_sweep.armature * substep.share * excess;
-        speed = select(in_sweep.armature > Real(0), impulse.rotor_speed + substep.share * excess, speed);
+        speed = select(in_sweep.armature > Real(0), rotor_speed + substep.share * excess, speed);
 
         const auto change_to = [&](Real& held, const Real& wanted) {
             speed = speed + substep.response * (wanted - held);
@@ -264,6 +273,7 @@ struct Drive : ConstraintTraits {
         change_to(impulse.limit, range_impulse(step, substep.value, in_sweep.lower, in_sweep.upper, speed,
                                                substep.effective_mass, impulse.limit));
 
+        impulse.rotor_change = speed - substep.start_speed;
         impulse.rotor_speed = speed;
         push(substep, substep.share * (impulse.motor + impulse.spring + impulse.limit - before) - to_rotor, a,
              b);
@@ -294,16 +304,16 @@ struct Drive : ConstraintTraits {
         SubstepRow<Real, decltype(a)::kind, decltype(b)::kind> now;
         build<Real>(row, now, a, b);
         const Real lag = speed_of(now, a, b) - impulse.rotor_speed;
-        return {impulse.motor, impulse.spring, impulse.limit,
-                select(row.in_sweep.armature > Real(0), lag, Real(0))};
+        const auto has_rotor = row.in_sweep.armature > Real(0);
+        return {impulse.motor, impulse.spring, impulse.limit, select(has_rotor, lag, Real(0)),
+                select(has_rotor, impulse.rotor_change, Real(0))};
     }
 
     template <class Real, class Row, class Substep, class Impulse>
     static Wrench<Real> wrench(const Row& row, const Substep& substep, const Impulse& impulse)
     {
         const Vec3<Real> none{Real(0), Real(0), Real(0)};
-        const Real to_rotor = row.in_sweep.armature * (impulse.rotor_speed - substep.start_speed);
-        const Vec3<Real> effort = (impulse.motor + impulse.spring + impulse.limit - to_rotor) * substep.axis;
+        const Vec3<Real> effort = to_bodies(row.in_sweep.armature, impulse) * substep.axis;
         return slides ? Wrench<Real>{effort, none} : Wrench<Real>{none, effort};
     }
 
@@ -330,6 +340,12 @@ struct Drive : ConstraintTraits {
     }
 
   private:
+    /// What the bodies got of the impulses: the rotor took the rest.
+    template <class Real, class Impulse>
+    static Real to_bodies(const Real& armature, const Impulse& impulse)
+    {
+        return impulse.motor + impulse.spring + impulse.limit - armature * impulse.rotor_change;
+    }
     static double twist_of(const Quat<double>& q)
     {
         return 2 * std::atan2(q.w < 0 ? -q.x : q.x, std::abs(q.w));

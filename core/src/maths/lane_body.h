@@ -355,6 +355,13 @@ Real trace(const Sym3<Real>& k)
     return k.xx + k.yy + k.zz;
 }
 
+/// The trace of the product of two symmetric matrices.
+template <class Real>
+Real trace_of_product(const Sym3<Real>& a, const Sym3<Real>& b)
+{
+    return (a.xx * b.xx + a.yy * b.yy + a.zz * b.zz) + Real(2) * (a.xy * b.xy + a.xz * b.xz + a.yz * b.yz);
+}
+
 /// The inverse of a symmetric matrix. It is divided by its trace first, because determinants of bodies of 5e-20 kg m2
 /// and of 1e10 kg m2 leave the range of a float. Zero where the determinant of the scaled matrix is lost in rounding.
 template <class Real>

@@ -53,6 +53,14 @@ motley_status motley_scene_add_body(motley_scene* scene, const motley_body_defin
     });
 }
 
+motley_status motley_figure_add_body(motley_figure* figure, const motley_body_definition* definition,
+                                     motley_body_id* body)
+{
+    return call(__func__, [&] {
+        give_handle(body, figure_of(figure).add_body(read<BodyDefinition>(definition, "definition")));
+    });
+}
+
 motley_status motley_scene_add_bodies(motley_scene* scene, size_t count,
                                       const motley_body_definition* definitions, size_t stride,
                                       motley_body_id* bodies)

@@ -3,12 +3,17 @@
 
 #include "maths/bit_cast.h"
 #include "mirror.h"
+#include "motley/c/figures.h"
 #include "motley/c/scene.h"
+#include "motley/core/assembly.h"
 #include "motley/core/ids.h"
 #include "motley/core/scene.h"
 
 struct motley_scene {
     motley::Scene scene;
+};
+struct motley_figure {
+    motley::Figure figure;
 };
 
 namespace motley::c {
@@ -20,6 +25,11 @@ inline Scene& scene_of(motley_scene* scene)
 inline const Scene& scene_of(const motley_scene* scene)
 {
     return need(scene, "scene").scene;
+}
+
+inline Figure& figure_of(motley_figure* figure)
+{
+    return need(figure, "figure").figure;
 }
 
 template <>

@@ -1,4 +1,5 @@
 // Definitions of the C interface that make several joints.
+#include "handles.h"
 #include "joint_mirrors.h"
 #include "motley/c/joints.h"
 #include "motley/core/six_dof.h"
@@ -59,6 +60,12 @@ motley_status motley_scene_add_six_dof(motley_scene* scene, const motley_six_dof
         give_list(MOTLEY_SIX_DOF_JOINTS, joints, "joints", count,
                   [&] { return add_six_dof(to, read<SixDofDefinition>(definition, "definition")); });
     });
+}
+
+motley_status motley_figure_add_six_dof(motley_figure* figure, const motley_six_dof_definition* definition)
+{
+    return call(__func__,
+                [&] { figure_of(figure).add_six_dof(read<SixDofDefinition>(definition, "definition")); });
 }
 
 motley_status motley_scene_add_wheel(motley_scene* scene, const motley_wheel_definition* definition,

@@ -30,6 +30,16 @@ constexpr bool all_have_calls(TypeList<Types...>)
 }
 static_assert(all_have_calls(JointTypes{}));
 
+template <class Definition>
+void add_to(Figure& figure, const Definition& definition)
+{
+    if constexpr (requires { definition.point_a; }) {
+        refuse("definition", "a pulley", "a joint without points of the world, which cannot be copied");
+    } else {
+        figure.add_joint(definition);
+    }
+}
+
 }  // namespace
 }  // namespace motley::c
 
@@ -51,6 +61,11 @@ using namespace motley::c;
         return call(__func__, [&] {                                                                          \
             scene_of(scene).set_joint(as<ConstraintId>(joint), read<Cpp>(definition, "definition"));         \
         });                                                                                                  \
+    }                                                                                                        \
+    motley_status motley_figure_add_##name(motley_figure* figure,                                            \
+                                           const motley_##name##_definition* definition)                     \
+    {                                                                                                        \
+        return call(__func__, [&] { add_to(figure_of(figure), read<Cpp>(definition, "definition")); });      \
     }
 MOTLEY_JOINT_TYPES(MOTLEY_DEFINE_JOINT)
 

@@ -46,6 +46,12 @@ motley_status motley_scene_add_capsule(motley_scene* scene, const motley_capsule
     });
 }
 
+motley_status motley_figure_add_capsule(motley_figure* figure, const motley_capsule_definition* definition)
+{
+    return call(__func__,
+                [&] { figure_of(figure).add_capsule(read<CapsuleDefinition>(definition, "definition")); });
+}
+
 motley_status motley_scene_add_capsules(motley_scene* scene, size_t count,
                                         const motley_capsule_definition* definitions, size_t stride,
                                         motley_shape_id* shapes)

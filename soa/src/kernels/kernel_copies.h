@@ -93,13 +93,25 @@ inline void integrate_copy_velocities(const KernelContext& context, const Figure
     });
 }
 
+/// change_of_inertia() of copies, as integrate_copy_positions() loads them.
+[[gnu::noinline, gnu::cold]] inline Lanes change_of_copies(const BodyArrays& arrays,
+                                                           const std::int32_t* offsets, const float* lanes,
+                                                           float h)
+{
+    return change_of_inertia(load_row<Mover>(lanes),
+                             load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), Lanes(h),
+                             arrays, offsets);
+}
+
 inline void integrate_copy_positions(const KernelContext& context, const FigureBlock& figure)
 {
-    const Lanes h(context.step.substep);
-    for_each_copy(figure, [&](BodyKind, float* lanes, const std::int32_t*, int) {
+    const float h = context.step.substep;
+    const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
+    for_each_copy(figure, [&](BodyKind, float* lanes, const std::int32_t* offsets, int) {
         auto body = load_row<Mover>(lanes);
-        body.delta = body.delta + h * body.linear;
-        tumble(body, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), h);
+        body.delta = body.delta + Lanes(h) * body.linear;
+        tumble(body, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), Lanes(h),
+               [&] { return change_of_copies(arrays, offsets, lanes, h); });
         store_row(body, lanes);
     });
 }

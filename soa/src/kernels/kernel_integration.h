@@ -181,18 +181,59 @@ void integrate_velocities(const KernelContext& context, std::int32_t begin, std:
 
 // ---- x += h v ----------------------------------------------------------------------------------------
 
+inline Quat<Lanes> half_way_through(const Body<BodyKind::rigid>& body, const Lanes& h)
+{
+    return rotation_by(Lanes(0.5F) * h * body.angular) * body.delta_rotation;
+}
+
+/// How much a rotation changes the inertia of a body with constraints, as far as their rows are concerned; 0 for a body
+/// without. `start` is its I^-1 when the step began, and `offsets` where it is in `arrays`.
+///
+/// Sweeps divide by the responses that rows had when they were made: those of joints when the substep began, those of
+/// contacts when the step began. Where a response has become c times as high since, a sweep leaves 1 - c of the speed that
+/// it should take away, and above c = 2 that is more than there was: relaxation, or the next substep, throws the body. For
+/// a rotation about a principal axis, with I then and I' now, c + 1/c - 2 = tr(I I'^-1) - 3, which is returned. It is
+/// looked at half way through the substep, where it is about a quarter of that at the end.
+inline Lanes change_of_inertia(const Body<BodyKind::rigid>& body, const Sym3<Lanes>& start, const Lanes& h,
+                               const BodyArrays& arrays, const std::int32_t* offsets)
+{
+    alignas(64) float has_constraints[Lanes_width], has_contacts[Lanes_width];  // 1 or 0
+    for (int lane = 0; lane < Lanes_width; ++lane) {
+        const std::uint32_t mask = arrays.colours[offsets[lane] / offsets_a_row(BodyKind::rigid)];
+        has_constraints[lane] = mask != 0 ? 1.0F : 0.0F;
+        has_contacts[lane] = (mask & contact_bit) != 0 ? 1.0F : 0.0F;
+    }
+    const Sym3<Lanes> half_way = rotate_tensor(half_way_through(body, h), start);
+    const Lanes in_substep = trace_of_product(inverse(body.inverse_inertia), half_way) - Lanes(3);
+    const Lanes in_step = trace_of_product(inverse(start), half_way) - Lanes(3);
+    return maximum(load_lanes(has_constraints) * in_substep, load_lanes(has_contacts) * in_step);
+}
+
 /// Rotates a body by its angular velocity at the middle of the substep, and carries its angular momentum L = I w
 /// through the rotation (I: inertia, w: angular velocity): afterwards w = I^-1 L with the rotated inertia. So L is
 /// kept to rounding, the rotation is right to second order, and a tumbling body cannot gain energy without bound. A
 /// body that turns by more than a radian per substep, which no substep can follow, or that has no inverse inertia
-/// keeps w instead, and with it its energy.
-inline void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inertia, const Lanes& h)
+/// keeps w instead, and with it its energy. One with constraints keeps w and also I where the rotation would more than
+/// double a response: `change` returns its change_of_inertia(), which is 1/8 then; it is seldom asked.
+template <class Change>
+void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inertia, const Lanes& h,
+            const Change& change)
 {
     const Vec3<Lanes> speed = body.angular;
-    const Sym3<Lanes>& i = body.inverse_inertia;
-    const auto turns = (i.xx + i.yy + i.zz > Lanes(0)) & (h * h * dot(speed, speed) < Lanes(1));
-    const Vec3<Lanes> momentum = inverse(i) * speed;
-    const Quat<Lanes> half_way = rotation_by(Lanes(0.5F) * h * speed) * body.delta_rotation;
+    const Sym3<Lanes> i = body.inverse_inertia, inertia = inverse(i);
+    const Lanes turn_squared = h * h * dot(speed, speed);
+    const Quat<Lanes> half_way = half_way_through(body, h);
+    // A rotation by an angle of sine 2 s changes I by at most 4 s^2 (tr I tr I^-1 - 9).
+    const Vec3<Lanes> sines{half_way.x, half_way.y, half_way.z};
+    const Lanes at_most = maximum(Lanes(4) * dot(sines, sines), Lanes(0.25F) * turn_squared) *
+                          (trace(inertia) * trace(i) - Lanes(9));
+    const Lanes most(0.125F);
+    Lanes changed(0);
+    if (any(at_most > most)) [[unlikely]]
+        changed = change();
+    const auto keeps = changed > most;
+    const auto turns = (trace(i) > Lanes(0)) & (turn_squared < Lanes(1)) & (changed < most);
+    const Vec3<Lanes> momentum = inertia * speed;
     const auto speed_of = [&](const Sym3<Lanes>& inverse_inertia) {
         const Vec3<Lanes> w = inverse_inertia * momentum;
         return Vec3<Lanes>{select(turns, w.x, speed.x), select(turns, w.y, speed.y),
@@ -200,19 +241,31 @@ inline void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse
     };
     const Vec3<Lanes> then = speed_of(rotate_tensor(half_way, start_inverse_inertia));
     body.delta_rotation = normalised(rotation_by(h * then) * body.delta_rotation);
-    body.inverse_inertia = rotate_tensor(body.delta_rotation, start_inverse_inertia);
-    body.angular = speed_of(body.inverse_inertia);
+    const Sym3<Lanes> now = rotate_tensor(body.delta_rotation, start_inverse_inertia);
+    body.angular = speed_of(now);
+    body.inverse_inertia = {select(keeps, i.xx, now.xx), select(keeps, i.xy, now.xy),
+                            select(keeps, i.xz, now.xz), select(keeps, i.yy, now.yy),
+                            select(keeps, i.yz, now.yz), select(keeps, i.zz, now.zz)};
+}
+
+/// change_of_inertia() of bodies as the arrays have them. It takes little, so that the call is small where it is inlined.
+[[gnu::noinline, gnu::cold]] inline Lanes change_of_rows(const BodyArrays& arrays,
+                                                         const std::int32_t* offsets, float h)
+{
+    return change_of_inertia(load_body(arrays, offsets, static_cast<Body<BodyKind::rigid>*>(nullptr)),
+                             load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h), arrays, offsets);
 }
 
 template <BodyKind kind>
-void advance(const BodyArrays& arrays, const std::int32_t* offsets, Body<kind>& body, const Lanes& h)
+void advance(const BodyArrays& arrays, const std::int32_t* offsets, Body<kind>& body, float h)
 {
-    body.delta = body.delta + h * body.linear;
-    if constexpr (kind == BodyKind::planar) body.delta_yaw = body.delta_yaw + h * body.yaw_rate;
+    body.delta = body.delta + Lanes(h) * body.linear;
+    if constexpr (kind == BodyKind::planar) body.delta_yaw = body.delta_yaw + Lanes(h) * body.yaw_rate;
     if constexpr (kind == BodyKind::rigid)
-        tumble(body, load_tensor(arrays.start_inverse_inertia, offsets), h);
+        tumble(body, load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h),
+               [&] { return change_of_rows(arrays, offsets, h); });
     if constexpr (kind == BodyKind::fixed)
-        body.delta_rotation = normalised(rotation_by(h * body.angular) * body.delta_rotation);
+        body.delta_rotation = normalised(rotation_by(Lanes(h) * body.angular) * body.delta_rotation);
 }
 
 /// Integrates positions and, with `runs_on`, the velocities of the next substep.
@@ -221,7 +274,7 @@ template <BodyKind kind, bool runs_on>
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
     Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
-    advance(arrays, index.offsets, body, Lanes(context.step.substep));
+    advance(arrays, index.offsets, body, context.step.substep);
     if constexpr (kind == BodyKind::fixed) {
         const Quat<Lanes>& q = body.delta_rotation;
         store_quads(arrays.delta, offset_floats, index.offsets,

@@ -60,6 +60,9 @@ struct ConstraintData {
     std::int32_t first_surface = 0;
 };
 
+/// A bit of a body's ColourMasks, beside those of the colours and of the overflow: contacts act on the body.
+inline constexpr std::uint32_t contact_bit = 1U << 31;
+
 /// Rows of one kind as the kernels see them.
 struct BodyArrays {
     float* velocity = nullptr;
@@ -67,6 +70,7 @@ struct BodyArrays {
     float* unpushed = nullptr;
     float* start_along = nullptr;  ///< see Flight, like is_jointed
     const std::uint8_t* is_jointed = nullptr;
+    const std::uint32_t* colours = nullptr;  ///< rigid bodies, by row: see ColourMasks
     const float* acceleration = nullptr;
     /// As velocity: by what a substep multiplies each component, and last in each row's first quad whether free flight
     /// keeps to its parabola (1 or 0). Null unless a body of the kind is damped.

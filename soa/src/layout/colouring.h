@@ -10,6 +10,7 @@
 #include <cstring>
 #include <vector>
 
+#include "layout/block.h"
 #include "stores/body_store.h"
 #include "stores/contact_cache.h"
 
@@ -40,7 +41,10 @@ class ColourMasks {
     /// Takes the colour and returns true if neither body has it yet. The overflow colour is always free.
     bool try_take(BodyRow a, BodyRow b, std::uint8_t colour)
     {
-        if (colour == overflow_colour) return true;
+        if (colour == overflow_colour) {
+            note_overflow(a, b);
+            return true;
+        }
         const std::uint32_t bit = 1U << colour;
         std::uint32_t* mask_a = mask(a);
         std::uint32_t* mask_b = mask(b);
@@ -56,10 +60,20 @@ class ColourMasks {
         std::uint32_t* mask_b = mask(b);
         const std::uint32_t used = (mask_a ? *mask_a : 0U) | (mask_b ? *mask_b : 0U);
         const int colour = std::countr_one(used);
-        if (colour >= parallel_colours) return overflow_colour;
+        if (colour >= parallel_colours) {
+            note_overflow(a, b);
+            return overflow_colour;
+        }
         if (mask_a) *mask_a |= 1U << colour;
         if (mask_b) *mask_b |= 1U << colour;
         return static_cast<std::uint8_t>(colour);
+    }
+
+    void note_contact(BodyRow a, BodyRow b) { note(contact_bit, a, b); }
+    /// A mask a row: 0 where no constraint acts.
+    [[nodiscard]] const std::uint32_t* of(BodyKind kind) const
+    {
+        return masks_[static_cast<std::size_t>(kind)].data();
     }
 
   private:
@@ -68,6 +82,14 @@ class ColourMasks {
     {
         return body.kind() == BodyKind::fixed ? nullptr
                                               : &masks_[static_cast<std::size_t>(body.kind())][body.row()];
+    }
+    /// For bodies whose only constraints overflow.
+    void note_overflow(BodyRow a, BodyRow b) { note(1U << overflow_colour, a, b); }
+    void note(std::uint32_t bit, BodyRow a, BodyRow b)
+    {
+        for (std::uint32_t* of_body : {mask(a), mask(b)}) {
+            if (of_body) *of_body |= bit;
+        }
     }
     std::array<AlignedVector<std::uint32_t>, moving_kinds> masks_;
 };

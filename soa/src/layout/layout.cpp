@@ -75,7 +75,8 @@ void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse&
             grow_to(decay_[kind], 4 * static_cast<std::size_t>(quads_of(static_cast<BodyKind>(kind))) * rows);
     }
     figures.make_room(contact_count);
-    if (contact_count > 0) masks_.copy(joint_masks_, scene.bodies);
+    const bool any_rigid = scene.bodies.rows(BodyKind::rigid).size() > 1;  // row 0 is no body's
+    if (contact_count > 0 || any_rigid) masks_.copy(joint_masks_, scene.bodies);
     grow_to(uncoloured_, contact_count);
     contacts.begin({intake.placements.data(), contact_count}, intake.patches.are_wanted());
 }
@@ -157,6 +158,7 @@ void Layout::colour_contacts(const BodyStore& bodies, ContactCache& cache)
         }
         // A joint added since may have taken the colour; then the contact gets another one below. So does one in the
         // overflow: its hub may have fewer constraints by now.
+        masks_.note_contact(placement.a, placement.b);
         const bool keeps =
             placement.colour < overflow_colour && masks_.try_take(placement.a, placement.b, placement.colour);
         if (!keeps) uncoloured_[uncoloured++] = i;
@@ -351,20 +353,22 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
         swept += swept_bytes(static_cast<BodyKind>(kind)) * static_cast<std::int64_t>(rows.size());
         const bool decays = scene.bodies.damped > 0 && static_cast<BodyKind>(kind) != BodyKind::fixed &&
                             find_decay(scene.bodies, static_cast<BodyKind>(kind), step.substep);
-        context.bodies[kind] = {rows.velocity.data(),
-                                rows.delta.data(),
-                                rows.unpushed.data(),
-                                start_along_[static_cast<std::size_t>(kind)].data(),
-                                is_jointed_[static_cast<std::size_t>(kind)].data(),
-                                rows.acceleration.data(),
-                                decays ? decay_[static_cast<std::size_t>(kind)].data() : nullptr,
-                                rows.world_inverse_inertia.data(),
-                                rows.start_inverse_inertia.data(),
-                                rows.inverse_inertia.data(),
-                                rows.pose.data(),
-                                rows.orientation.data(),
-                                static_cast<std::int32_t>(rows.size()),
-                                static_cast<BodyKind>(kind) != BodyKind::fixed};
+        context.bodies[kind] = {
+            rows.velocity.data(),
+            rows.delta.data(),
+            rows.unpushed.data(),
+            start_along_[static_cast<std::size_t>(kind)].data(),
+            is_jointed_[static_cast<std::size_t>(kind)].data(),
+            static_cast<BodyKind>(kind) == BodyKind::rigid ? masks_.of(BodyKind::rigid) : nullptr,
+            rows.acceleration.data(),
+            decays ? decay_[static_cast<std::size_t>(kind)].data() : nullptr,
+            rows.world_inverse_inertia.data(),
+            rows.start_inverse_inertia.data(),
+            rows.inverse_inertia.data(),
+            rows.pose.data(),
+            rows.orientation.data(),
+            static_cast<std::int32_t>(rows.size()),
+            static_cast<BodyKind>(kind) != BodyKind::fixed};
     }
     context.largest_response = scene.bodies.largest_response;
     context.bodies_are_far = swept > second_level_cache();

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <optional>
 
 #include "motley/core/body.h"
 
@@ -22,6 +23,11 @@ struct Body {
     double mass = 1;
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< body frame
     double linear_damping = 0, angular_damping = 0;         ///< 1/s
+    bool is_swept = false;  ///< whether it has constraints that are solved by sweeps
+    std::optional<Eigen::Quaterniond>
+        contacts_made_at;  ///< if it has contacts: the orientation of their rows
+    /// The orientation in which inverse_mass() sees the inertia: see move_on().
+    std::optional<Eigen::Quaterniond> inertia_kept_at;
 
     /// A body from a host's definition.
     static Body from(const BodyDefinition& definition);
@@ -32,8 +38,11 @@ struct Body {
     /// v += h (g + M^-1 f), with the time h, gravity g and the force f; then v /= 1 + h c, with the damping c.
     void accelerate(const Eigen::Vector3d& gravity, double seconds);
     /// x += h v. A rigid body is turned by the angular velocity that it has half way, and afterwards has the angular
-    /// velocity that keeps its angular momentum.
+    /// velocity that keeps its angular momentum; or, if it is swept, keeps inertia and angular velocity where rows would
+    /// see too different an inertia: see change_of_inertia() of the lanes.
     void move_on(double seconds);
+    /// The inertia in the world if the body had this orientation, kg m2.
+    [[nodiscard]] Eigen::Matrix3d inertia_at(const Eigen::Quaterniond& turned) const;
 };
 
 /// [u]x: the matrix of the cross product, skew(u) v = u x v.

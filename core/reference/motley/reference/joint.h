@@ -66,8 +66,9 @@ class JointModel {
     virtual void recall(std::span<const float> memory, std::vector<Eigen::VectorXd>& impulses) const;
     /// Reads the accumulated C from such a memory.
     [[nodiscard]] virtual double travelled_in(const float* /*memory*/) const { return 0; }
-    /// Reads Joint::rotor_lag from such a memory.
+    /// Reads Joint::rotor_lag and Joint::rotor_change from such a memory.
     [[nodiscard]] virtual double rotor_lag_in(const float* /*memory*/) const { return 0; }
+    [[nodiscard]] virtual double rotor_change_in(const float* /*memory*/) const { return 0; }
 };
 
 /// A joint between bodies of the world by index.
@@ -77,6 +78,8 @@ struct Joint {
     std::vector<Eigen::VectorXd> impulses{};  ///< of each block, carried from step to step
     double travelled = 0;
     double rotor_speed = 0;           ///< J v of the blocks with an armature, as the last solve left it
+    double rotor_change = 0;          ///< what the present substep added to it, or the last one
+    double rotor_start = 0;           ///< what it was when the substep began
     double rotor_lag = 0;             ///< by how much J v was above it when the last step ended
     std::span<const float> memory{};  ///< where impulses are read from while `impulses` is empty
     /// The impulse on b in the last step: N s at the point where the rows act, then N m s.

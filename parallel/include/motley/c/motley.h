@@ -46,8 +46,8 @@
 //   during the call only. The library allocates by operator new of the process (and by malloc() what motley_free() frees), which a host in
 //   C++ may replace. It has no
 //   hooks of its own: its containers do not share one place that could serve them.
-// - Figures. Copies of a figure are bodies and joints like all others; a solver finds out by itself which are alike, and solves
-//   sixteen of them together.
+// - Figures. Copies of a figure are bodies and joints like all others, whether they come from a motley_figure or one by one; a
+//   solver finds out by itself which are alike, and solves sixteen of them together.
 // - Threads. Different scenes and solvers are independent of each other. Of one scene, calls that take a const one may run
 //   at the same time as each other; set_velocity, set_velocities, set_force and set_forces may run at the same time as
 //   each other and as reads of other bodies, as long as a body that one of them names is named by no other; every other
@@ -57,6 +57,7 @@
 
 #include "motley/c/bodies.h"
 #include "motley/c/crowd.h"
+#include "motley/c/figures.h"
 #include "motley/c/joints.h"
 #include "motley/c/queries.h"
 #include "motley/c/scene.h"

@@ -45,7 +45,7 @@ struct MjcfOptions {
 /// of the world. Up to three hinges of one body whose axes are perpendicular and meet in a point become a ball-socket with
 /// Euler angles; others are separated by links that take a twentieth of the body's mass and inertia each. Links are light:
 /// with SolverSettings::exact_joints they hold, while sweeps let the joints of a figure that falls come apart by
-/// centimetres, and may set it spinning. Capsules of a figure do not touch each other.
+/// centimetres, and by decimetres under others. Capsules of a figure do not touch each other.
 ///
 /// What only looks (assets, visuals, lights, cameras, sites, groups, materials) or belongs to MuJoCo's solver (solref,
 /// solimp, condim, timestep) is passed over. Everything else is refused.
