@@ -186,26 +186,31 @@ inline Quat<Lanes> half_way_through(const Body<BodyKind::rigid>& body, const Lan
     return rotation_by(Lanes(0.5F) * h * body.angular) * body.delta_rotation;
 }
 
+/// What change_of_inertia() is, half way, where a response has doubled at the end of the substep.
+inline constexpr float most_change = 0.125F;
+
 /// How much a rotation changes the inertia of a body with constraints, as far as their rows are concerned; 0 for a body
-/// without. `start` is its I^-1 when the step began, and `offsets` where it is in `arrays`.
+/// without, and where no body of these lanes changes by more than most_change. `start` is I^-1 when the step began, and
+/// `offsets` says where the body is in `arrays`.
 ///
 /// Sweeps divide by the responses that rows had when they were made: those of joints when the substep began, those of
 /// contacts when the step began. Where a response has become c times as high since, a sweep leaves 1 - c of the speed that
 /// it should take away, and above c = 2 that is more than there was: relaxation, or the next substep, throws the body. For
 /// a rotation about a principal axis, with I then and I' now, c + 1/c - 2 = tr(I I'^-1) - 3, which is returned. It is
-/// looked at half way through the substep, where it is about a quarter of that at the end.
+/// looked at half way through the substep, where it is about a quarter of that at the end: an eighth for c = 2.
 inline Lanes change_of_inertia(const Body<BodyKind::rigid>& body, const Sym3<Lanes>& start, const Lanes& h,
                                const BodyArrays& arrays, const std::int32_t* offsets)
 {
+    const Sym3<Lanes> half_way = rotate_tensor(half_way_through(body, h), start);
+    const Lanes in_substep = trace_of_product(inverse(body.inverse_inertia), half_way) - Lanes(3);
+    const Lanes in_step = trace_of_product(inverse(start), half_way) - Lanes(3);
+    if (!any(maximum(in_substep, in_step) > Lanes(most_change))) return Lanes(0);
     alignas(64) float has_constraints[Lanes_width], has_contacts[Lanes_width];  // 1 or 0
     for (int lane = 0; lane < Lanes_width; ++lane) {
         const std::uint32_t mask = arrays.colours[offsets[lane] / offsets_a_row(BodyKind::rigid)];
         has_constraints[lane] = mask != 0 ? 1.0F : 0.0F;
         has_contacts[lane] = (mask & contact_bit) != 0 ? 1.0F : 0.0F;
     }
-    const Sym3<Lanes> half_way = rotate_tensor(half_way_through(body, h), start);
-    const Lanes in_substep = trace_of_product(inverse(body.inverse_inertia), half_way) - Lanes(3);
-    const Lanes in_step = trace_of_product(inverse(start), half_way) - Lanes(3);
     return maximum(load_lanes(has_constraints) * in_substep, load_lanes(has_contacts) * in_step);
 }
 
@@ -227,7 +232,7 @@ void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inerti
     const Vec3<Lanes> sines{half_way.x, half_way.y, half_way.z};
     const Lanes at_most = maximum(Lanes(4) * dot(sines, sines), Lanes(0.25F) * turn_squared) *
                           (trace(inertia) * trace(i) - Lanes(9));
-    const Lanes most(0.125F);
+    const Lanes most(most_change);
     Lanes changed(0);
     if (any(at_most > most)) [[unlikely]]
         changed = change();
