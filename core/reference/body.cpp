@@ -98,14 +98,25 @@ void Body::move_on(double seconds)
     inertia_kept_at.reset();
     if (change > 0.125) inertia_kept_at = before;
     // A body that turns by a radian or more keeps its angular velocity, and with it its energy.
-    if (inertia_kept_at || seconds * velocity.tail<3>().norm() >= 1) {
+    const double turn = seconds * velocity.tail<3>().norm();
+    if (inertia_kept_at || turn >= 1) {
         advance(velocity, seconds);
         return;
     }
     const Eigen::Vector3d momentum = then * velocity.tail<3>();
-    velocity.tail<3>() = between * momentum;
-    advance(velocity, seconds);
-    velocity.tail<3>() = inertia_at(orientation).inverse() * momentum;
+    const auto speed = [&](const Body& turned) {
+        return Eigen::Vector3d(inertia_at(turned.orientation).inverse() * momentum);
+    };
+    // A free body may precess too fast for one piece: see precesses() of the lanes.
+    const double spread = then.trace() * then.inverse().trace() - 9;
+    const int pieces = !has_constraints && spread > 0.1 && turn * turn > 0.01 ? 16 : 1;
+    for (int piece = 0; piece < pieces; ++piece) {
+        half_way = *this;
+        half_way.advance(velocity, seconds / pieces / 2);
+        velocity.tail<3>() = speed(half_way);
+        advance(velocity, seconds / pieces);
+        velocity.tail<3>() = speed(*this);
+    }
 }
 
 }  // namespace motley::reference

@@ -259,12 +259,14 @@ void World::note_swept(int a, int b, bool is_contact)
 void World::begin_step()
 {
     for (Body& body : bodies) {
-        body.is_swept = false;
+        body.has_constraints = body.is_swept = false;
         body.contacts_made_at.reset();
         body.inertia_kept_at.reset();
     }
     start_ = bodies;
     for (Joint& joint : joints) {
+        bodies[static_cast<std::size_t>(joint.a)].has_constraints = true;
+        bodies[static_cast<std::size_t>(joint.b)].has_constraints = true;
         joint.wrench.setZero();
         joint.approaches.clear();
         const bool recalls = joint.impulses.empty() && !joint.memory.empty();
@@ -281,8 +283,9 @@ void World::begin_step()
 World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
 {
     const Contact& c = point.contact;
-    const Body& a = bodies[static_cast<std::size_t>(point.a)];
-    const Body& b = bodies[static_cast<std::size_t>(point.b)];
+    Body& a = bodies[static_cast<std::size_t>(point.a)];
+    Body& b = bodies[static_cast<std::size_t>(point.b)];
+    a.has_constraints = b.has_constraints = true;
     const Eigen::Vector3d n = eigen(c.normal), arm_a = eigen(c.arm_a), arm_b = eigen(c.arm_b);
     ContactRow row;
     row.point = &point;

@@ -23,11 +23,11 @@ struct Way {
 
 #ifdef __EMSCRIPTEN__
 // WebAssembly cannot take denormals for zero. x86 without the flags of float_environment.h makes these hashes too.
-constexpr std::uint64_t golden_of_projection = 9312123720246324464ULL;
+constexpr std::uint64_t golden_of_projection = 3869003566267593417ULL;
 constexpr std::uint64_t goldens_of_joints[] = {720222684841466771ULL, 4555609273397524596ULL,
                                                8580421944631302937ULL, 7105669609101903565ULL};
 #else
-constexpr std::uint64_t golden_of_projection = 10622580740719753038ULL;
+constexpr std::uint64_t golden_of_projection = 1560394079074756614ULL;
 constexpr std::uint64_t goldens_of_joints[] = {10179545230908251787ULL, 6786521053750159034ULL,
                                                15305297318813190699ULL, 3449722352098199374ULL};
 #endif
@@ -44,9 +44,9 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 9802001598944533563ULL},
-            {"baumgarte", iterative, 7495287706603010883ULL},
-            {"no drift correction", none, 6810443865828568700ULL},
+    return {{"soft_step", soft, 7372034099995864ULL},
+            {"baumgarte", iterative, 17833714292811026218ULL},
+            {"no drift correction", none, 2115883642684331810ULL},
             {"projection", projection, golden_of_projection}};
 }
 

@@ -110,8 +110,9 @@ inline void integrate_copy_positions(const KernelContext& context, const FigureB
     for_each_copy(figure, [&](BodyKind, float* lanes, const std::int32_t* offsets, int) {
         auto body = load_row<Mover>(lanes);
         body.delta = body.delta + Lanes(h) * body.linear;
-        tumble(body, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), Lanes(h),
-               [&] { return change_of_copies(arrays, offsets, lanes, h); });
+        tumble(
+            body, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), Lanes(h),
+            [&] { return change_of_copies(arrays, offsets, lanes, h); }, [](Mover&, const Lanes&) {});
         store_row(body, lanes);
     });
 }

@@ -189,9 +189,22 @@ inline Quat<Lanes> half_way_through(const Body<BodyKind::rigid>& body, const Lan
 /// What change_of_inertia() is, half way, where a response has doubled at the end of the substep.
 inline constexpr float most_change = 0.125F;
 
-/// How much a rotation changes the inertia of a body with constraints, as far as their rows are concerned; 0 for a body
-/// without, and where no body of these lanes changes by more than most_change. `start` is I^-1 when the step began, and
-/// `offsets` says where the body is in `arrays`.
+/// tr I tr I^-1 - 9: 0 for a body whose inertia is that of a ball, the larger the thinner or flatter it is.
+inline Lanes spread_of(const Sym3<Lanes>& inertia, const Sym3<Lanes>& inverse_inertia)
+{
+    return trace(inertia) * trace(inverse_inertia) - Lanes(9);
+}
+
+/// Whether a free body precesses too fast to be rotated in one piece: the square of its turn in radians is above 0.01. Its
+/// energy would grow by z^4 / 4 in each, with z the turn of w in the body's frame.
+inline auto precesses(const Lanes& turn_squared, const Lanes& spread)
+{
+    return (turn_squared > Lanes(0.01F)) & (spread > Lanes(0.1F));
+}
+
+/// How much a rotation changes the inertia of a body with constraints, as far as their rows are concerned; of a body
+/// without, -1 where it precesses(), else 0. `start` is I^-1 when the step began, and `offsets` says where the body is in
+/// `arrays`.
 ///
 /// Sweeps divide by the responses that rows had when they were made: those of joints when the substep began, those of
 /// contacts when the step began. Where a response has become c times as high since, a sweep leaves 1 - c of the speed that
@@ -201,17 +214,23 @@ inline constexpr float most_change = 0.125F;
 inline Lanes change_of_inertia(const Body<BodyKind::rigid>& body, const Sym3<Lanes>& start, const Lanes& h,
                                const BodyArrays& arrays, const std::int32_t* offsets)
 {
-    const Sym3<Lanes> half_way = rotate_tensor(half_way_through(body, h), start);
-    const Lanes in_substep = trace_of_product(inverse(body.inverse_inertia), half_way) - Lanes(3);
+    const Sym3<Lanes> half_way = rotate_tensor(half_way_through(body, h), start),
+                      inertia = inverse(body.inverse_inertia);
+    const Lanes zero(0), one(1);
+    const Lanes in_substep = trace_of_product(inertia, half_way) - Lanes(3);
     const Lanes in_step = trace_of_product(inverse(start), half_way) - Lanes(3);
-    if (!any(maximum(in_substep, in_step) > Lanes(most_change))) return Lanes(0);
+    const auto fast =
+        precesses(h * h * dot(body.angular, body.angular), spread_of(inertia, body.inverse_inertia));
+    if (!any(maximum(in_substep, in_step) > Lanes(most_change)) && !any(fast)) return zero;
     alignas(64) float has_constraints[Lanes_width], has_contacts[Lanes_width];  // 1 or 0
     for (int lane = 0; lane < Lanes_width; ++lane) {
         const std::uint32_t mask = arrays.colours[offsets[lane] / offsets_a_row(BodyKind::rigid)];
         has_constraints[lane] = mask != 0 ? 1.0F : 0.0F;
         has_contacts[lane] = (mask & contact_bit) != 0 ? 1.0F : 0.0F;
     }
-    return maximum(load_lanes(has_constraints) * in_substep, load_lanes(has_contacts) * in_step);
+    const Lanes bound = load_lanes(has_constraints), touched = load_lanes(has_contacts);
+    const Lanes of_bound = maximum(maximum(bound * in_substep, touched * in_step), zero);
+    return of_bound - select(fast, one - bound, zero);
 }
 
 /// Rotates a body by its angular velocity at the middle of the substep, and carries its angular momentum L = I w
@@ -219,10 +238,11 @@ inline Lanes change_of_inertia(const Body<BodyKind::rigid>& body, const Sym3<Lan
 /// kept to rounding, the rotation is right to second order, and a tumbling body cannot gain energy without bound. A
 /// body that turns by more than a radian per substep, which no substep can follow, or that has no inverse inertia
 /// keeps w instead, and with it its energy. One with constraints keeps w and also I where the rotation would more than
-/// double a response: `change` returns its change_of_inertia(), which is 1/8 then; it is seldom asked.
-template <class Change>
+/// double a response, and a free one that precesses fast is rotated in pieces. `change` returns change_of_inertia(), and
+/// `rotate_in_pieces(body, lanes)` puts the latter into these lanes. Both are seldom called.
+template <class Change, class RotateInPieces>
 void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inertia, const Lanes& h,
-            const Change& change)
+            const Change& change, const RotateInPieces& rotate_in_pieces)
 {
     const Vec3<Lanes> speed = body.angular;
     const Sym3<Lanes> i = body.inverse_inertia, inertia = inverse(i);
@@ -230,11 +250,11 @@ void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inerti
     const Quat<Lanes> half_way = half_way_through(body, h);
     // A rotation by an angle of sine 2 s changes I by at most 4 s^2 (tr I tr I^-1 - 9).
     const Vec3<Lanes> sines{half_way.x, half_way.y, half_way.z};
-    const Lanes at_most = maximum(Lanes(4) * dot(sines, sines), Lanes(0.25F) * turn_squared) *
-                          (trace(inertia) * trace(i) - Lanes(9));
+    const Lanes spread = spread_of(inertia, i);
+    const Lanes at_most = maximum(Lanes(4) * dot(sines, sines), Lanes(0.25F) * turn_squared) * spread;
     const Lanes most(most_change);
     Lanes changed(0);
-    if (any(at_most > most)) [[unlikely]]
+    if (any(at_most > most) || any(precesses(turn_squared, spread))) [[unlikely]]
         changed = change();
     const auto keeps = changed > most;
     const auto turns = (trace(i) > Lanes(0)) & (turn_squared < Lanes(1)) & (changed < most);
@@ -251,6 +271,46 @@ void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inerti
     body.inverse_inertia = {select(keeps, i.xx, now.xx), select(keeps, i.xy, now.xy),
                             select(keeps, i.xz, now.xz), select(keeps, i.yy, now.yy),
                             select(keeps, i.yz, now.yz), select(keeps, i.zz, now.zz)};
+    const auto in_pieces = (changed < Lanes(0)) & (turn_squared < Lanes(1));
+    if (any(in_pieces)) [[unlikely]]
+        rotate_in_pieces(body, select(in_pieces, Lanes(1), Lanes(0)));
+}
+
+/// Replaces those `lanes` of `body` that are 1 by `before` rotated in sixteen pieces, all with the same angular momentum.
+inline void put_in_pieces(Body<BodyKind::rigid>& body, const Lanes& lanes,
+                          const Body<BodyKind::rigid>& before, const Sym3<Lanes>& start, const Lanes& h)
+{
+    constexpr int pieces = 16;
+    const Lanes piece = Lanes(1.0F / pieces) * h;
+    const Vec3<Lanes> momentum = inverse(before.inverse_inertia) * before.angular;
+    Quat<Lanes> q = before.delta_rotation;
+    Vec3<Lanes> w = before.angular;
+    Sym3<Lanes> i = before.inverse_inertia;
+    for (int k = 0; k < pieces; ++k) {
+        const Quat<Lanes> half_way = rotation_by(Lanes(0.5F) * piece * w) * q;
+        q = normalised(rotation_by(piece * (rotate_tensor(half_way, start) * momentum)) * q);
+        i = rotate_tensor(q, start);
+        w = i * momentum;
+    }
+    const auto replaced = lanes > Lanes(0);
+    const auto put = [&](auto& to, const auto& from) {
+        const Lanes* fields = reinterpret_cast<const Lanes*>(&from);
+        for (int k = 0; k < fields_of<std::remove_cvref_t<decltype(to)>>; ++k) {
+            Lanes& field = reinterpret_cast<Lanes*>(&to)[k];
+            field = select(replaced, fields[k], field);
+        }
+    };
+    put(body.delta_rotation, q);
+    put(body.angular, w);
+    put(body.inverse_inertia, i);
+}
+
+[[gnu::noinline, gnu::cold]] inline void put_rows_in_pieces(Body<BodyKind::rigid>& body, const Lanes& lanes,
+                                                            const BodyArrays& arrays,
+                                                            const std::int32_t* offsets, float h)
+{
+    put_in_pieces(body, lanes, load_body(arrays, offsets, static_cast<Body<BodyKind::rigid>*>(nullptr)),
+                  load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h));
 }
 
 /// change_of_inertia() of bodies as the arrays have them. It takes little, so that the call is small where it is inlined.
@@ -267,8 +327,12 @@ void advance(const BodyArrays& arrays, const std::int32_t* offsets, Body<kind>& 
     body.delta = body.delta + Lanes(h) * body.linear;
     if constexpr (kind == BodyKind::planar) body.delta_yaw = body.delta_yaw + Lanes(h) * body.yaw_rate;
     if constexpr (kind == BodyKind::rigid)
-        tumble(body, load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h),
-               [&] { return change_of_rows(arrays, offsets, h); });
+        tumble(
+            body, load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h),
+            [&] { return change_of_rows(arrays, offsets, h); },
+            [&](Body<kind>& turned, const Lanes& lanes) {
+                put_rows_in_pieces(turned, lanes, arrays, offsets, h);
+            });
     if constexpr (kind == BodyKind::fixed)
         body.delta_rotation = normalised(rotation_by(Lanes(h) * body.angular) * body.delta_rotation);
 }

@@ -23,6 +23,7 @@ struct Body {
     double mass = 1;
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< body frame
     double linear_damping = 0, angular_damping = 0;         ///< 1/s
+    bool has_constraints = false;                           ///< in the present step
     bool is_swept = false;  ///< whether it has constraints that are solved by sweeps
     std::optional<Eigen::Quaterniond>
         contacts_made_at;  ///< if it has contacts: the orientation of their rows
