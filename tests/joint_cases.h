@@ -254,8 +254,8 @@ struct JointCases<DriveDefinition<axis>> {
         stiff.spring_damping = axis == DriveAxis::slide ? 3.0F : 0.3F;
         damper.spring_damping = axis == DriveAxis::slide ? 5.0F : 0.5F;
         Definition rotor = limits, geared = stiff;
-        // One limit: where C lands on a limit exactly, rounding decides whether there is room, and a second landing turns
-        // what that makes of C into a speed, over a substep.
+        // One limit only. Where C lands on a limit exactly, rounding decides whether the next substep sees room, and C
+        // differs by 1e-5 m afterwards. Landing on a second limit would divide that by the substep.
         rotor.lower = -std::numeric_limits<float>::infinity();
         rotor.armature = axis == DriveAxis::slide ? 3.0F : 0.3F;
         geared.armature = 2 * rotor.armature;

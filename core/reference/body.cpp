@@ -82,7 +82,7 @@ Eigen::Matrix3d Body::inertia_at(const Eigen::Quaterniond& turned) const
     return r * inertia * r.transpose();
 }
 
-void Body::move_on(double seconds)
+void Body::move_on(double seconds, bool sweeps)
 {
     if (motion == BodyMotion::static_body) return;
     if (motion == BodyMotion::kinematic_body || model != BodyModel::rigid) {
@@ -93,8 +93,9 @@ void Body::move_on(double seconds)
     Body half_way = *this;
     half_way.advance(velocity, seconds / 2);
     const Eigen::Matrix3d then = inertia_at(before), between = inertia_at(half_way.orientation).inverse();
-    double change = is_swept ? (then * between).trace() - 3 : 0;
-    if (contacts_made_at) change = std::max(change, (inertia_at(*contacts_made_at) * between).trace() - 3);
+    double change = sweeps && has_constraints ? (then * between).trace() - 3 : 0;
+    if (sweeps && contacts_made_at)
+        change = std::max(change, (inertia_at(*contacts_made_at) * between).trace() - 3);
     inertia_kept_at.reset();
     if (change > 0.125) inertia_kept_at = before;
     // A body that turns by a radian or more keeps its angular velocity, and with it its energy.

@@ -52,7 +52,7 @@ DirectResult World::step_directly(double dt, const SolverSettings& asked,
             holds = find_holds(h);
             lose(-1);
         }
-        for (Body& body : bodies) body.move_on(h);
+        for (Body& body : bodies) body.move_on(h, false);
         if (!holds.empty()) {
             lose(1);
             const std::vector<bool> held = hold_locks(holds, islands, h, !stiff.empty());

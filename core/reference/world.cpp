@@ -144,6 +144,7 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
             if (block.armature > 0) row.response(0, 0) = 1 / row.mass(0, 0);
         }
         apply(joint, block.jacobian, row.impulse());
+        // The rotor begins with the change that it had in the last substep, and the bodies with what they gave for it.
         if (block.armature > 0 && i == first) {
             apply(joint, block.jacobian, Eigen::VectorXd::Constant(1, -block.armature * joint.rotor_change));
             joint.rotor_start = joint.rotor_speed;
@@ -246,11 +247,11 @@ World::Soft World::contact_softness(int a, int b, double h, const SolverSettings
     return softness((on_fixed ? 2 : 1) * hertz, settings.contact_damping_ratio, h);
 }
 
-void World::note_swept(int a, int b, bool is_contact)
+void World::note_constraint(int a, int b, bool is_contact)
 {
     for (const int end : {a, b}) {
         Body& body = bodies[static_cast<std::size_t>(end)];
-        body.is_swept = true;
+        body.has_constraints = true;
         if (is_contact) body.contacts_made_at = body.orientation;
     }
 }
@@ -259,14 +260,13 @@ void World::note_swept(int a, int b, bool is_contact)
 void World::begin_step()
 {
     for (Body& body : bodies) {
-        body.has_constraints = body.is_swept = false;
+        body.has_constraints = false;
         body.contacts_made_at.reset();
         body.inertia_kept_at.reset();
     }
     start_ = bodies;
     for (Joint& joint : joints) {
-        bodies[static_cast<std::size_t>(joint.a)].has_constraints = true;
-        bodies[static_cast<std::size_t>(joint.b)].has_constraints = true;
+        note_constraint(joint.a, joint.b, joint.model->keeps_rows_of_start());
         joint.wrench.setZero();
         joint.approaches.clear();
         const bool recalls = joint.impulses.empty() && !joint.memory.empty();
@@ -283,9 +283,9 @@ void World::begin_step()
 World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
 {
     const Contact& c = point.contact;
-    Body& a = bodies[static_cast<std::size_t>(point.a)];
-    Body& b = bodies[static_cast<std::size_t>(point.b)];
-    a.has_constraints = b.has_constraints = true;
+    const Body& a = bodies[static_cast<std::size_t>(point.a)];
+    const Body& b = bodies[static_cast<std::size_t>(point.b)];
+    note_constraint(point.a, point.b, true);
     const Eigen::Vector3d n = eigen(c.normal), arm_a = eigen(c.arm_a), arm_b = eigen(c.arm_b);
     ContactRow row;
     row.point = &point;
@@ -434,15 +434,11 @@ void World::step(double dt, const SolverSettings& asked, const std::vector<Conta
     const bool soft_step = settings.method == Method::soft_step;
     begin_step();
     for (Joint& joint : joints) {
-        note_swept(joint.a, joint.b, joint.model->keeps_rows_of_start());
         for (Eigen::VectorXd& impulse : joint.impulses) impulse *= warm;
         joint.rotor_change *= warm;
     }
     std::vector<ContactRow> contacts;
-    for (const ContactPoint& point : points) {
-        contacts.push_back(begin_contact(point, warm));
-        note_swept(point.a, point.b, true);
-    }
+    for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, warm));
 
     for (int substep = 0; substep < settings.substeps; ++substep) {
         for (Body& body : bodies) body.accelerate(eigen(settings.gravity), h);
@@ -456,7 +452,7 @@ void World::step(double dt, const SolverSettings& asked, const std::vector<Conta
             for (BlockRow& row : rows) solve_block(row, h, settings, false);
             for (ContactRow& row : contacts) solve_contact(row, h, settings, false);
         }
-        for (Body& body : bodies) body.move_on(h);
+        for (Body& body : bodies) body.move_on(h, true);
         if (!soft_step && settings.drift_correction == DriftCorrection::projection) {
             for (int i = 0; i < settings.projections; ++i) project(contacts, settings);
         }

@@ -106,7 +106,8 @@ TEST(LevelOfDetail, ChangesKeepMomentaAndHaveTheSameBitsOnTwoThreads)
     RunOptions options{.agents = 400, .seconds = 12};
     const RunResult one = run("level-of-detail", options);
     expect_all_marks(one);
-    // Twenty of each in every second but the first; two fall, unless whose turn it is lies already, and rise eight seconds later.
+    // Twenty of each in every second but the first; two fall, or fewer
+    // where one whose turn it is lies already, and rise eight seconds later.
     EXPECT_EQ(figure(one, "people promoted"), 220);
     EXPECT_EQ(figure(one, "people demoted"), 220);
     EXPECT_EQ(figure(one, "people who fell"), 21);

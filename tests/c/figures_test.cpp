@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "both.h"
-#include "c/joint_mirrors.h"
 #include "motley/c/figures.h"
 #include "motley/core/assembly.h"
 #include "motley/core/six_dof.h"

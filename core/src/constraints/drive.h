@@ -12,7 +12,7 @@
 // A rotor of inertia I_r that is geared to C moves with the bodies along the row. With K = J M^-1 J^T and
 // s = 1 / (1 + K I_r) an impulse along the row changes the speed by K s times the impulse, and the bodies get the share
 // s of it. A change of the bodies' speed by other constraints since then is shared with the rotor first: the share s of
-// it remains.
+// it remains. A substep begins with the change of the rotor's speed in the last one, and takes I_r times it from the bodies.
 //
 // One row and up to three impulses along it: that of the motor, bounded by its force times the substep h; that of the
 // spring, soft; and that of the limit, >= 0 at the lower end and <= 0 at the upper. They are solved one after another
@@ -115,8 +115,8 @@ struct Drive : ConstraintTraits {
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
         Real motor, spring, limit;
-        Real
-            rotor_change;  ///< m/s or rad/s, of the rotor in the substep: I_r times it is what it took from the bodies
+        /// m/s or rad/s, of the rotor's speed in the substep. I_r times it is what the rotor took from the bodies.
+        Real rotor_change;
         Real rotor_speed;  ///< m/s or rad/s, as the last sweep left it
     };
 

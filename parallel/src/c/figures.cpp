@@ -37,12 +37,12 @@ void motley_figure_destroy(motley_figure* figure)
 
 motley_status motley_figure_body_count(const motley_figure* figure, size_t* count)
 {
-    return call(__func__, [&] { need(count, "count") = need(figure, "figure").figure.bodies().size(); });
+    return call(__func__, [&] { need(count, "count") = figure_of(figure).bodies().size(); });
 }
 
 motley_status motley_figure_joint_count(const motley_figure* figure, size_t* count)
 {
-    return call(__func__, [&] { need(count, "count") = need(figure, "figure").figure.joint_count(); });
+    return call(__func__, [&] { need(count, "count") = figure_of(figure).joint_count(); });
 }
 
 motley_status motley_scene_add_assembly(motley_scene* scene, const motley_figure* figure, size_t count,
@@ -50,7 +50,7 @@ motley_status motley_scene_add_assembly(motley_scene* scene, const motley_figure
 {
     return call(__func__, [&] {
         Scene& to = scene_of(scene);
-        const Figure& of = need(figure, "figure").figure;
+        const Figure& of = figure_of(figure);
         const auto placings = read_all<Placing>(copies, count, stride, "copies");
         const auto ids = array<BodyId>(bodies, count * of.bodies().size(), "bodies");
         const std::vector<BodyId> added = add_assembly(to, of, placings);

@@ -31,6 +31,10 @@ inline Figure& figure_of(motley_figure* figure)
 {
     return need(figure, "figure").figure;
 }
+inline const Figure& figure_of(const motley_figure* figure)
+{
+    return need(figure, "figure").figure;
+}
 
 template <>
 struct Mirror<motley_vec2f, Vec2<float>> : Pair<motley_vec2f, Vec2<float>> {

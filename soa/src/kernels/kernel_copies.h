@@ -93,14 +93,14 @@ inline void integrate_copy_velocities(const KernelContext& context, const Figure
     });
 }
 
-/// change_of_inertia() of copies, as integrate_copy_positions() loads them.
-[[gnu::noinline, gnu::cold]] inline Lanes change_of_copies(const BodyArrays& arrays,
-                                                           const std::int32_t* offsets, const float* lanes,
-                                                           float h)
+/// rotate_again() for copies whose state before is that of `lanes`.
+[[gnu::noinline, gnu::cold]] inline void rotate_copies_again(Mover& body, const BodyArrays& arrays,
+                                                             const std::int32_t* offsets, const float* lanes,
+                                                             float h)
 {
-    return change_of_inertia(load_row<Mover>(lanes),
-                             load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), Lanes(h),
-                             arrays, offsets);
+    rotate_again(body, load_row<Mover>(lanes),
+                 load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), Lanes(h), arrays,
+                 offsets);
 }
 
 inline void integrate_copy_positions(const KernelContext& context, const FigureBlock& figure)
@@ -110,9 +110,10 @@ inline void integrate_copy_positions(const KernelContext& context, const FigureB
     for_each_copy(figure, [&](BodyKind, float* lanes, const std::int32_t* offsets, int) {
         auto body = load_row<Mover>(lanes);
         body.delta = body.delta + Lanes(h) * body.linear;
-        tumble(
-            body, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), Lanes(h),
-            [&] { return change_of_copies(arrays, offsets, lanes, h); }, [](Mover&, const Lanes&) {});
+        // Never again for fixed bodies, whose offsets are not of these arrays: without inertia they have no spread.
+        if (tumble(body, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), Lanes(h)))
+            [[unlikely]]
+            rotate_copies_again(body, arrays, offsets, lanes, h);
         store_row(body, lanes);
     });
 }

@@ -181,13 +181,15 @@ void integrate_velocities(const KernelContext& context, std::int32_t begin, std:
 
 // ---- x += h v ----------------------------------------------------------------------------------------
 
-inline Quat<Lanes> half_way_through(const Body<BodyKind::rigid>& body, const Lanes& h)
-{
-    return rotation_by(Lanes(0.5F) * h * body.angular) * body.delta_rotation;
-}
-
-/// What change_of_inertia() is, half way, where a response has doubled at the end of the substep.
+/// A rotation half way through which change_of_inertia() is larger has doubled a response at its end.
 inline constexpr float most_change = 0.125F;
+
+/// tr(I I'^-1) - 3: how much a rotation changed the inertia I, with I' after it. Where it made a response c times as high
+/// or as low, about a principal axis, it is c + 1/c - 2.
+inline Lanes change_of_inertia(const Sym3<Lanes>& inertia, const Sym3<Lanes>& inverse_after)
+{
+    return trace_of_product(inertia, inverse_after) - Lanes(3);
+}
 
 /// tr I tr I^-1 - 9: 0 for a body whose inertia is that of a ball, the larger the thinner or flatter it is.
 inline Lanes spread_of(const Sym3<Lanes>& inertia, const Sym3<Lanes>& inverse_inertia)
@@ -202,26 +204,58 @@ inline auto precesses(const Lanes& turn_squared, const Lanes& spread)
     return (turn_squared > Lanes(0.01F)) & (spread > Lanes(0.1F));
 }
 
-/// How much a rotation changes the inertia of a body with constraints, as far as their rows are concerned; of a body
-/// without, -1 where it precesses(), else 0. `start` is I^-1 when the step began, and `offsets` says where the body is in
-/// `arrays`.
-///
-/// Sweeps divide by the responses that rows had when they were made: those of joints when the substep began, those of
-/// contacts when the step began. Where a response has become c times as high since, a sweep leaves 1 - c of the speed that
-/// it should take away, and above c = 2 that is more than there was: relaxation, or the next substep, throws the body. For
-/// a rotation about a principal axis, with I then and I' now, c + 1/c - 2 = tr(I I'^-1) - 3, which is returned. It is
-/// looked at half way through the substep, where it is about a quarter of that at the end: an eighth for c = 2.
-inline Lanes change_of_inertia(const Body<BodyKind::rigid>& body, const Sym3<Lanes>& start, const Lanes& h,
-                               const BodyArrays& arrays, const std::int32_t* offsets)
+/// Replaces the rotation of `to` in the lanes of the mask.
+template <class Mask>
+void replace_rotation(Body<BodyKind::rigid>& to, const Mask& mask, const Body<BodyKind::rigid>& from)
 {
-    const Sym3<Lanes> half_way = rotate_tensor(half_way_through(body, h), start),
-                      inertia = inverse(body.inverse_inertia);
-    const Lanes zero(0), one(1);
-    const Lanes in_substep = trace_of_product(inertia, half_way) - Lanes(3);
-    const Lanes in_step = trace_of_product(inverse(start), half_way) - Lanes(3);
+    const auto replace = [&](auto& into, const auto& by) {
+        for (int k = 0; k < fields_of<std::remove_cvref_t<decltype(into)>>; ++k) {
+            Lanes& field = reinterpret_cast<Lanes*>(&into)[k];
+            field = select(mask, reinterpret_cast<const Lanes*>(&by)[k], field);
+        }
+    };
+    replace(to.delta_rotation, from.delta_rotation);
+    replace(to.angular, from.angular);
+    replace(to.inverse_inertia, from.inverse_inertia);
+}
+
+/// Rotates a body in sixteen pieces, all with the same angular momentum.
+inline void rotate_in_pieces(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start, const Lanes& h)
+{
+    constexpr int pieces = 16;
+    const Lanes piece = Lanes(1.0F / pieces) * h;
+    const Vec3<Lanes> momentum = inverse(body.inverse_inertia) * body.angular;
+    Quat<Lanes>& q = body.delta_rotation;
+    for (int k = 0; k < pieces; ++k) {
+        const Quat<Lanes> half_way = rotation_by(Lanes(0.5F) * piece * body.angular) * q;
+        q = normalised(rotation_by(piece * (rotate_tensor(half_way, start) * momentum)) * q);
+        body.inverse_inertia = rotate_tensor(q, start);
+        body.angular = body.inverse_inertia * momentum;
+    }
+}
+
+/// Rotates again what tumble() cannot rotate well: `body` is `before` after tumble(), `start` is I^-1 when the step began,
+/// and `offsets` says where the body is in `arrays`.
+///
+/// A body with constraints keeps I and w where a response would more than double. Sweeps divide by the responses that rows
+/// had when they were made: those of joints when the substep began, those of contacts when the step began. Where a response
+/// has become c times as high since, a sweep leaves 1 - c of the speed that it should take away, and above c = 2 that is more
+/// than there was: relaxation, or the next substep, throws the body. The change is looked at half way through the substep,
+/// where it is about a quarter of that at the end. A free body that precesses() is rotated in pieces.
+inline void rotate_again(Body<BodyKind::rigid>& body, const Body<BodyKind::rigid>& before,
+                         const Sym3<Lanes>& start, const Lanes& h, const BodyArrays& arrays,
+                         const std::int32_t* offsets)
+{
+    const Vec3<Lanes>& w = before.angular;
+    const Sym3<Lanes> inertia = inverse(before.inverse_inertia);
+    const Sym3<Lanes> half_way =
+        rotate_tensor(rotation_by(Lanes(0.5F) * h * w) * before.delta_rotation, start);
+    const Lanes turn_squared = h * h * dot(w, w), one(1);
+    const Lanes in_substep = change_of_inertia(inertia, half_way);
+    const Lanes in_step = change_of_inertia(inverse(start), half_way);
     const auto fast =
-        precesses(h * h * dot(body.angular, body.angular), spread_of(inertia, body.inverse_inertia));
-    if (!any(maximum(in_substep, in_step) > Lanes(most_change)) && !any(fast)) return zero;
+        precesses(turn_squared, spread_of(inertia, before.inverse_inertia)) & (turn_squared < one);
+    if (!any(maximum(in_substep, in_step) > Lanes(most_change)) && !any(fast)) return;
     alignas(64) float has_constraints[Lanes_width], has_contacts[Lanes_width];  // 1 or 0
     for (int lane = 0; lane < Lanes_width; ++lane) {
         const std::uint32_t mask = arrays.colours[offsets[lane] / offsets_a_row(BodyKind::rigid)];
@@ -229,36 +263,29 @@ inline Lanes change_of_inertia(const Body<BodyKind::rigid>& body, const Sym3<Lan
         has_contacts[lane] = (mask & contact_bit) != 0 ? 1.0F : 0.0F;
     }
     const Lanes bound = load_lanes(has_constraints), touched = load_lanes(has_contacts);
-    const Lanes of_bound = maximum(maximum(bound * in_substep, touched * in_step), zero);
-    return of_bound - select(fast, one - bound, zero);
+    Body<BodyKind::rigid> kept = before;
+    kept.delta_rotation = normalised(rotation_by(h * w) * before.delta_rotation);
+    replace_rotation(body, maximum(bound * in_substep, touched * in_step) > Lanes(most_change), kept);
+    const auto in_pieces = fast & (bound < one);
+    if (!any(in_pieces)) return;
+    Body<BodyKind::rigid> fine = before;
+    rotate_in_pieces(fine, start, h);
+    replace_rotation(body, in_pieces, fine);
 }
 
 /// Rotates a body by its angular velocity at the middle of the substep, and carries its angular momentum L = I w
 /// through the rotation (I: inertia, w: angular velocity): afterwards w = I^-1 L with the rotated inertia. So L is
 /// kept to rounding, the rotation is right to second order, and a tumbling body cannot gain energy without bound. A
 /// body that turns by more than a radian per substep, which no substep can follow, or that has no inverse inertia
-/// keeps w instead, and with it its energy. One with constraints keeps w and also I where the rotation would more than
-/// double a response, and a free one that precesses fast is rotated in pieces. `change` returns change_of_inertia(), and
-/// `rotate_in_pieces(body, lanes)` puts the latter into these lanes. Both are seldom called.
-template <class Change, class RotateInPieces>
-void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inertia, const Lanes& h,
-            const Change& change, const RotateInPieces& rotate_in_pieces)
+/// keeps w instead, and with it its energy. Returns whether a lane may want rotate_again().
+inline bool tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inertia, const Lanes& h)
 {
     const Vec3<Lanes> speed = body.angular;
     const Sym3<Lanes> i = body.inverse_inertia, inertia = inverse(i);
     const Lanes turn_squared = h * h * dot(speed, speed);
-    const Quat<Lanes> half_way = half_way_through(body, h);
-    // A rotation by an angle of sine 2 s changes I by at most 4 s^2 (tr I tr I^-1 - 9).
-    const Vec3<Lanes> sines{half_way.x, half_way.y, half_way.z};
-    const Lanes spread = spread_of(inertia, i);
-    const Lanes at_most = maximum(Lanes(4) * dot(sines, sines), Lanes(0.25F) * turn_squared) * spread;
-    const Lanes most(most_change);
-    Lanes changed(0);
-    if (any(at_most > most) || any(precesses(turn_squared, spread))) [[unlikely]]
-        changed = change();
-    const auto keeps = changed > most;
-    const auto turns = (trace(i) > Lanes(0)) & (turn_squared < Lanes(1)) & (changed < most);
+    const auto turns = (trace(i) > Lanes(0)) & (turn_squared < Lanes(1));
     const Vec3<Lanes> momentum = inertia * speed;
+    const Quat<Lanes> half_way = rotation_by(Lanes(0.5F) * h * speed) * body.delta_rotation;
     const auto speed_of = [&](const Sym3<Lanes>& inverse_inertia) {
         const Vec3<Lanes> w = inverse_inertia * momentum;
         return Vec3<Lanes>{select(turns, w.x, speed.x), select(turns, w.y, speed.y),
@@ -266,59 +293,23 @@ void tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inerti
     };
     const Vec3<Lanes> then = speed_of(rotate_tensor(half_way, start_inverse_inertia));
     body.delta_rotation = normalised(rotation_by(h * then) * body.delta_rotation);
-    const Sym3<Lanes> now = rotate_tensor(body.delta_rotation, start_inverse_inertia);
-    body.angular = speed_of(now);
-    body.inverse_inertia = {select(keeps, i.xx, now.xx), select(keeps, i.xy, now.xy),
-                            select(keeps, i.xz, now.xz), select(keeps, i.yy, now.yy),
-                            select(keeps, i.yz, now.yz), select(keeps, i.zz, now.zz)};
-    const auto in_pieces = (changed < Lanes(0)) & (turn_squared < Lanes(1));
-    if (any(in_pieces)) [[unlikely]]
-        rotate_in_pieces(body, select(in_pieces, Lanes(1), Lanes(0)));
+    body.inverse_inertia = rotate_tensor(body.delta_rotation, start_inverse_inertia);
+    body.angular = speed_of(body.inverse_inertia);
+    // With s the sine of half the angle so far, no rotation changes I by more than 4 s^2 times the spread.
+    const Vec3<Lanes> sines{half_way.x, half_way.y, half_way.z};
+    const Lanes spread = spread_of(inertia, i);
+    const Lanes at_most = maximum(Lanes(4) * dot(sines, sines), Lanes(0.25F) * turn_squared) * spread;
+    return any(at_most > Lanes(most_change)) || any(precesses(turn_squared, spread));
 }
 
-/// Replaces those `lanes` of `body` that are 1 by `before` rotated in sixteen pieces, all with the same angular momentum.
-inline void put_in_pieces(Body<BodyKind::rigid>& body, const Lanes& lanes,
-                          const Body<BodyKind::rigid>& before, const Sym3<Lanes>& start, const Lanes& h)
+/// rotate_again() for bodies whose state before is that of the arrays. It takes little, so that the call is small where it is
+/// inlined.
+[[gnu::noinline, gnu::cold]] inline void rotate_rows_again(Body<BodyKind::rigid>& body,
+                                                           const BodyArrays& arrays,
+                                                           const std::int32_t* offsets, float h)
 {
-    constexpr int pieces = 16;
-    const Lanes piece = Lanes(1.0F / pieces) * h;
-    const Vec3<Lanes> momentum = inverse(before.inverse_inertia) * before.angular;
-    Quat<Lanes> q = before.delta_rotation;
-    Vec3<Lanes> w = before.angular;
-    Sym3<Lanes> i = before.inverse_inertia;
-    for (int k = 0; k < pieces; ++k) {
-        const Quat<Lanes> half_way = rotation_by(Lanes(0.5F) * piece * w) * q;
-        q = normalised(rotation_by(piece * (rotate_tensor(half_way, start) * momentum)) * q);
-        i = rotate_tensor(q, start);
-        w = i * momentum;
-    }
-    const auto replaced = lanes > Lanes(0);
-    const auto put = [&](auto& to, const auto& from) {
-        const Lanes* fields = reinterpret_cast<const Lanes*>(&from);
-        for (int k = 0; k < fields_of<std::remove_cvref_t<decltype(to)>>; ++k) {
-            Lanes& field = reinterpret_cast<Lanes*>(&to)[k];
-            field = select(replaced, fields[k], field);
-        }
-    };
-    put(body.delta_rotation, q);
-    put(body.angular, w);
-    put(body.inverse_inertia, i);
-}
-
-[[gnu::noinline, gnu::cold]] inline void put_rows_in_pieces(Body<BodyKind::rigid>& body, const Lanes& lanes,
-                                                            const BodyArrays& arrays,
-                                                            const std::int32_t* offsets, float h)
-{
-    put_in_pieces(body, lanes, load_body(arrays, offsets, static_cast<Body<BodyKind::rigid>*>(nullptr)),
-                  load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h));
-}
-
-/// change_of_inertia() of bodies as the arrays have them. It takes little, so that the call is small where it is inlined.
-[[gnu::noinline, gnu::cold]] inline Lanes change_of_rows(const BodyArrays& arrays,
-                                                         const std::int32_t* offsets, float h)
-{
-    return change_of_inertia(load_body(arrays, offsets, static_cast<Body<BodyKind::rigid>*>(nullptr)),
-                             load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h), arrays, offsets);
+    rotate_again(body, load_body(arrays, offsets, static_cast<Body<BodyKind::rigid>*>(nullptr)),
+                 load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h), arrays, offsets);
 }
 
 template <BodyKind kind>
@@ -326,13 +317,10 @@ void advance(const BodyArrays& arrays, const std::int32_t* offsets, Body<kind>& 
 {
     body.delta = body.delta + Lanes(h) * body.linear;
     if constexpr (kind == BodyKind::planar) body.delta_yaw = body.delta_yaw + Lanes(h) * body.yaw_rate;
-    if constexpr (kind == BodyKind::rigid)
-        tumble(
-            body, load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h),
-            [&] { return change_of_rows(arrays, offsets, h); },
-            [&](Body<kind>& turned, const Lanes& lanes) {
-                put_rows_in_pieces(turned, lanes, arrays, offsets, h);
-            });
+    if constexpr (kind == BodyKind::rigid) {
+        if (tumble(body, load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h))) [[unlikely]]
+            rotate_rows_again(body, arrays, offsets, h);
+    }
     if constexpr (kind == BodyKind::fixed)
         body.delta_rotation = normalised(rotation_by(Lanes(h) * body.angular) * body.delta_rotation);
 }

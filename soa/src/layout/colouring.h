@@ -4,6 +4,7 @@
 // keeps its colour. Static and kinematic bodies have no mask: no constraint writes them, so sharing is safe.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -38,19 +39,15 @@ class ColourMasks {
             masks_[kind].resize(bodies.rows(static_cast<BodyKind>(kind)).size(), 0U);
         }
     }
-    /// Takes the colour and returns true if neither body has it yet. The overflow colour is always free.
+    /// Takes the colour and returns true if neither body has it yet. The overflow colour is always free; its bit only says
+    /// that a body has constraints.
     bool try_take(BodyRow a, BodyRow b, std::uint8_t colour)
     {
-        if (colour == overflow_colour) {
-            note_overflow(a, b);
-            return true;
-        }
         const std::uint32_t bit = 1U << colour;
         std::uint32_t* mask_a = mask(a);
         std::uint32_t* mask_b = mask(b);
-        if (((mask_a ? *mask_a : 0U) | (mask_b ? *mask_b : 0U)) & bit) return false;
-        if (mask_a) *mask_a |= bit;
-        if (mask_b) *mask_b |= bit;
+        if (colour != overflow_colour && (used(mask_a, mask_b) & bit)) return false;
+        note(bit, mask_a, mask_b);
         return true;
     }
     /// Takes and returns the first colour free on both bodies; overflow_colour when there is none.
@@ -58,18 +55,11 @@ class ColourMasks {
     {
         std::uint32_t* mask_a = mask(a);
         std::uint32_t* mask_b = mask(b);
-        const std::uint32_t used = (mask_a ? *mask_a : 0U) | (mask_b ? *mask_b : 0U);
-        const int colour = std::countr_one(used);
-        if (colour >= parallel_colours) {
-            note_overflow(a, b);
-            return overflow_colour;
-        }
-        if (mask_a) *mask_a |= 1U << colour;
-        if (mask_b) *mask_b |= 1U << colour;
+        const int colour = std::min(std::countr_one(used(mask_a, mask_b)), parallel_colours);
+        note(1U << colour, mask_a, mask_b);
         return static_cast<std::uint8_t>(colour);
     }
-
-    void note_contact(BodyRow a, BodyRow b) { note(contact_bit, a, b); }
+    void note_contact(BodyRow a, BodyRow b) { note(contact_bit, mask(a), mask(b)); }
     /// A mask a row: 0 where no constraint acts.
     [[nodiscard]] const std::uint32_t* of(BodyKind kind) const
     {
@@ -83,13 +73,14 @@ class ColourMasks {
         return body.kind() == BodyKind::fixed ? nullptr
                                               : &masks_[static_cast<std::size_t>(body.kind())][body.row()];
     }
-    /// For bodies whose only constraints overflow.
-    void note_overflow(BodyRow a, BodyRow b) { note(1U << overflow_colour, a, b); }
-    void note(std::uint32_t bit, BodyRow a, BodyRow b)
+    static std::uint32_t used(const std::uint32_t* mask_a, const std::uint32_t* mask_b)
     {
-        for (std::uint32_t* of_body : {mask(a), mask(b)}) {
-            if (of_body) *of_body |= bit;
-        }
+        return (mask_a ? *mask_a : 0U) | (mask_b ? *mask_b : 0U);
+    }
+    static void note(std::uint32_t bit, std::uint32_t* mask_a, std::uint32_t* mask_b)
+    {
+        if (mask_a) *mask_a |= bit;
+        if (mask_b) *mask_b |= bit;
     }
     std::array<AlignedVector<std::uint32_t>, moving_kinds> masks_;
 };

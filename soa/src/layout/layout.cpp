@@ -156,9 +156,9 @@ void Layout::colour_contacts(const BodyStore& bodies, ContactCache& cache)
                 continue;
             }
         }
+        masks_.note_contact(placement.a, placement.b);
         // A joint added since may have taken the colour; then the contact gets another one below. So does one in the
         // overflow: its hub may have fewer constraints by now.
-        masks_.note_contact(placement.a, placement.b);
         const bool keeps =
             placement.colour < overflow_colour && masks_.try_take(placement.a, placement.b, placement.colour);
         if (!keeps) uncoloured_[uncoloured++] = i;

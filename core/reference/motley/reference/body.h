@@ -24,7 +24,6 @@ struct Body {
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< body frame
     double linear_damping = 0, angular_damping = 0;         ///< 1/s
     bool has_constraints = false;                           ///< in the present step
-    bool is_swept = false;  ///< whether it has constraints that are solved by sweeps
     std::optional<Eigen::Quaterniond>
         contacts_made_at;  ///< if it has contacts: the orientation of their rows
     /// The orientation in which inverse_mass() sees the inertia: see move_on().
@@ -39,9 +38,9 @@ struct Body {
     /// v += h (g + M^-1 f), with the time h, gravity g and the force f; then v /= 1 + h c, with the damping c.
     void accelerate(const Eigen::Vector3d& gravity, double seconds);
     /// x += h v. A rigid body is turned by the angular velocity that it has half way, and afterwards has the angular
-    /// velocity that keeps its angular momentum; or, if it is swept, keeps inertia and angular velocity where rows would
-    /// see too different an inertia: see change_of_inertia() of the lanes.
-    void move_on(double seconds);
+    /// velocity that keeps its angular momentum; or, if its constraints are solved by sweeps, keeps inertia and angular
+    /// velocity where rows would see too different an inertia: see rotate_again() of the lanes.
+    void move_on(double seconds, bool sweeps);
     /// The inertia in the world if the body had this orientation, kg m2.
     [[nodiscard]] Eigen::Matrix3d inertia_at(const Eigen::Quaterniond& turned) const;
 };

@@ -83,7 +83,7 @@ class World {
     [[nodiscard]] std::vector<Block> blocks_of(const Joint& joint) const;
     [[nodiscard]] Soft contact_softness(int a, int b, double h, const SolverSettings& settings) const;
     void begin_step();
-    void note_swept(int a, int b, bool is_contact);
+    void note_constraint(int a, int b, bool is_contact);
     void find_rows(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows) const;
     void begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows);
     [[nodiscard]] Eigen::MatrixXd mass_of(const Joint& joint, const Block& block) const;

@@ -18,7 +18,7 @@ typedef struct motley_figure motley_figure;
 typedef struct motley_placing {
     size_t struct_size;     ///< set by motley_default_placing()
     motley_vec3d position;  ///< m, of the origin of the figure's frame; default 0
-    /// finite, not zero, normalised on entry; planar bodies: about z; default none
+    /// finite, not zero, normalised on entry; planar bodies: about z; default {0, 0, 0, 1}
     motley_quatd orientation;
     motley_vec3f linear_velocity;  ///< m/s, added to that of its bodies that are not static; default 0
 } motley_placing;
