@@ -65,6 +65,15 @@ void Body::advance(const Vector6& v, double seconds)
         orientation = (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * orientation).normalized();
 }
 
+void Body::displace(const Vector6& displacement)
+{
+    const Eigen::Quaterniond before = orientation;
+    advance(displacement, 1);
+    const Eigen::Quaterniond turn = orientation * before.conjugate();
+    velocity.tail<3>() = turn * Eigen::Vector3d(velocity.tail<3>());
+    if (inertia_kept_at) inertia_kept_at = turn * *inertia_kept_at;
+}
+
 void Body::accelerate(const Eigen::Vector3d& gravity, double h)
 {
     if (motion != BodyMotion::dynamic_body) return;
@@ -108,9 +117,9 @@ void Body::move_on(double seconds, bool sweeps)
     const auto speed = [&](const Body& turned) {
         return Eigen::Vector3d(inertia_at(turned.orientation).inverse() * momentum);
     };
-    // A free body may precess too fast for one piece: see precesses() of the lanes.
+    // A body may precess too fast for one piece: see precesses() of the lanes.
     const double spread = then.trace() * then.inverse().trace() - 9;
-    const int pieces = !has_constraints && spread > 0.1 && turn * turn > 0.01 ? 16 : 1;
+    const int pieces = spread > 0.1 && turn * turn > 0.01 ? 16 : 1;
     for (int piece = 0; piece < pieces; ++piece) {
         half_way = *this;
         half_way.advance(velocity, seconds / pieces / 2);

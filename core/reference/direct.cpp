@@ -243,7 +243,7 @@ void World::project_directly(const std::vector<ContactRow>& contacts, const Solv
     for (double share = 1; share > 0.01; share /= 2) {
         bodies = before;
         for (std::size_t i = 0; i < bodies.size(); ++i)
-            bodies[i].advance(assembly.change(solution, i), share);
+            bodies[i].displace(share * assembly.change(solution, i));
         if (position_error() <= error) break;
     }
 }

@@ -389,8 +389,8 @@ void World::project_contacts(const Joint& joint, const SolverSettings& settings)
         const double lambda = std::max(-mass_of(joint, block)(0, 0) * left, 0.0);
         move += pair_inverse_mass(a, b) * block.jacobian.transpose() * lambda;
     }
-    a.advance(move.head<6>(), 1);
-    b.advance(move.tail<6>(), 1);
+    a.displace(move.head<6>());
+    b.displace(move.tail<6>());
 }
 
 void World::project(std::vector<ContactRow>& contacts, const SolverSettings& settings)
@@ -400,8 +400,8 @@ void World::project(std::vector<ContactRow>& contacts, const SolverSettings& set
         Body& body_b = bodies[static_cast<std::size_t>(b)];
         const Eigen::Matrix<double, 12, 1> change =
             pair_inverse_mass(body_a, body_b) * jacobian.transpose() * push;
-        body_a.advance(change.head<6>(), 1);
-        body_b.advance(change.tail<6>(), 1);
+        body_a.displace(change.head<6>());
+        body_b.displace(change.tail<6>());
     };
     for (Joint& joint : joints) {
         project_contacts(joint, settings);

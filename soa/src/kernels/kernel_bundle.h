@@ -233,13 +233,21 @@ template <BodyKind kind>
     }
 }
 
-/// Stores the result of a position solve: the displacement of a body, and its inertia rotated with it.
+/// Stores the result of a position solve. Inertia and angular velocity rotate with the body, so that moving it takes no
+/// energy from it and gives it none, and so that an inertia that rotate_again() kept stays close to that of the rows.
 template <BodyKind kind>
 [[gnu::noinline]] void store_displaced(const BodyArrays& arrays, const std::int32_t* offsets,
                                        const Body<kind>& displaced, int count)
 {
     if (!arrays.can_move) return;
     Body<kind> body = displaced;
-    turn_inertia(arrays, offsets, body);
+    if constexpr (kind == BodyKind::rigid) {
+        Lanes q[4];
+        load_quads(arrays.delta + 4, offset_floats, offsets, q);
+        const Quat<Lanes> turn = body.delta_rotation * Quat<Lanes>{-q[0], -q[1], -q[2], q[3]};
+        body.inverse_inertia = rotate_tensor(turn, body.inverse_inertia);
+        const Vec3<Lanes> w = rotate(turn, body.angular);
+        store_quads(arrays.velocity + 4, offset_floats, offsets, {w.x, w.y, w.z, Lanes(0)}, count);
+    }
     store_delta(arrays, offsets, body, count);
 }

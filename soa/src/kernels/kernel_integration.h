@@ -197,7 +197,7 @@ inline Lanes spread_of(const Sym3<Lanes>& inertia, const Sym3<Lanes>& inverse_in
     return trace(inertia) * trace(inverse_inertia) - Lanes(9);
 }
 
-/// Whether a free body precesses too fast to be rotated in one piece: the square of its turn in radians is above 0.01. Its
+/// Whether a body precesses too fast to be rotated in one piece: the square of its turn in radians is above 0.01. Its
 /// energy would grow by z^4 / 4 in each, with z the turn of w in the body's frame.
 inline auto precesses(const Lanes& turn_squared, const Lanes& spread)
 {
@@ -241,7 +241,7 @@ inline void rotate_in_pieces(Body<BodyKind::rigid>& body, const Sym3<Lanes>& sta
 /// had when they were made: those of joints when the substep began, those of contacts when the step began. Where a response
 /// has become c times as high since, a sweep leaves 1 - c of the speed that it should take away, and above c = 2 that is more
 /// than there was: relaxation, or the next substep, throws the body. The change is looked at half way through the substep,
-/// where it is about a quarter of that at the end. A free body that precesses() is rotated in pieces.
+/// where it is about a quarter of that at the end. Any other body that precesses() is rotated in pieces.
 inline void rotate_again(Body<BodyKind::rigid>& body, const Body<BodyKind::rigid>& before,
                          const Sym3<Lanes>& start, const Lanes& h, const BodyArrays& arrays,
                          const std::int32_t* offsets)
@@ -265,8 +265,9 @@ inline void rotate_again(Body<BodyKind::rigid>& body, const Body<BodyKind::rigid
     const Lanes bound = load_lanes(has_constraints), touched = load_lanes(has_contacts);
     Body<BodyKind::rigid> kept = before;
     kept.delta_rotation = normalised(rotation_by(h * w) * before.delta_rotation);
-    replace_rotation(body, maximum(bound * in_substep, touched * in_step) > Lanes(most_change), kept);
-    const auto in_pieces = fast & (bound < one);
+    const Lanes most = maximum(bound * in_substep, touched * in_step);
+    replace_rotation(body, most > Lanes(most_change), kept);
+    const auto in_pieces = fast & (Lanes(most_change) > most);
     if (!any(in_pieces)) return;
     Body<BodyKind::rigid> fine = before;
     rotate_in_pieces(fine, start, h);

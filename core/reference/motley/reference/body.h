@@ -35,6 +35,8 @@ struct Body {
     [[nodiscard]] Matrix6 inverse_mass() const;
     /// Moves the pose with a constant generalised velocity for a time, exactly.
     void advance(const Vector6& generalised_velocity, double seconds);
+    /// Moves the pose as a position solve does. The angular velocity is rotated too, so that the energy stays.
+    void displace(const Vector6& displacement);
     /// v += h (g + M^-1 f), with the time h, gravity g and the force f; then v /= 1 + h c, with the damping c.
     void accelerate(const Eigen::Vector3d& gravity, double seconds);
     /// x += h v. A rigid body is turned by the angular velocity that it has half way, and afterwards has the angular
