@@ -79,19 +79,51 @@ class Run {
       this.ends.fill(0);
       this.pressure.fill(0);
     }
-    const ends = this.ends;
+    if (key) this.decodeShapes(count);
+    else this.decodeChanges(count);
+  }
+  decodeShapes(count) {
     for (let i = 0; i < count; ++i) {
-      if (key) {
-        this.person[i] = this.number();
-        const radius = this.number();
-        this.isLong[i] = radius % 2;
-        this.radius[i] = Math.floor(radius / 2);
-      }
-      const x = ends[4 * i] += this.signed(), y = ends[4 * i + 1] += this.signed();
-      ends[4 * i + 2] = this.isLong[i] ? x + this.signed() : x;
-      ends[4 * i + 3] = this.isLong[i] ? y + this.signed() : y;
-      this.pressure[i] += this.signed();
+      this.person[i] = this.number();
+      const radius = this.number();
+      this.isLong[i] = radius % 2;
+      this.radius[i] = Math.floor(radius / 2);
+      this.change(i);
     }
+  }
+  change(i) {
+    const ends = this.ends, x = ends[4 * i] += this.signed(), y = ends[4 * i + 1] += this.signed();
+    ends[4 * i + 2] = this.isLong[i] ? x + this.signed() : x;
+    ends[4 * i + 3] = this.isLong[i] ? y + this.signed() : y;
+    this.pressure[i] += this.signed();
+  }
+  // Nearly all changes of a disc are numbers of one or two bytes, which are read here without a call each.
+  decodeChanges(count) {
+    const { bytes, ends, isLong, pressure } = this, change = [0, 0, 0];
+    let at = this.at;
+    for (let i = 0; i < count; ++i) {
+      const start = at;
+      let isShort = !isLong[i];
+      for (let k = 0; isShort && k < 3; ++k) {
+        let folded = bytes[at++];
+        if (folded > 127) {
+          const high = bytes[at++];
+          folded += 128 * high - 128;
+          isShort = high < 128;
+        }
+        change[k] = (folded >>> 1) ^ -(folded & 1);
+      }
+      if (!isShort) {
+        this.at = start;
+        this.change(i);
+        at = this.at;
+        continue;
+      }
+      ends[4 * i + 2] = ends[4 * i] += change[0];
+      ends[4 * i + 3] = ends[4 * i + 1] += change[1];
+      pressure[i] += change[2];
+    }
+    this.at = at;
   }
   // The place of a person among the shapes of the present frame, or -1.
   find(person) { return this.person.indexOf(person); }

@@ -9,7 +9,11 @@ const RAMP = Array.from({ length: 97 }, (_, step) => {
   const at = step / 32, i = Math.min(2, Math.floor(at));
   return STOPS[i].map((c, k) => Math.round(c + (at - i) * (STOPS[i + 1][k] - c)));
 });
-function rampColour(share) { return RAMP[Math.round(96 * Math.min(Math.max(share, 0), 1))]; }
+function rampStep(share) { return Math.round(96 * Math.min(Math.max(share, 0), 1)); }
+function rampColour(share) { return RAMP[rampStep(share)]; }
+// The colours of the ramp, and darker ones for rims, as pixels: four bytes each.
+function pixelsOf(colours) { return new Uint32Array(Uint8Array.from(colours.flatMap((colour) => [...colour, 255])).buffer); }
+const RIM_SHADE = 0.62, RAMP_PIXELS = pixelsOf(RAMP), RIM_PIXELS = pixelsOf(RAMP.map((colour) => colour.map((c) => RIM_SHADE * c)));
 
 const raw = atob(recording);
 const bytes = new Uint8Array(raw.length);
@@ -26,38 +30,16 @@ void main() {
   place = position.xy * (around + abs(half_axis) + least);
   gl_Position = projectionMatrix * viewMatrix * vec4(middle + place, 0.0, 1.0);
 }`;
-// What fragments share: the colour `off` metres outside of a shape, darker at the rim of one that is not tiny.
-const RIM = `
+// The colour of a capsule is darker at its rim, unless it is tiny.
+const FRAGMENT = `
 precision highp float;
-varying float around; varying vec4 colour;
+varying vec2 place; varying vec2 axis; varying float around; varying vec4 colour;
 uniform float least;
-vec4 rimmed(float off) {
-  return vec4(off > -1.5 * least && around > 4.0 * least ? 0.62 * colour.rgb : colour.rgb, colour.a);
-}`;
-const FRAGMENT = RIM + `
-varying vec2 place; varying vec2 axis;
 void main() {
   float along = dot(axis, axis) > 0.0 ? clamp(dot(place, axis) / dot(axis, axis), -1.0, 1.0) : 0.0;
   float off = length(place - along * axis) - around;
   if (off > 0.0) discard;
-  gl_FragColor = rimmed(off);
-}`;
-
-const POINT_VERTEX = `
-attribute float radius; attribute vec4 paint;
-varying vec4 colour; varying float around; varying float reach;
-uniform float least; uniform float ratio;
-void main() {
-  around = max(radius, least); reach = around + least; colour = paint;
-  gl_PointSize = 2.0 * reach / least * ratio;
-  gl_Position = projectionMatrix * viewMatrix * vec4(position.xy, 0.0, 1.0);
-}`;
-const POINT_FRAGMENT = RIM + `
-varying float reach;
-void main() {
-  float off = length((gl_PointCoord - 0.5) * 2.0 * reach) - around;
-  if (off > 0.0) discard;
-  gl_FragColor = rimmed(off);
+  gl_FragColor = vec4(off > -1.5 * least && around > 4.0 * least ? ${RIM_SHADE} * colour.rgb : colour.rgb, colour.a);
 }`;
 
 const SQUARE = `
@@ -65,16 +47,14 @@ precision highp float;
 varying vec4 colour;
 void main() { gl_FragColor = colour; }`;
 
-// Many shapes in one call, each of which takes the same number of vertices.
-class Batch {
-  constructor(scene, order, vertices, vertexShader, fragmentShader) {
+// Many capsules, or squares, in one call: four corners each, not instances, which browsers without a graphics card draw slowly.
+class Capsules {
+  constructor(scene, order, fragmentShader = FRAGMENT) {
     this.least = { value: 0.01 };
-    this.ratio = { value: 1 };
-    this.material = new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: { least: this.least, ratio: this.ratio },
+    this.material = new THREE.ShaderMaterial({ vertexShader: VERTEX, fragmentShader, uniforms: { least: this.least },
                                                transparent: true, depthTest: false });
     this.scene = scene;
     this.order = order;
-    this.vertices = vertices;
     this.room = 0;
   }
   attribute(name, array, size, normalized = false) {
@@ -85,33 +65,6 @@ class Batch {
     if (count <= this.room) return;
     this.room = Math.ceil(count * 1.2) + 16;
     this.geometry = new THREE.BufferGeometry();
-    this.attribute("radius", new Float32Array(this.vertices * this.room), 1);
-    this.attribute("paint", new Uint8Array(4 * this.vertices * this.room), 4, true);
-    if (this.drawn) this.scene.remove(this.drawn);
-    this.drawn = this.build();
-    this.drawn.frustumCulled = false;
-    this.drawn.renderOrder = this.order;
-    this.scene.add(this.drawn);
-  }
-  setVertex(vertex, radius, colour, alpha) {
-    const paint = this.paint.array;
-    this.radius.array[vertex] = radius;
-    for (let k = 0; k < 3; ++k) paint[4 * vertex + k] = colour[k];
-    paint[4 * vertex + 3] = 255 * alpha;
-  }
-  // Shows the first `count` shapes, which take `range` places in the order of drawing.
-  showRange(count, range, changed) {
-    if (!this.drawn) return;
-    this.geometry.setDrawRange(0, range);
-    for (const attribute of [changed, this.radius, this.paint]) attribute.needsUpdate = true;
-    this.drawn.visible = count > 0;
-  }
-}
-
-// Capsules, or squares: four corners each, not instances, which browsers without a graphics card draw slowly.
-class Capsules extends Batch {
-  constructor(scene, order, fragment = FRAGMENT) { super(scene, order, 4, VERTEX, fragment); }
-  build() {
     const corners = new Float32Array(12 * this.room), index = new Uint32Array(6 * this.room);
     for (let i = 0; i < this.room; ++i) {
       corners.set([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0], 12 * i);
@@ -119,36 +72,81 @@ class Capsules extends Batch {
     }
     this.attribute("position", corners, 3);
     this.attribute("ends", new Float32Array(16 * this.room), 4);
+    this.attribute("radius", new Float32Array(4 * this.room), 1);
+    this.attribute("paint", new Uint8Array(16 * this.room), 4, true);
     this.geometry.setIndex(new THREE.BufferAttribute(index, 1));
-    return new THREE.Mesh(this.geometry, this.material);
+    if (this.drawn) this.scene.remove(this.drawn);
+    this.drawn = new THREE.Mesh(this.geometry, this.material);
+    this.drawn.frustumCulled = false;
+    this.drawn.renderOrder = this.order;
+    this.scene.add(this.drawn);
   }
   set(i, x0, y0, x1, y1, radius, colour, alpha) {
-    const ends = this.ends.array;
+    const ends = this.ends.array, paint = this.paint.array;
     for (let corner = 4 * i; corner < 4 * i + 4; ++corner) {
       const at = 4 * corner;
       ends[at] = x0;
       ends[at + 1] = y0;
       ends[at + 2] = x1;
       ends[at + 3] = y1;
-      this.setVertex(corner, radius, colour, alpha);
+      this.radius.array[corner] = radius;
+      for (let k = 0; k < 3; ++k) paint[at + k] = colour[k];
+      paint[at + 3] = 255 * alpha;
     }
   }
-  show(count) { this.showRange(count, 6 * count, this.ends); }
+  show(count) {
+    if (!this.drawn) return;
+    this.geometry.setDrawRange(0, 6 * count);
+    for (const attribute of [this.ends, this.radius, this.paint]) attribute.needsUpdate = true;
+    this.drawn.visible = count > 0;
+  }
 }
 
-// Discs of few pixels: a point each.
-class Dots extends Batch {
-  constructor(scene, order) { super(scene, order, 1, POINT_VERTEX, POINT_FRAGMENT); }
-  build() {
-    this.attribute("position", new Float32Array(3 * this.room), 3);
-    return new THREE.Points(this.geometry, this.material);
+// Discs of few pixels: put into a picture here, which is then drawn as one square. Without a graphics card a browser takes 50 ms
+// for a hundred thousand of them as points.
+class Dots {
+  constructor(scene, order) {
+    this.map = { value: null };
+    const material = new THREE.ShaderMaterial({
+      vertexShader: "varying vec2 at; void main() { at = 0.5 * position.xy + 0.5; gl_Position = vec4(position.xy, 0.0, 1.0); }",
+      fragmentShader: "varying vec2 at; uniform sampler2D map; void main() { gl_FragColor = texture2D(map, at); }",
+      uniforms: { map: this.map }, transparent: true, depthTest: false });
+    this.drawn = new THREE.Mesh(new THREE.PlaneBufferGeometry(2, 2), material);
+    this.drawn.frustumCulled = false;
+    this.drawn.renderOrder = order;
+    scene.add(this.drawn);
   }
-  set(i, x, y, radius, colour) {
-    this.position.array[3 * i] = x;
-    this.position.array[3 * i + 1] = y;
-    this.setVertex(i, radius, colour, 1);
+  // Clears the picture, which has as many pixels as the view.
+  clear(width, height) {
+    if (this.map.value && this.width === width && this.height === height) {
+      this.pixels.fill(0);
+      return;
+    }
+    if (this.map.value) this.map.value.dispose();
+    this.width = width;
+    this.height = height;
+    this.pixels = new Uint32Array(width * height);
+    this.map.value = new THREE.DataTexture(new Uint8Array(this.pixels.buffer), width, height, THREE.RGBAFormat);
   }
-  show(count) { this.showRange(count, count, this.position); }
+  // A disc in pixels from the lower left corner; all pixels whose middles are in it.
+  put(x, y, radius, step) {
+    this.fill(x, y, radius, radius > 4 ? RIM_PIXELS[step] : RAMP_PIXELS[step]);
+    if (radius > 4) this.fill(x, y, radius - 1.5, RAMP_PIXELS[step]);
+  }
+  fill(x, y, radius, pixel) {
+    const { width, height, pixels } = this;
+    if (x + radius < 0 || x - radius > width) return;
+    const top = Math.min(height - 1, Math.floor(y + radius - 0.5));
+    for (let row = Math.max(0, Math.ceil(y - radius - 0.5)); row <= top; ++row) {
+      const off = row + 0.5 - y, half = Math.sqrt(Math.max(0, radius * radius - off * off));
+      const end = row * width + Math.min(width - 1, Math.floor(x + half - 0.5));
+      for (let at = row * width + Math.max(0, Math.ceil(x - half - 0.5)); at <= end; ++at) pixels[at] = pixel;
+    }
+  }
+  show(count) {
+    this.map.value.needsUpdate = true;
+    this.drawn.visible = count > 0;
+  }
 }
 
 // Without antialiasing, which does nothing here: shaders cut the shapes, not edges of triangles.
@@ -170,8 +168,7 @@ function placeCamera() {
   Object.assign(camera, { left: -across, right: across, top: half, bottom: -half });
   camera.position.set(eye.x, eye.y, 1);
   camera.updateProjectionMatrix();
-  for (const each of [fields, walls, people, ring, dots]) each.least.value = metresAPixel();
-  dots.ratio.value = renderer.getPixelRatio();
+  for (const each of [fields, walls, people, ring]) each.least.value = metresAPixel();
 }
 
 // Everything in view, with some room for what lies over the picture.
@@ -218,47 +215,54 @@ function densities() {
   return cells;
 }
 
+function frameNow() { return Math.min(run.frames - 1, Math.floor(time / run.secondsAFrame + 1e-6)); }
+
 function drawFrame() {
-  const frame = Math.min(run.frames - 1, Math.floor(time / run.secondsAFrame + 1e-6));
+  const frame = frameNow();
   run.seek(frame);
   const bySpeed = element("colour").value === "speed", speed = bySpeed ? speeds() : null;
   if (following && picked >= 0) {
     const i = run.find(picked);
     if (i >= 0) [eye.x, eye.y] = [run.ends[4 * i] / 1000, run.ends[4 * i + 1] / 1000];
   }
-  drawPeople((i) => rampColour(speed ? speed[i] / FULL.speed : run.pressure[i] / FULL.pressure));
+  placeCamera();
+  drawPeople(speed ? (i) => speed[i] / FULL.speed : (i) => run.pressure[i] / FULL.pressure);
   drawWalls();
   drawDensity();
   drawPicked();
-  placeCamera();
   renderer.render(world, camera);
   element("clock").textContent = (frame * run.secondsAFrame).toFixed(1) + " of " + ((run.frames - 1) * run.secondsAFrame).toFixed(1) + " s";
   element("time").value = frame;
   dirty = false;
 }
 
-// Small discs as dots, and of all others those in view.
-function drawPeople(colour) {
+// Small discs as dots, and of all others those in view. `share` is how far up the ramp each shape's colour is.
+function drawPeople(share) {
+  const shapes = drawDots(share);
   const view = element("view"), up = eye.metres / 2, across = up * view.clientWidth / view.clientHeight;
-  const small = DOT_PIXELS / 2 * metresAPixel();
   const outside = (a, b, radius, middle, half) => Math.max(a, b) + radius < middle - half || Math.min(a, b) - radius > middle + half;
   const place = (i) => [0, 1, 2, 3].map((k) => run.ends[4 * i + k] / 1000);
-  const shapes = [];
-  let points = 0;
-  dots.reserve(run.count);
-  for (let i = 0; i < run.count; ++i) {
-    const radius = run.radius[i] / 1000;
-    if (run.isLong[i] || radius >= small) shapes.push(i);
-    else dots.set(points++, run.ends[4 * i] / 1000, run.ends[4 * i + 1] / 1000, radius, colour(i));
-  }
   const seen = shapes.filter((i) => {
     const [x0, y0, x1, y1] = place(i), radius = run.radius[i] / 1000;
     return !outside(x0, x1, radius, eye.x, across) && !outside(y0, y1, radius, eye.y, up);
   });
   people.reserve(seen.length);
-  seen.forEach((i, at) => people.set(at, ...place(i), run.radius[i] / 1000, colour(i), 1));
-  dots.show(points);
+  seen.forEach((i, at) => people.set(at, ...place(i), run.radius[i] / 1000, rampColour(share(i)), 1));
   people.show(seen.length);
+}
+
+// Draws small discs and returns which shapes are none. A hundred thousand are drawn here, so nothing is allocated for each.
+function drawDots(share) {
+  const { count, ends, radius, isLong } = run, canvas = element("view"), others = [];
+  const pixels = canvas.height / eye.metres / 1000, small = DOT_PIXELS / 2 / pixels;  // pixels in a millimetre
+  const left = canvas.width / 2 - 1000 * pixels * eye.x, low = canvas.height / 2 - 1000 * pixels * eye.y;
+  dots.clear(canvas.width, canvas.height);
+  for (let i = 0; i < count; ++i) {
+    if (isLong[i] || radius[i] >= small) others.push(i);
+    else dots.put(left + pixels * ends[4 * i], low + pixels * ends[4 * i + 1], Math.max(1, pixels * radius[i]), rampStep(share(i)));
+  }
+  dots.show(count - others.length);
+  return others;
 }
 
 // A piece of a metre each, coloured by what presses on it.
@@ -407,12 +411,15 @@ view.onwheel = (event) => { eye.metres *= Math.exp(0.001 * event.deltaY); dirty 
 window.onresize = () => { dirty = true; };
 window.onkeydown = (event) => { if (event.key === " " && event.target === document.body) element("play").onclick(); };
 
-let shown = 0, last = performance.now();
+let shown = 0, last = performance.now(), began = last;
 function tick(now) {
   if (playing) {
     time = Math.min(time + (now - last) / 1000 * Number(element("rate").value), (run.frames - 1) * run.secondsAFrame);
-    if (time >= (run.frames - 1) * run.secondsAFrame) play(false);
-    dirty = true;
+    if (frameNow() !== run.frame) dirty = true;
+    if (time >= (run.frames - 1) * run.secondsAFrame) {
+      play(false);
+      if (window.location.hash === "#play") console.info("played " + JSON.stringify({ frames: shown, seconds: (now - began) / 1000 }));
+    }
   }
   last = now;
   if (dirty) { drawFrame(); ++shown; }
@@ -461,5 +468,6 @@ if (run.frames > 0) {
   drawLegend();
   drawFrame();
   if (window.location.hash === "#check") check();
+  if (window.location.hash === "#play") play(true);
   window.requestAnimationFrame(tick);
 }
