@@ -16,7 +16,7 @@ endif()
 # What <motley/motley.h> includes, and nothing of the inside.
 file(GLOB definitions CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/core/include/motley/core
     core/include/motley/core/constraints/*_definition.h)
-foreach(header assembly body boxed contact_events crowd crowd_index ids invalid_input joint_definitions joint_report polygon
+foreach(header assembly body boxed contact_events crowd crowd_index ids invalid_input joint_definitions joint_report memory polygon
         scene settings shapes six_dof snapshot step_report strided_span vector wall_index wheel)
     install(FILES ${PROJECT_SOURCE_DIR}/core/include/motley/core/${header}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/motley/core)
 endforeach()

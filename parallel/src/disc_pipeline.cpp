@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scene/wall_ends.h"
+#include "stores/array.h"
 
 namespace motley {
 namespace {
@@ -84,7 +85,7 @@ SearchVote DiscPipeline::vote(const SceneCore& scene, bool must_search) const
     SearchVote all{static_cast<std::int64_t>(discs.count), static_cast<std::int64_t>(leaving_.size()),
                    static_cast<std::int64_t>(discs.late.size()), must_search};
     if (region == nullptr) return all;
-    const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+    const Array<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
     all.leaving = std::count_if(leaving_.begin(), leaving_.end(),
                                 [&](std::uint32_t row) { return !region->is_copy(slots[row]); });
     region->agree(all);
@@ -94,7 +95,7 @@ SearchVote DiscPipeline::vote(const SceneCore& scene, bool must_search) const
 /// Nobody has a new neighbour while all planar bodies sleep.
 bool DiscPipeline::is_anyone_awake(const SceneCore& scene)
 {
-    const std::vector<std::uint32_t>& awake = scene.bodies.rows(BodyKind::planar).awake;
+    const Array<std::uint32_t>& awake = scene.bodies.rows(BodyKind::planar).awake;
     return std::any_of(awake.begin(), awake.end(), [](std::uint32_t count) { return count > 0; });
 }
 
@@ -137,7 +138,7 @@ void DiscPipeline::list_leaving(const SceneCore& scene, float dt)
     if (leaving_of_.size() < static_cast<std::size_t>(chunks))
         leaving_of_.resize(static_cast<std::size_t>(chunks));
     runner_.run(chunks, [&](std::int64_t chunk) {
-        std::vector<std::uint32_t>& leaving = leaving_of_[static_cast<std::size_t>(chunk)];
+        Array<std::uint32_t>& leaving = leaving_of_[static_cast<std::size_t>(chunk)];
         leaving.clear();
         if (!rows.is_chunk_awake(chunk)) return;
         for_each_row_of_chunk(chunk, size, [&](std::uint32_t row) {
@@ -152,7 +153,7 @@ void DiscPipeline::list_leaving(const SceneCore& scene, float dt)
     });
     leaving_.clear();
     for (std::int64_t chunk = 0; chunk < chunks; ++chunk) {
-        const std::vector<std::uint32_t>& leaving = leaving_of_[static_cast<std::size_t>(chunk)];
+        const Array<std::uint32_t>& leaving = leaving_of_[static_cast<std::size_t>(chunk)];
         leaving_.insert(leaving_.end(), leaving.begin(), leaving.end());
     }
 }

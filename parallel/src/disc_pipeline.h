@@ -8,6 +8,7 @@
 #include "layout/layout.h"
 #include "region_link.h"
 #include "stage_runner.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -28,9 +29,9 @@ class DiscPipeline {
     StageRunner& runner_;
     Layout& layout_;
     DiscFinder finder_;
-    std::vector<Vec2<double>> wall_ends_;  ///< now
-    std::vector<std::uint32_t> leaving_;   ///< rows of discs that may leave their skins in this step
-    std::vector<std::vector<std::uint32_t>> leaving_of_;  ///< the same by chunk of rows
+    Array<Vec2<double>> wall_ends_;           ///< now
+    Array<std::uint32_t> leaving_;            ///< rows of discs that may leave their skins in this step
+    Array<Array<std::uint32_t>> leaving_of_;  ///< the same by chunk of rows
 
     /// Whether the contacts of a band are found and solved here.
     [[nodiscard]] bool is_own(std::size_t band) const

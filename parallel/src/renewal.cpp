@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "stores/array.h"
+
 namespace motley {
 namespace {
 
@@ -47,7 +49,7 @@ void Renewal::change_signs()
                            chunk.streams.impulses + floats * chunk.begin, [](float x) { return -x; });
         }
     };
-    for (const std::vector<SweepChunk>& list : layout_.sweeps().lists) change(list);
+    for (const Array<SweepChunk>& list : layout_.sweeps().lists) change(list);
     change(layout_.discs());
 }
 

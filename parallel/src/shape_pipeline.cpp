@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "stores/array.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -44,7 +45,7 @@ void ShapePipeline::find_pairs(SceneCore& scene, double dt)
 
 void ShapePipeline::find_surfaces(const SceneCore& scene)
 {
-    const std::vector<WallSegment>& segments = scene.discs.segments;
+    const Array<WallSegment>& segments = scene.discs.segments;
     if (std::none_of(segments.begin(), segments.end(), std::mem_fn(&WallSegment::has_own_surface))) return;
     surfaces_.assign(found(), {});
     const std::span<const Contact> own = std::span(all_).subspan(hosts_);

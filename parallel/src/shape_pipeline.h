@@ -9,6 +9,7 @@
 #include "shapes/shape_contacts.h"
 #include "shapes/shape_pairs.h"
 #include "stage_runner.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -32,8 +33,8 @@ class ShapePipeline {
     StageRunner& runner_;
     ShapePairs pairs_;
     ShapeContacts contacts_;
-    std::vector<Contact> all_;
-    std::vector<ContactSurface<float>> surfaces_;
+    Array<Contact> all_;
+    Array<ContactSurface<float>> surfaces_;
     std::size_t hosts_ = 0;  ///< of `all_`, those of the host's list
 
     void find_surfaces(const SceneCore& scene);

@@ -14,6 +14,7 @@
 #include "layout/body_sets.h"
 #include "layout/layout.h"
 #include "stage_runner.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -38,15 +39,14 @@ class SleepPipeline {
   private:
     StageRunner& runner_;
     Layout& layout_;
-    std::vector<std::vector<std::uint32_t>>
-        touched_;                           ///< slots of sleepers, by part of the work that found them
-    std::vector<std::int64_t> candidates_;  ///< by chunk of rows: bodies that have been slow for long
+    Array<Array<std::uint32_t>> touched_;  ///< slots of sleepers, by part of the work that found them
+    Array<std::int64_t> candidates_;       ///< by chunk of rows: bodies that have been slow for long
     BodySets islands_;
-    std::vector<std::uint8_t> restless_;  ///< by index of islands_: 1 if the body keeps its island awake
+    Array<std::uint8_t> restless_;  ///< by index of islands_: 1 if the body keeps its island awake
     struct Ring {
         std::uint32_t head = 0, tail = 0;  ///< slots; 0: none yet
     };
-    std::vector<Ring> rings_;  ///< by index of islands_: of the sleepers that it names
+    Array<Ring> rings_;  ///< by index of islands_: of the sleepers that it names
 
     void make_room(SceneCore& scene);
     void wake_roused(SceneCore& scene);

@@ -12,6 +12,7 @@
 #include "layout/layout.h"
 #include "region_link.h"
 #include "stage_runner.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -65,7 +66,7 @@ class Sweeper {
   private:
     StageRunner& runner_;
     Layout& layout_;
-    std::vector<FigureWorkspace> workspaces_;  ///< one per worker
+    Array<FigureWorkspace> workspaces_;  ///< one per worker
     bool leaves_out_contacts_ = false;
 
     [[nodiscard]] bool is_left_out(const SweepChunk& chunk,

@@ -5,6 +5,7 @@
 #include "scene/wall_ends.h"
 #include "sleep_measures.h"
 #include "sleep_pipeline.h"
+#include "stores/array.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -47,7 +48,7 @@ void SleepPipeline::make_room(SceneCore& scene)
 
 void SleepPipeline::wake_roused(SceneCore& scene)
 {
-    const std::vector<Sleep>& sleep = scene.bodies.sleep;
+    const Array<Sleep>& sleep = scene.bodies.sleep;
     const Sleep* const end = sleep.data() + sleep.size();
     const auto next = [end](const Sleep* from) {
         return static_cast<const Sleep*>(
@@ -86,7 +87,7 @@ void SleepPipeline::wake_for_contacts(const Step& step)
     const ContactList& last = cache.current();
     const auto parts = static_cast<std::size_t>(cache.part_count());
     grow_to(touched_, parts);
-    const auto look_at = [&](std::uint32_t i, std::vector<std::uint32_t>& touched) {
+    const auto look_at = [&](std::uint32_t i, Array<std::uint32_t>& touched) {
         const Placement& placement = layout_.intake.placements[i];
         const bool a_sleeps = bodies.is_asleep(placement.a), b_sleeps = bodies.is_asleep(placement.b);
         if (placement.is_bad || (!a_sleeps && !b_sleeps)) return;
@@ -109,7 +110,7 @@ void SleepPipeline::wake_for_contacts(const Step& step)
         if (a_sleeps && b_sleeps) touched.push_back(slot_of(bodies, other));
     };
     runner_.run(static_cast<std::int64_t>(parts), [&](std::int64_t part) {
-        std::vector<std::uint32_t>& touched = touched_[static_cast<std::size_t>(part)];
+        Array<std::uint32_t>& touched = touched_[static_cast<std::size_t>(part)];
         touched.clear();
         const ContactCache::Range range = cache.part(part);
         for (std::uint32_t i = range.begin; i < range.end; ++i) look_at(i, touched);
@@ -131,7 +132,7 @@ void SleepPipeline::wake_for_discs(const Step& step)
     const DiscStore& discs = scene.discs;
     grow_to(touched_, discs.band_count);
     runner_.run(static_cast<std::int64_t>(discs.band_count), [&](std::int64_t band) {
-        std::vector<std::uint32_t>& touched = touched_[static_cast<std::size_t>(band)];
+        Array<std::uint32_t>& touched = touched_[static_cast<std::size_t>(band)];
         touched.clear();
         const DiscBand& own = discs.bands[static_cast<std::size_t>(band)];
         if (own.half_awake == 0) return;

@@ -1,5 +1,6 @@
 // The smaller calls of the C interface do what their namesakes in C++ do.
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -201,6 +202,82 @@ TEST(CCallsOfSolver, TheInstructionSetIsTheOneAskedFor)
         EXPECT_EQ(used, options.isa);
         motley_solver_destroy(solver);
     }
+}
+
+/// What the hooks of a host in C have given out.
+struct Given {
+    std::size_t bytes = 0;
+    long calls = 0;
+    bool has_more = true;
+};
+extern "C" void* give(size_t bytes, size_t alignment, void* user)
+{
+    auto& given = *static_cast<Given*>(user);
+    if (!given.has_more) return nullptr;
+    ++given.calls;
+    given.bytes += bytes;
+    return testing::allocate_aligned(std::max(alignment, sizeof(void*)), bytes);
+}
+extern "C" void take_back(void* memory, size_t bytes, size_t, void* user)
+{
+    static_cast<Given*>(user)->bytes -= bytes;
+    testing::free_aligned(memory);
+}
+
+/// A box that hangs, as a host in C makes it.
+struct Hanging {
+    motley_scene* scene = nullptr;
+    motley_solver* solver = nullptr;
+    Hanging()
+    {
+        motley_body_id ground, body;
+        const motley_body_definition box = motley_default_body_definition();
+        motley_ball_socket_definition joint = motley_default_ball_socket_definition();
+        EXPECT_TRUE(done(motley_scene_create(&scene)));
+        EXPECT_TRUE(done(motley_solver_create(nullptr, nullptr, &solver)));
+        EXPECT_TRUE(done(motley_scene_ground(scene, &ground)));
+        EXPECT_TRUE(done(motley_scene_add_body(scene, &box, &body)));
+        joint.body_a = ground;
+        joint.body_b = body;
+        EXPECT_TRUE(done(motley_scene_add_ball_socket(scene, &joint, nullptr)));
+    }
+    Hanging(const Hanging&) = delete;
+    Hanging& operator=(const Hanging&) = delete;
+    ~Hanging()
+    {
+        motley_solver_destroy(solver);
+        motley_scene_destroy(scene);
+    }
+    motley_status step() const { return motley_solver_step(solver, scene, 0.01F, 0, nullptr, nullptr); }
+};
+
+TEST(CCallsOfMemory, HooksServeScenesAndSolvers)
+{
+    ASSERT_EQ(motley_bytes_held(), 0);
+    Given given;
+    const motley_memory_hooks hooks{give, take_back, &given};
+    const motley_memory_hooks half{give, nullptr, &given};
+    EXPECT_EQ(motley_set_memory_hooks(&half), MOTLEY_REFUSED);
+    EXPECT_STREQ(
+        motley_last_error(),
+        "motley_set_memory_hooks: MemoryHooks.release is null; expected a function, as the other one is");
+    ASSERT_TRUE(done(motley_set_memory_hooks(&hooks)));
+    {
+        const Hanging hanging;
+        EXPECT_EQ(hanging.step(), MOTLEY_DONE);
+        EXPECT_GT(given.calls, 0);
+        EXPECT_EQ(given.bytes, motley_bytes_held());
+        EXPECT_EQ(motley_set_memory_hooks(nullptr), MOTLEY_REFUSED);
+        given.has_more = false;
+        motley_scene* another = nullptr;
+        EXPECT_EQ(motley_scene_create(&another), MOTLEY_OUT_OF_MEMORY);
+        given.has_more = true;
+    }
+    EXPECT_EQ(given.bytes, 0);
+    ASSERT_TRUE(done(motley_set_memory_hooks(nullptr)));
+    const long calls = given.calls;
+    EXPECT_EQ(Hanging().step(), MOTLEY_DONE);
+    EXPECT_EQ(given.calls, calls);
 }
 
 }  // namespace

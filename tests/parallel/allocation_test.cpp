@@ -16,7 +16,7 @@
 
 namespace motley::testing {
 
-std::atomic<long> allocations{0}, allocations_until_failure{never}, failures_left{0};
+std::atomic<long> allocations{0}, bytes_allocated{0}, allocations_until_failure{never}, failures_left{0};
 
 }  // namespace motley::testing
 
@@ -27,6 +27,7 @@ void* counted(std::size_t size, std::size_t alignment)
     using motley::testing::allocations_until_failure;
     using motley::testing::failures_left;
     ++motley::testing::allocations;
+    motley::testing::bytes_allocated += static_cast<long>(size);
     if (allocations_until_failure != motley::testing::never && --allocations_until_failure < 0) {
         if (failures_left.fetch_sub(1) > 0) throw std::bad_alloc();
     }

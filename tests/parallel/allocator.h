@@ -8,6 +8,7 @@ namespace motley::testing {
 
 inline constexpr long never = std::numeric_limits<long>::max();
 extern std::atomic<long> allocations;
+extern std::atomic<long> bytes_allocated;
 /// How many more allocations succeed, and how many of those after that fail.
 extern std::atomic<long> allocations_until_failure;
 extern std::atomic<long> failures_left;

@@ -39,8 +39,7 @@ struct Copies {
 
 /// Contacts of any type with one of six fixed bodies, on either side; those of a body differ in colour. Left-out ones
 /// and those of other figures are among the placements, but not listed.
-std::vector<std::uint32_t> random_contacts(Random& random, const Copies& copies,
-                                           std::vector<Placement>& placements)
+std::vector<std::uint32_t> random_contacts(Random& random, const Copies& copies, Array<Placement>& placements)
 {
     std::set<std::pair<int, int>> taken;
     std::vector<std::uint32_t> listed;
@@ -66,7 +65,7 @@ TEST(CopyContacts, EachIsInTheLaneOfItsCopyOnce)
     CopyContacts sorted;
     for (int trial = 0; trial < 200; ++trial) {
         const Copies copies(1 + random.below(12), 1 + random.below(block_lanes));
-        std::vector<Placement> placements;
+        Array<Placement> placements;
         const std::vector<std::uint32_t> listed = random_contacts(random, copies, placements);
         sorted.make_room(listed.size(), copies.shape.bodies.size());
         sorted.sort(copies.block, listed, placements, copies.places);
@@ -110,7 +109,7 @@ TEST(CopyContacts, EachIsInTheLaneOfItsCopyOnce)
 TEST(CopyContacts, AllOnOneFloorShareItsLanes)
 {
     const Copies copies(11, 16);
-    std::vector<Placement> placements;
+    Array<Placement> placements;
     std::vector<std::uint32_t> listed;
     for (int place = 0; place < 11 * block_lanes; place += 3) {
         Placement contact;

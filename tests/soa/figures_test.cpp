@@ -167,7 +167,7 @@ TEST(Figures, EveryJointIsPlacedOnceAndEveryLaneIsItsOwnCopys)
         bodies.rows(BodyKind::fixed).slot.assign(2, 0);  // the null row and the ground
         for (const bool exact : {false, true}) {
             Figures figures;
-            std::vector<Placement> placed;
+            Array<Placement> placed;
             figures.find(joints, bodies, kernels, exact, placed);
             std::vector<int> seen(joints.size(), 0);
             for (const Placement& placement : placed) {

@@ -89,9 +89,11 @@ struct Manifold : ConstraintTraits {
         check_direction("normal", contact.normal);
         check_range("point_count", static_cast<float>(contact.point_count), 1, most_points, "1 to 4");
         for (int i = 0; i < contact.point_count; ++i) {
-            const std::string name = "points[" + std::to_string(i) + "].local_anchor_";
-            check_anchor(name + "a", contact.points[i].local_anchor_a, bodies.model_a, bodies.fixed_a);
-            check_anchor(name + "b", contact.points[i].local_anchor_b, bodies.model_b, bodies.fixed_b);
+            constexpr const char* names[] = {"points[0]", "points[1]", "points[2]", "points[3]"};
+            check_anchor({names[i], ".local_anchor_a"}, contact.points[i].local_anchor_a, bodies.model_a,
+                         bodies.fixed_a);
+            check_anchor({names[i], ".local_anchor_b"}, contact.points[i].local_anchor_b, bodies.model_b,
+                         bodies.fixed_b);
         }
         check_range("friction", contact.friction, 0, 1e9F, "a finite value from 0 to 1e9");
         check_range("restitution", contact.restitution, 0, 1, "0 to 1");

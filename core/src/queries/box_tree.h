@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "motley/core/vector.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -60,7 +61,7 @@ class BoxTree {
 
   private:
     static constexpr std::size_t most_levels = 8;               // 16^8 entries are all that 32 bits count
-    std::vector<Box> boxes_;                                    ///< by level, the leaves first
+    Array<Box> boxes_;                                          ///< by level, the leaves first
     std::array<std::uint32_t, most_levels> first_{}, nodes_{};  ///< by level: in boxes_, and how many
     std::uint32_t entries_ = 0;
     int levels_ = 0;

@@ -12,6 +12,7 @@
 #include "queries/polygon_geometry.h"
 #include "scene/body_checks.h"
 #include "scene/scene_core.h"
+#include "stores/array.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -83,9 +84,9 @@ void for_each_person(const SceneCore& scene, const Work& work)
 
 /// The people in the order of a curve, and a tree over them.
 struct CrowdIndexCore {
-    std::vector<Person> people;
+    Array<Person> people;
     BoxTree tree;
-    std::vector<Person> listed;  ///< in the order of the scene: room for the next build
+    Array<Person> listed;  ///< in the order of the scene: room for the next build
     CurveOrder order;
 
     void find(const Vec2<double>& point, double radius, bool with_discs, std::vector<BodyId>& found) const;
@@ -174,7 +175,7 @@ void CrowdIndex::nearest(const Vec2<double>& point, std::size_t count, std::vect
 {
     check_point("nearest.point", point);
     check_distance("nearest.furthest", furthest);
-    const std::vector<Person>& people = core_->people;
+    const Array<Person>& people = core_->people;
     count = std::min(count, people.size());
     found.clear();
     if (count == 0) return;
@@ -211,7 +212,7 @@ void CrowdIndex::inside(const Polygon& area, std::vector<BodyId>& found) const
         }
     });
     found.clear();
-    const std::vector<Person>& people = core_->people;
+    const Array<Person>& people = core_->people;
     // A box that no edge meets is all in or all out.
     const auto judge = [&](const Box& box, std::uint32_t first) {
         if (box.low.x > around.high.x || box.high.x < around.low.x || box.low.y > around.high.y ||

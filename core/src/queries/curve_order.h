@@ -8,6 +8,7 @@
 
 #include "motley/core/strided_span.h"
 #include "motley/core/vector.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -25,7 +26,7 @@ class CurveOrder {
     struct Placed {
         std::uint32_t place, index;
     };
-    std::vector<Placed> placed_, spare_;
+    Array<Placed> placed_, spare_;
     void sort(StridedSpan<const Vec2<double>> points, std::span<Placed> part);
 };
 

@@ -14,6 +14,7 @@
 #include "queries/line_of_sight.h"
 #include "queries/polygon_geometry.h"
 #include "scene/body_checks.h"
+#include "stores/array.h"
 
 namespace motley {
 namespace {
@@ -88,9 +89,9 @@ void check_two_edges(const Edge& edge, const Edge& other, std::size_t points)
     if (meet) refuse_meeting(edge, other, "a ring that does not meet itself");
 }
 
-std::vector<Edge> edges_of(const Polygon& polygon)
+Array<Edge> edges_of(const Polygon& polygon)
 {
-    std::vector<Edge> edges;
+    Array<Edge> edges;
     for_each_ring(polygon, [&](const auto& ring, std::size_t number) {
         if (ring.size() < 3)
             refuse(ring_name(number) + ".size()", static_cast<double>(ring.size()), "3 or more points");
@@ -103,7 +104,7 @@ std::vector<Edge> edges_of(const Polygon& polygon)
 }
 
 /// Compares each edge with those whose boxes it meets.
-void check_edges(const Polygon& polygon, const std::vector<Edge>& edges)
+void check_edges(const Polygon& polygon, const Array<Edge>& edges)
 {
     CurveOrder order;
     order.find({&edges[0].middle, edges.size(), sizeof(Edge)});

@@ -10,6 +10,7 @@
 #include "scene/body_checks.h"
 #include "scene/scene_core.h"
 #include "scene/wall_ends.h"
+#include "stores/array.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -26,10 +27,10 @@ struct Piece {
 
 /// The pieces in the order of a curve, and a tree over them.
 struct WallIndexCore {
-    std::vector<Piece> pieces;
+    Array<Piece> pieces;
     BoxTree tree;
-    std::vector<Piece> listed;  ///< in the order of the scene: room for the next build
-    std::vector<Vec2<double>> ends;
+    Array<Piece> listed;  ///< in the order of the scene: room for the next build
+    Array<Vec2<double>> ends;
     CurveOrder order;
 };
 template class Boxed<WallIndexCore>;
@@ -40,7 +41,7 @@ void WallIndex::build(const Scene& scene)
 {
     WallIndexCore& index = *core_;
     const SceneCore& core = core_of(scene);
-    const std::vector<WallSegment>& segments = core.discs.segments;
+    const Array<WallSegment>& segments = core.discs.segments;
     index.pieces.clear();
     index.tree.clear();
     index.listed.clear();
@@ -70,7 +71,7 @@ bool WallIndex::is_current(const Scene& scene) const
 {
     const DiscStore& discs = core_of(scene).discs;
     if (discs.segments.size() != core_->listed.size()) return false;
-    std::vector<Vec2<double>> ends;
+    Array<Vec2<double>> ends;
     find_wall_ends(core_of(scene), ends);
     for (std::size_t i = 0; i < discs.segments.size(); ++i) {
         const Piece& was = core_->listed[i];

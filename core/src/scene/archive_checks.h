@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "stores/array.h"
+
 namespace motley {
 
 inline void demand(bool holds, const char* what)
@@ -16,10 +18,10 @@ inline void demand(bool holds, const char* what)
 
 /// A list of free handles or rows: each index must be valid, not taken, and listed only once.
 template <class IsTaken>
-void check_free_list(const std::vector<std::uint32_t>& free, std::size_t size, const IsTaken& is_taken,
+void check_free_list(const Array<std::uint32_t>& free, std::size_t size, const IsTaken& is_taken,
                      const char* what)
 {
-    std::vector<std::uint8_t> listed(size, 0);
+    Array<std::uint8_t> listed(size, 0);
     for (const std::uint32_t one : free) {
         demand(one > 0 && one < size && !is_taken(one) && listed[one] == 0, what);
         listed[one] = 1;

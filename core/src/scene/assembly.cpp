@@ -8,6 +8,7 @@
 #include "motley/core/invalid_input.h"
 #include "motley/core/six_dof.h"
 #include "scene/scene_core.h"
+#include "stores/array.h"
 #include "stores/growth.h"
 #include "stores/joint_store.h"
 
@@ -47,7 +48,7 @@ BodyDefinition placed(BodyDefinition body, const Placing& placing, const Quat<do
 /// Adds the capsules of a copy. What was a group of the figure becomes one of this copy alone.
 void put_in_own_groups(SceneCore& scene, std::span<Capsule> capsules)
 {
-    std::vector<std::uint32_t> groups;
+    Array<std::uint32_t> groups;
     scene.make_room_for_shapes(capsules.size(), 0);
     for (Capsule& capsule : capsules) {
         if (capsule.group != 0) {
@@ -110,7 +111,7 @@ void Figure::join(Scene& scene, std::span<const BodyId> bodies) const
             scene.add_joint(definition);
         });
     }
-    std::vector<Capsule> capsules = core_of(sketch_).shapes.capsules;
+    Array<Capsule> capsules = core_of(sketch_).shapes.capsules;
     for (Capsule& capsule : capsules) capsule.body = of_scene(capsule.body);
     put_in_own_groups(core_of(scene), capsules);
 }

@@ -7,6 +7,7 @@
 
 #include "queries/radix_sort.h"
 #include "scene/disc_impulses.h"
+#include "stores/array.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -48,7 +49,7 @@ Pair pair_of(BodyId a, BodyId b, WallId wall)
 }
 
 /// Appends the pairs that pushed in the last step.
-void list_pushing(const SceneCore& scene, std::vector<Pair>& pairs)
+void list_pushing(const SceneCore& scene, Array<Pair>& pairs)
 {
     scene.for_each_disc_impulse([&](const DiscImpulse& impulse) {
         const WallId wall = impulse.segment != UINT32_MAX ? scene.discs.wall_of(impulse.segment) : WallId{};
@@ -61,8 +62,7 @@ void list_pushing(const SceneCore& scene, std::vector<Pair>& pairs)
 }
 
 /// Appends what is in `these` and not in `those`; both are sorted.
-void list_missing(const std::vector<Pair>& these, const std::vector<Pair>& those,
-                  std::vector<ContactPair>& missing)
+void list_missing(const Array<Pair>& these, const Array<Pair>& those, Array<ContactPair>& missing)
 {
     auto other = those.begin();
     for (const Pair& pair : these) {
@@ -73,15 +73,15 @@ void list_missing(const std::vector<Pair>& these, const std::vector<Pair>& those
 
 /// What an update finds.
 struct Found {
-    std::vector<Pair> pairs;  ///< sorted
-    std::vector<ContactPair> began, ended;
+    Array<Pair> pairs;  ///< sorted
+    Array<ContactPair> began, ended;
 };
 
 }  // namespace
 
 struct ContactEventsCore {
     Found last, next;
-    std::vector<Pair> spare;  ///< room to sort
+    Array<Pair> spare;  ///< room to sort
 };
 template class Boxed<ContactEventsCore>;
 

@@ -8,10 +8,18 @@
 
 namespace motley {
 
-void check_range(std::string_view field, float value, float low, float high, std::string_view expected)
+std::string FieldName::text() const
+{
+    std::string text(of);
+    text += member;
+    text += component;
+    return text;
+}
+
+void check_range(const FieldName& field, float value, float low, float high, std::string_view expected)
 {
     // Written so that NaN fails.
-    if (!(value >= low && value <= high)) refuse(field, value, expected);
+    if (!(value >= low && value <= high)) refuse(field.text(), value, expected);
 }
 
 void check_bound(std::string_view field, float value)
@@ -22,20 +30,20 @@ void check_bound(std::string_view field, float value)
 
 void check_length_range(std::string_view definition, float min_length, float max_length)
 {
-    const std::string name(definition);
-    check_range(name + ".min_length", min_length, 0, largest_length, "0 to max_length, at most 1e9 (m)");
+    const FieldName least(definition, ".min_length");
+    check_range(least, min_length, 0, largest_length, "0 to max_length, at most 1e9 (m)");
     if (!std::isinf(max_length))
-        check_range(name + ".max_length", max_length, 0, largest_length, "0 to 1e9 (m) or infinite");
-    if (!(min_length <= max_length)) refuse(name + ".min_length", min_length, "at most max_length");
+        check_range({definition, ".max_length"}, max_length, 0, largest_length, "0 to 1e9 (m) or infinite");
+    if (!(min_length <= max_length)) refuse(least.text(), min_length, "at most max_length");
 }
 
-void check_anchor(std::string_view field, const Vec3<float>& anchor, BodyModel model, bool fixed)
+void check_anchor(const FieldName& field, const Vec3<float>& anchor, BodyModel model, bool fixed)
 {
     const float components[3] = {anchor.x, anchor.y, anchor.z};
     const char* names[3] = {".x", ".y", ".z"};
     const bool needs_zero = model == BodyModel::particle && !fixed;
     for (int i = 0; i < 3; ++i) {
-        const std::string name = std::string(field) + names[i];
+        const FieldName name(field.of, field.member, names[i]);
         if (needs_zero) {
             check_range(name, components[i], 0, 0,
                         "0 on a particle, which has no orientation to carry an anchor (m)");
@@ -70,11 +78,10 @@ void check_turns(std::string_view field, BodyModel model, bool fixed)
 
 void check_joint_frame(std::string_view field, const JointFrame& frame, BodyModel model, bool fixed)
 {
-    const std::string name(field);
-    check_turns(name, model, fixed);
-    check_anchor(name + ".position", frame.position, model, fixed);
+    check_turns(field, model, fixed);
+    check_anchor({field, ".position"}, frame.position, model, fixed);
     const Quat<float>& q = frame.rotation;
-    check_range(name + ".rotation", q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 1e-12F, 1e12F,
+    check_range({field, ".rotation"}, q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 1e-12F, 1e12F,
                 "a quaternion with a length from 1e-6 to 1e6 (squared shown)");
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 #include <string_view>
 
 #include "motley/core/body.h"
@@ -19,15 +20,29 @@ inline constexpr float largest_length = 1e9F;
 /// N or N m: replaces an infinite bound on a force. Its impulse over the longest step, 1 s, is still finite.
 inline constexpr float largest_force = 1e30F;
 
+/// The name of a field in up to three parts, which become one text only if its value is refused.
+struct FieldName {
+    std::string_view of, member, component;
+    // NOLINTBEGIN(google-explicit-constructor): a name in one part is a name
+    FieldName(const char* name) : of(name) {}
+    FieldName(std::string_view name) : of(name) {}
+    // NOLINTEND(google-explicit-constructor)
+    FieldName(std::string_view name, std::string_view member_, std::string_view component_ = {})
+        : of(name), member(member_), component(component_)
+    {
+    }
+    [[nodiscard]] std::string text() const;
+};
+
 /// Refuses a value outside [low, high] or not finite.
-void check_range(std::string_view field, float value, float low, float high, std::string_view expected);
+void check_range(const FieldName& field, float value, float low, float high, std::string_view expected);
 /// Refuses a bound on a force or torque that is negative or NaN; infinity means no bound.
 void check_bound(std::string_view field, float value);
 /// Refuses lengths that are not 0 <= min_length <= max_length, at most 1e9 m; max_length may be infinite.
 void check_length_range(std::string_view definition, float min_length, float max_length);
 /// Refuses an anchor that is not finite or longer than 1e9 m, or not at the centre of a particle, which has
 /// no orientation to carry it.
-void check_anchor(std::string_view field, const Vec3<float>& anchor, BodyModel model, bool fixed);
+void check_anchor(const FieldName& field, const Vec3<float>& anchor, BodyModel model, bool fixed);
 
 /// Refuses a coordinate that is not within 1e9 m.
 void check_world_point(std::string_view field, const Vec3<double>& point);

@@ -5,6 +5,7 @@
 
 #include "scene/archive_checks.h"
 #include "scene/body_checks.h"
+#include "stores/array.h"
 
 namespace motley {
 namespace {
@@ -125,7 +126,7 @@ void SceneArchive::check_joints(const SceneCore& scene)
     const BodyStore& bodies = scene.bodies;
     const JointStores& joints = *scene.joints;
     demand(!joints.slots.empty() && joints.slots[0].live == 0, "a joint of the null handle");
-    std::vector<std::uint32_t> colours(bodies.slots_.size(), 0);  // by body, a bit for each colour
+    Array<std::uint32_t> colours(bodies.slots_.size(), 0);  // by body, a bit for each colour
     std::size_t count = 0;
     joints.for_each([&](const auto& store, int type) {
         using Store = std::remove_cvref_t<decltype(store)>;
@@ -179,7 +180,7 @@ void SceneArchive::check_sleep(const SceneCore& scene)
     const auto sleeps = [&](std::uint32_t slot) {
         return bodies.sleep[slot] != Sleep::awake && bodies.motions_[slot] == BodyMotion::dynamic_body;
     };
-    std::vector<std::uint8_t> is_next(bodies.slots_.size(), 0);
+    Array<std::uint8_t> is_next(bodies.slots_.size(), 0);
     for (std::uint32_t slot = 0; slot < bodies.slots_.size(); ++slot) {
         const Sleep sleep = bodies.sleep[slot];
         demand(sleep <= Sleep::roused, "a body that neither sleeps nor is awake");

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scene/scene_core.h"
+#include "stores/array.h"
 #include "stores/disc_fields.h"
 #include "stores/joint_store.h"
 
@@ -248,10 +249,10 @@ struct SceneArchive {
     static void visit_contacts(Archive& archive, Cache& cache)
     {
         if constexpr (Archive::reads) {
-            std::vector<ContactList::Entry> entries;
-            std::vector<std::uint8_t> colours;
-            std::vector<ContactImpulse> impulses, step_impulses;
-            std::vector<std::uint32_t> sleepers;
+            Array<ContactList::Entry> entries;
+            Array<std::uint8_t> colours;
+            Array<ContactImpulse> impulses, step_impulses;
+            Array<std::uint32_t> sleepers;
             archive(entries);
             archive(colours);
             archive(impulses);
@@ -269,13 +270,13 @@ struct SceneArchive {
             const auto in_use = [&](const auto& values, std::size_t from) {
                 using Value = std::remove_cvref_t<decltype(values[0])>;
                 const auto first = values.begin() + static_cast<std::ptrdiff_t>(from);
-                return std::vector<Value>(first, first + static_cast<std::ptrdiff_t>(list.count));
+                return Array<Value>(first, first + static_cast<std::ptrdiff_t>(list.count));
             };
             archive(in_use(list.entries, 0));
             archive(in_use(list.colours, 0));
             archive(in_use(list.impulses, 1));
             archive(in_use(list.step_impulses, 0));
-            archive(list.has_sleepers ? in_use(list.sleepers, 0) : std::vector<std::uint32_t>{});
+            archive(list.has_sleepers ? in_use(list.sleepers, 0) : Array<std::uint32_t>{});
         }
     }
 };

@@ -5,6 +5,7 @@
 #include "scene/archive_checks.h"
 #include "scene/body_checks.h"
 #include "scene/scene_archive.h"
+#include "stores/array.h"
 
 namespace motley {
 namespace {
@@ -118,7 +119,7 @@ void check_blocks(const SceneCore& scene)
 {
     const DiscStore& discs = scene.discs;
     const BodyRows& planar = scene.bodies.rows(BodyKind::planar);
-    std::vector<std::size_t> first_band(planar.size(), 0), block_of(planar.size(), 0);
+    Array<std::size_t> first_band(planar.size(), 0), block_of(planar.size(), 0);
     std::size_t number = 0;
     const auto take = [&](std::int32_t offset, std::size_t band) {
         const auto row = static_cast<std::size_t>(offset / offsets_a_row(BodyKind::planar));

@@ -8,6 +8,7 @@
 #include "motley/core/boxed.h"
 #include "motley/core/scene.h"
 #include "scene/sleep.h"
+#include "stores/array.h"
 #include "stores/body_store.h"
 #include "stores/busy_flag.h"
 #include "stores/contact_cache.h"
@@ -40,9 +41,9 @@ struct SceneCore {
     DiscStore discs;
     ShapeStore shapes;
     SleepStore sleep;
-    std::vector<BreakEvent> break_events;             ///< with room for every watched joint
-    std::vector<IslandIterations> island_iterations;  ///< of bodies alive
-    std::vector<std::uint64_t> user_data;             ///< by body slot, of the host; 0 beyond its end
+    Array<BreakEvent> break_events;             ///< with room for every watched joint
+    Array<IslandIterations> island_iterations;  ///< of bodies alive
+    Array<std::uint64_t> user_data;             ///< by body slot, of the host; 0 beyond its end
     BodyId ground{};
     std::size_t body_count = 0;  ///< alive, without the ground
     BusyFlag busy;               ///< held by a step for as long as it lasts

@@ -5,6 +5,7 @@
 #include "scene/body_checks.h"
 #include "scene/disc_impulses.h"
 #include "scene/scene_core.h"
+#include "stores/array.h"
 #include "stores/growth.h"
 #include "stores/joint_store.h"
 
@@ -176,8 +177,8 @@ void SceneCore::forget_discs_of(BodyId moved)
 void SceneCore::renumber_rows()
 {
     const BodyRows& planar = bodies.rows(BodyKind::planar);
-    std::vector<std::uint32_t> rows(planar.size(), 0);
-    const std::vector<std::uint32_t> slots = planar.slot;
+    Array<std::uint32_t> rows(planar.size(), 0);
+    const Array<std::uint32_t> slots = planar.slot;
     bodies.renumber();
     for (std::uint32_t row = 1; row < slots.size(); ++row) {
         if (slots[row] != 0) rows[row] = bodies.row_of(bodies.id_of_slot(slots[row])).row();

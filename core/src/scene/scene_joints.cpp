@@ -9,6 +9,7 @@
 
 #include "contract/built.h"
 #include "motley/core/invalid_input.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -128,7 +129,7 @@ void Scene::remove_joint(ConstraintId joint)
 
 void SceneCore::remove_joints_of(std::span<const BodyId> removed)
 {
-    std::vector<std::pair<int, std::uint32_t>> going;  // type and index
+    Array<std::pair<int, std::uint32_t>> going;  // type and index
     for (const BodyId body : removed) {
         joints->for_each_on(bodies.first_ends[body.slot], [&](const JointStores::Slot& joint) {
             going.emplace_back(joint.type, joint.index);

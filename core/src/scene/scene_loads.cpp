@@ -5,6 +5,7 @@
 
 #include "motley/core/invalid_input.h"
 #include "scene/disc_impulses.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -33,7 +34,7 @@ void Scene::read_loads(std::span<const BodyId> bodies, std::span<const Contact> 
     }
     core_->require_alive(bodies, "read_loads.bodies");
     core_->require_list_of_last_step(contacts, "read_loads.contacts");
-    std::vector<Borne> borne(core_->bodies.slot_count());
+    Array<Borne> borne(core_->bodies.slot_count());
     const auto bear_all = [&](std::span<const Contact> list, std::span<const ContactImpulse> impulses) {
         for (std::size_t i = 0; i < list.size(); ++i) {
             const auto normal = static_cast<double>(impulses[i].normal);

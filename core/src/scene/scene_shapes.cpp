@@ -4,6 +4,7 @@
 
 #include "motley/core/invalid_input.h"
 #include "scene/body_checks.h"
+#include "scene/joint_checks.h"
 #include "scene/scene_core.h"
 #include "stores/growth.h"
 
@@ -12,9 +13,8 @@ namespace {
 
 void check_surface(const char* who, float friction, float restitution)
 {
-    const std::string name(who);
-    check((name + ".friction").c_str(), friction, 0, 1e9, "a finite value from 0 to 1e9");
-    check((name + ".restitution").c_str(), restitution, 0, 1, "0 to 1");
+    check_range({who, ".friction"}, friction, 0, 1e9F, "a finite value from 0 to 1e9");
+    check_range({who, ".restitution"}, restitution, 0, 1, "0 to 1");
 }
 
 void check_end(const char* name, const Vec3<float>& end, BodyModel model)

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "motley/core/vector.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -40,10 +41,10 @@ struct Sleeper {
 };
 
 struct SleepStore {
-    std::vector<Sleeper> sleepers;  ///< by slot of the body; may be shorter than the table of slots
-    float speed = 0;                ///< m/s, SolverSettings::sleep_speed of the last step
-    Vec3<float> gravity{};          ///< m/s2, of the last step
-    std::int32_t pause = 0;         ///< steps before islands are looked for again
+    Array<Sleeper> sleepers;  ///< by slot of the body; may be shorter than the table of slots
+    float speed = 0;          ///< m/s, SolverSettings::sleep_speed of the last step
+    Vec3<float> gravity{};    ///< m/s2, of the last step
+    std::int32_t pause = 0;   ///< steps before islands are looked for again
 };
 
 }  // namespace motley

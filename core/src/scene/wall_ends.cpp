@@ -1,5 +1,6 @@
 // See wall_ends.h.
 #include "scene/wall_ends.h"
+#include "stores/array.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +34,7 @@ std::pair<Vec2<double>, Vec2<double>> wall_ends_of(const SceneCore& scene, const
     return {to_world(segment.from), to_world(segment.to)};
 }
 
-void find_wall_ends(const SceneCore& scene, std::vector<Vec2<double>>& ends)
+void find_wall_ends(const SceneCore& scene, Array<Vec2<double>>& ends)
 {
     ends.resize(2 * scene.discs.segments.size());
     for (std::size_t i = 0; i < scene.discs.segments.size(); ++i)

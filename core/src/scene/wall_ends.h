@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/scene_core.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -27,7 +28,7 @@ inline double distance2(const Vec2<double>& point, const Vec2<double>& from, con
 /// Where the ends of a segment are, m, world.
 std::pair<Vec2<double>, Vec2<double>> wall_ends_of(const SceneCore& scene, const WallSegment& segment);
 /// Writes where the ends of the segments of walls are, m, world, two a segment. Allocates only what the vector lacks.
-void find_wall_ends(const SceneCore& scene, std::vector<Vec2<double>>& ends);
+void find_wall_ends(const SceneCore& scene, Array<Vec2<double>>& ends);
 /// The speed of the faster end of a segment, m/s, and of the fastest end of all walls.
 double speed_of_wall(const SceneCore& scene, const WallSegment& segment);
 double fastest_wall_end(const SceneCore& scene);

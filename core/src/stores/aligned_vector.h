@@ -3,8 +3,9 @@
 #pragma once
 
 #include <cstddef>
-#include <new>
 #include <vector>
+
+#include "stores/array.h"
 
 namespace motley {
 
@@ -26,17 +27,20 @@ struct CacheLineAllocator {
     T* allocate(std::size_t count)
     {
         const std::size_t bytes = count * sizeof(T);
-        void* memory = ::operator new(bytes, alignment_of(count));
+        void* memory = allocate_memory(bytes, alignment_of(count));
         if (bytes >= huge_page) advise_huge_pages(memory, bytes);
         return static_cast<T*>(memory);
     }
-    void deallocate(T* elements, std::size_t count) { ::operator delete(elements, alignment_of(count)); }
+    void deallocate(T* elements, std::size_t count)
+    {
+        release_memory(elements, count * sizeof(T), alignment_of(count));
+    }
     friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) { return true; }
 
   private:
-    static std::align_val_t alignment_of(std::size_t count)
+    static std::size_t alignment_of(std::size_t count)
     {
-        return std::align_val_t{count * sizeof(T) >= huge_page ? huge_page : 64};
+        return count * sizeof(T) >= huge_page ? huge_page : 64;
     }
 };
 

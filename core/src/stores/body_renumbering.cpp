@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "stores/array.h"
 #include "stores/body_store.h"
 
 namespace motley {
@@ -56,16 +57,16 @@ std::vector<T, Allocator> reordered(const std::vector<T, Allocator>& values,
 }
 
 /// The null row, then the rows of bodies in the order of the curve.
-std::vector<std::uint32_t> order_of(const BodyRows& rows)
+Array<std::uint32_t> order_of(const BodyRows& rows)
 {
     ZOrder curve;
-    std::vector<std::uint32_t> order{0};
+    Array<std::uint32_t> order{0};
     for (std::uint32_t row = 1; row < rows.size(); ++row) {
         if (rows.slot[row] == 0) continue;
         order.push_back(row);
         curve.include(rows.pose[row].position);
     }
-    std::vector<std::uint64_t> place(rows.size());
+    Array<std::uint64_t> place(rows.size());
     for (std::size_t i = 1; i < order.size(); ++i) place[order[i]] = curve.of(rows.pose[order[i]].position);
     std::stable_sort(order.begin() + 1, order.end(),
                      [&](std::uint32_t x, std::uint32_t y) { return place[x] < place[y]; });
@@ -82,7 +83,7 @@ void BodyStore::renumber()
         const auto kind = static_cast<BodyKind>(k);
         const BodyRows& r = rows(kind);
         BodyRows& to = renumbered[static_cast<std::size_t>(k)];
-        const std::vector<std::uint32_t> order = order_of(r);
+        const Array<std::uint32_t> order = order_of(r);
         const std::size_t floats = std::size_t{4} * static_cast<std::size_t>(quads_of(kind));
         to.velocity = reordered(r.velocity, order, floats);
         to.delta = reordered(r.delta, order, floats);
@@ -103,7 +104,7 @@ void BodyStore::renumber()
 
 void BodyStore::enter_rows(BodyKind kind)
 {
-    const std::vector<std::uint32_t>& slot = rows(kind).slot;
+    const Array<std::uint32_t>& slot = rows(kind).slot;
     for (std::uint32_t row = 1; row < slot.size(); ++row) {
         if (slot[row] != 0) slots_[slot[row]].row = BodyRow(kind, row);
     }

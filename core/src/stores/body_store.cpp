@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "maths/lane_body.h"
+#include "stores/array.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -54,7 +55,7 @@ BodyKind kind_of(const BodyDefinition& d)
     return d.motion == BodyMotion::dynamic_body ? static_cast<BodyKind>(d.model) : BodyKind::fixed;
 }
 
-std::size_t more_than(std::size_t wanted, const std::vector<std::uint32_t>& free)
+std::size_t more_than(std::size_t wanted, const Array<std::uint32_t>& free)
 {
     return wanted > free.size() ? wanted - free.size() : 0;
 }

@@ -81,10 +81,10 @@ struct BodyRows {
     AlignedVector<float> start_inverse_inertia;  ///< the same when the step began
     AlignedVector<Sym3<float>> inertia;          ///< rigid only, body frame
     AlignedVector<Sym3<float>> inverse_inertia;  ///< rigid only, body frame
-    std::vector<std::uint32_t> slot;             ///< the handle slot of each row, 0 for a free one
-    std::vector<std::uint32_t> free_rows;        ///< the last one is reused first
+    Array<std::uint32_t> slot;                   ///< the handle slot of each row, 0 for a free one
+    Array<std::uint32_t> free_rows;              ///< the last one is reused first
     /// For each chunk of rows the number of bodies in it that do not sleep. Steps skip chunks without any.
-    std::vector<std::uint32_t> awake;
+    Array<std::uint32_t> awake;
     static constexpr std::uint32_t rows_per_chunk = 1024;
     [[nodiscard]] bool is_chunk_awake(std::int64_t chunk) const
     {
@@ -148,16 +148,16 @@ class BodyStore {
     [[nodiscard]] BodyMotion motion(BodyId body) const { return motions_[body.slot]; }
     [[nodiscard]] BodyModel model(BodyId body) const { return models_[body.slot]; }
     /// For each slot the first end in its list of joints (JointStores::ends); 0 when there is none.
-    std::vector<std::uint32_t> first_ends;
+    Array<std::uint32_t> first_ends;
     /// For each slot 1 if a step froze the body because its state was not finite: its constraints are then left out.
-    std::vector<std::uint8_t> contained;
+    Array<std::uint8_t> contained;
     std::size_t contained_count = 0;
     [[nodiscard]] bool is_contained(BodyRow where) const
     {
         return contained_count > 0 && contained[rows(where.kind()).slot[where.row()]] != 0;
     }
     /// For each slot whether the body sleeps. A sleeper's row has no speed and no inverse mass, as a contained body's.
-    std::vector<Sleep> sleep;
+    Array<Sleep> sleep;
     std::size_t sleepers = 0;  ///< dynamic bodies that sleep
     [[nodiscard]] bool is_asleep(std::uint32_t slot) const
     {
@@ -169,7 +169,7 @@ class BodyStore {
                sleep[rows(where.kind()).slot[where.row()]] != Sleep::awake;
     }
     /// s, for each slot: for how long the body has been slower than SolverSettings::sleep_speed.
-    std::vector<float> slow_for;
+    Array<float> slow_for;
     /// Takes speed and inverse mass from the row of an awake, dynamic body...
     void fall_asleep(std::uint32_t slot);
     /// ...and gives the inverse mass of a sleeper back, unless it is contained.
@@ -177,12 +177,12 @@ class BodyStore {
 
     /// For each slot the inverse mass, 1/kg; kept while the body is contained, for its revival.
     AlignedVector<float> inverse_masses;
-    std::vector<float> inverse_inertias;  ///< likewise, planar only
+    Array<float> inverse_inertias;  ///< likewise, planar only
     /// 1/(kg m2): at least the trace of the inverse inertia of each rigid body that there is or was; see torque.h.
     float largest_response = 0;
 
-    std::vector<Damping> dampings;  ///< for each slot; none for bodies that are not dynamic
-    std::size_t damped = 0;         ///< how many of them are above 0
+    Array<Damping> dampings;  ///< for each slot; none for bodies that are not dynamic
+    std::size_t damped = 0;   ///< how many of them are above 0
     void set_damping(std::uint32_t slot, const Damping& damping)
     {
         damped += (damping.is_any() ? 1U : 0U) - (dampings[slot].is_any() ? 1U : 0U);
@@ -212,10 +212,10 @@ class BodyStore {
         BodyRow row;
     };
     AlignedVector<Slot> slots_;
-    std::vector<std::uint8_t> live_;
-    std::vector<BodyModel> models_;
+    Array<std::uint8_t> live_;
+    Array<BodyModel> models_;
     AlignedVector<BodyMotion> motions_;
-    std::vector<std::uint32_t> free_slots_;
+    Array<std::uint32_t> free_slots_;
 
     /// Reserves room for so many more bodies of a kind, so that take_row() cannot fail.
     void make_room_in_rows(BodyKind kind, std::size_t more);

@@ -138,7 +138,7 @@ class ContactCache {
         std::uint32_t claims = 0;
         std::int32_t shift = 0;  ///< index in the last list minus that in the new one, where the part ends
     };
-    std::vector<Part> parts_;
+    Array<Part> parts_;
     AlignedVector<std::uint8_t> claimed_;  ///< for each contact of the last list
     AlignedVector<std::uint32_t> missed_;  ///< indices in the new list; those of a part start where it begins
     AlignedVector<std::uint32_t> lost_;    ///< indices in the last list, likewise

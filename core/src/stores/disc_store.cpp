@@ -1,6 +1,7 @@
 // See disc_store.h.
 #include "stores/disc_store.h"
 
+#include "stores/array.h"
 #include "stores/disc_fields.h"
 
 #include <algorithm>
@@ -42,7 +43,7 @@ void DiscStore::derive()
 
 void DiscStore::remove_segments_of(std::uint32_t wall)
 {
-    std::vector<std::uint32_t> moved(segments.size(), UINT32_MAX);
+    Array<std::uint32_t> moved(segments.size(), UINT32_MAX);
     std::uint32_t left = 0;
     for (std::size_t i = 0; i < segments.size(); ++i) {
         if (segments[i].wall == wall) continue;

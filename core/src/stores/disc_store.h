@@ -73,7 +73,7 @@ struct DiscBlocks {
     AlignedVector<std::uint8_t> lanes;  ///< of each block, those that are not padding
     /// As DiscContactKind::Row, Impulse and Impulse: field f of lane l of block b at 16 (fields b + f) + l.
     AlignedVector<float> rows, impulses, sums;
-    std::vector<WallTouch> touches;  ///< of walls: by 16 b + l
+    Array<WallTouch> touches;  ///< of walls: by 16 b + l
 };
 struct DiscBand {
     std::array<DiscBlocks, disc_class_count> blocks;   ///< those that are solved
@@ -108,7 +108,7 @@ constexpr std::uint64_t late_wall_key(std::uint32_t row, std::uint32_t segment)
 }
 
 struct DiscStore {
-    std::vector<DiscShape> shapes;   ///< by slot of the body; may be shorter than the table of slots
+    Array<DiscShape> shapes;         ///< by slot of the body; may be shorter than the table of slots
     std::size_t count = 0;           ///< of discs
     std::size_t rough_discs = 0;     ///< those with friction
     std::size_t filtered_discs = 0;  ///< those whose category or mask is not the default
@@ -117,34 +117,34 @@ struct DiscStore {
         std::uint32_t generation = 1;
         std::uint8_t live = 0;
     };
-    std::vector<WallSlot> walls{1};  ///< by slot; the first is the null handle's
-    std::vector<std::uint32_t> free_walls;
-    std::vector<WallSegment> segments;  ///< of live walls, in the order in which they were added
+    Array<WallSlot> walls{1};  ///< by slot; the first is the null handle's
+    Array<std::uint32_t> free_walls;
+    Array<WallSegment> segments;  ///< of live walls, in the order in which they were added
 
     // What the last search found:
-    std::vector<DiscBand> bands;  ///< the first `band_count` of them
+    Array<DiscBand> bands;  ///< the first `band_count` of them
     std::size_t band_count = 0;
     AlignedVector<DiscAnchor> anchors;   ///< by row of planar bodies
     AlignedVector<DiscAnchor> found_at;  ///< the same as of the last search of all discs
     StripFrame frame;                    ///< of that search
     /// The rows of the discs in the order of the strips. Empty after a file or a renumbering, until the next search.
-    std::vector<std::uint32_t> rows_by_place;
+    Array<std::uint32_t> rows_by_place;
     /// Whether bodies that are near each other have come to lie far apart in memory: see sort_disc_rows().
     bool wants_sorting = false;
     int steps_since_sorting = least_steps_between_sortings;
     /// Sorting costs as much as some steps, and people who run about at random are soon out of order again.
     static constexpr int least_steps_between_sortings = 60;
-    std::vector<std::uint32_t> sorted_rows;  ///< space for sort_disc_rows()
+    Array<std::uint32_t> sorted_rows;  ///< space for sort_disc_rows()
     /// Who made that search, and its number there; nobody after a file or a renumbering.
     std::shared_ptr<const char> searcher;
     std::uint64_t search = 0;
     /// Contacts that were found since, sorted: see late_key().
-    std::vector<std::uint64_t> late;
-    float late_reach = 0;                 ///< m, the most that a disc reaches that was searched for since
-    float late_drift = 0;                 ///< m, the most that one of them is from its place in found_at
-    std::vector<Vec2<double>> wall_ends;  ///< two a segment: where the ends were, world
-    float wall_skin = 0;                  ///< m: how far an end may move before a new search
-    int age = 0;                          ///< steps since then
+    Array<std::uint64_t> late;
+    float late_reach = 0;           ///< m, the most that a disc reaches that was searched for since
+    float late_drift = 0;           ///< m, the most that one of them is from its place in found_at
+    Array<Vec2<double>> wall_ends;  ///< two a segment: where the ends were, world
+    float wall_skin = 0;            ///< m: how far an end may move before a new search
+    int age = 0;                    ///< steps since then
     /// Whether `resting` has the contacts of those who sleep now.
     bool is_divided = true;
     /// Whether a body, a disc or a wall was added, removed or teleported since then.
@@ -194,7 +194,7 @@ struct DiscStore {
     /// When a body was removed: its contacts in blocks must not be taken for those of the next body in its row.
     void forget_removed_row(std::uint32_t row);
     /// By slot: numbers of people that are the same on every rank. Empty where the scene is no region of a larger crowd.
-    std::vector<std::uint64_t> numbers;
+    Array<std::uint64_t> numbers;
     /// Whether the body has left the row since the last search.
     [[nodiscard]] bool is_removed_row(std::size_t row) const
     {

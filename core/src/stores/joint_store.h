@@ -30,13 +30,13 @@ struct JointStore {
     using Parameters = typename Type::template Parameters<float>;
     using Memory = typename Type::template Memory<float>;
 
-    std::vector<typename Type::Definition> definitions;
-    AlignedVector<float> parameters;        ///< quad_floats<Parameters> a joint
-    AlignedVector<float> memory;            ///< quad_floats<Memory> a joint: impulses of the last substep
-    AlignedVector<float> wrenches;          ///< quad_floats<Wrench> a joint: of the last step
-    std::vector<WorldPoints> world_points;  ///< only of types with has_world_points
-    std::vector<std::uint8_t> colours;      ///< no_colour until the first step
-    std::vector<std::uint32_t> slots;       ///< handle slot of each joint
+    Array<typename Type::Definition> definitions;
+    AlignedVector<float> parameters;  ///< quad_floats<Parameters> a joint
+    AlignedVector<float> memory;      ///< quad_floats<Memory> a joint: impulses of the last substep
+    AlignedVector<float> wrenches;    ///< quad_floats<Wrench> a joint: of the last step
+    Array<WorldPoints> world_points;  ///< only of types with has_world_points
+    Array<std::uint8_t> colours;      ///< no_colour until the first step
+    Array<std::uint32_t> slots;       ///< handle slot of each joint
 
     static constexpr bool has_world_points = Type::has_world_points;
     static constexpr std::size_t wrench_floats = quad_floats<Wrench<float>>;
@@ -134,16 +134,16 @@ struct JointStores {
             0;  ///< least number of sweeps of solve in a substep; 0: as SolverSettings says
     };
     typename StoresOf<JointTypes>::type stores;
-    std::vector<Slot> slots{Slot{}};  ///< slot 0 is the null handle's
-    std::vector<std::uint32_t> free_slots;
+    Array<Slot> slots{Slot{}};  ///< slot 0 is the null handle's
+    Array<std::uint32_t> free_slots;
     /// The joints on each body as a doubly linked list of joint ends: end 2 s is the end of the joint in slot s on its
     /// body a, end 2 s + 1 the one on its body b; 0 is no end. The list of a body begins at BodyStore::first_ends.
     struct End {
         std::uint32_t next = 0, previous = 0;
     };
-    std::vector<End> ends{2};
-    std::vector<ConstraintId> watched;  ///< joints with a break limit, and some that had one
-    std::size_t with_iterations = 0;    ///< number of joints with `iterations` above 0
+    Array<End> ends{2};
+    Array<ConstraintId> watched;      ///< joints with a break limit, and some that had one
+    std::size_t with_iterations = 0;  ///< number of joints with `iterations` above 0
     /// Token of this set of joints: null after a change, made by the next step, shared by copies of the scene.
     /// A layout that holds the same token was made from the same joints.
     std::shared_ptr<const char> version;

@@ -9,6 +9,7 @@
 
 #include "motley/core/constraints/contact_definition.h"
 #include "motley/core/shapes.h"
+#include "stores/array.h"
 #include "stores/disc_store.h"
 
 namespace motley {
@@ -48,16 +49,16 @@ struct ShapeStore {
     /// Keys of contacts name shapes in so many bits.
     static constexpr std::uint32_t most_slots = std::uint32_t{1} << 28;
 
-    std::vector<Slot> slots{1};  ///< the first is the null handle's
-    std::vector<std::uint32_t> free_slots;
-    std::vector<Capsule> capsules;  ///< without gaps: removal moves the last one into the gap
-    std::vector<HalfSpace> half_spaces;
+    Array<Slot> slots{1};  ///< the first is the null handle's
+    Array<std::uint32_t> free_slots;
+    Array<Capsule> capsules;  ///< without gaps: removal moves the last one into the gap
+    Array<HalfSpace> half_spaces;
     /// The next group that a copy of a figure gets.
     std::uint32_t next_group = first_given_group;
     static constexpr std::uint32_t first_given_group = std::uint32_t{1} << 31;
     /// The contacts that were found in the last step. The contact cache has them behind those of the host's list.
-    std::vector<Contact> contacts;
-    std::vector<WallMet> walls_met;  ///< of each of them, the wall that it is with
+    Array<Contact> contacts;
+    Array<WallMet> walls_met;  ///< of each of them, the wall that it is with
     /// Token of this set of shapes, and of what else may meet them: null after a change, made by the next step, shared by
     /// copies of the scene.
     std::shared_ptr<const char> version;

@@ -4,6 +4,7 @@
 #include "motley/core/assembly.h"
 #include "motley/core/contact_events.h"
 #include "motley/core/crowd_index.h"
+#include "motley/core/memory.h"
 #include "motley/core/polygon.h"
 #include "motley/core/scene.h"
 #include "motley/core/settings.h"

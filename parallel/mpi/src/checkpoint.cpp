@@ -95,7 +95,7 @@ std::vector<std::vector<ImpulseRecord>> Region::impulses_by_person(const SceneCo
     for (std::size_t band = 0; band < scene.discs.band_count; ++band) carried.count(scene.discs, band);
     carried.open();
     for (std::size_t band = 0; band < scene.discs.band_count; ++band) carried.keep(scene.discs, band);
-    const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+    const Array<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
     std::vector<std::vector<ImpulseRecord>> records(people.size());
     carried.take_out(
         [&](std::uint32_t row, std::uint32_t other, bool is_wall, const CarriedImpulses::Impulse& impulse) {

@@ -144,7 +144,7 @@ std::vector<std::vector<ImpulseRecord>> Region::take_out_impulses(const SceneCor
                                                                   CarriedImpulses& carried) const
 {
     std::vector<std::vector<ImpulseRecord>> records(static_cast<std::size_t>(ranks_));
-    const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+    const Array<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
     const auto stays = [&](std::uint32_t row) {
         return !is_copy(slots[row]) && owners_[strip_of_[row]] == rank_;
     };

@@ -129,7 +129,7 @@ void Region::list_pushed(const SceneCore& scene, const DiscStrips& strips)
 {
     const Stopwatch watch(figures.seconds_agreeing);
     if (is_dealt_anew_) {
-        const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+        const Array<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
         const auto list = [&](Border& border, std::size_t band) {
             border.people.clear();
             if (border.rank == nobody) return;
@@ -175,7 +175,7 @@ void Region::list_copies_pushed(const SceneCore& scene)
     const auto by_row = [](const Place& p, const Place& q) { return p.row < q.row; };
     std::sort(places.begin(), places.end(), by_row);
     std::vector<std::uint8_t> is_pushed(places.size(), 0);
-    const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+    const Array<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
     const auto note = [&](std::int32_t offset) {
         const std::uint32_t row = row_at(offset, BodyKind::planar).row();
         if (!is_copy(slots[row])) return;

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "motley/core/memory.h"
+
 namespace motley::c {
 namespace {
 
@@ -66,6 +68,20 @@ int32_t motley_c_version()
 const char* motley_last_error()
 {
     return motley::c::last_error;
+}
+
+motley_status motley_set_memory_hooks(const motley_memory_hooks* hooks)
+{
+    return motley::c::call("motley_set_memory_hooks", [&] {
+        motley::set_memory_hooks(hooks == nullptr
+                                     ? motley::MemoryHooks{}
+                                     : motley::MemoryHooks{hooks->allocate, hooks->release, hooks->user});
+    });
+}
+
+size_t motley_bytes_held()
+{
+    return motley::bytes_held();
 }
 
 void motley_free(void* memory)

@@ -1,5 +1,6 @@
 // See block_factor.h.
 #include "contacts/block_factor.h"
+#include "stores/array.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ bool Elimination::find(std::int32_t bodies, std::span<const BodyEdge> edges, std
     }
     waiting_.clear();
     for (std::int32_t body = 0; body < bodies; ++body) {
-        std::vector<std::int32_t>& near = neighbours_[as_index(body)];
+        Array<std::int32_t>& near = neighbours_[as_index(body)];
         std::sort(near.begin(), near.end());
         near.erase(std::unique(near.begin(), near.end()), near.end());
         waiting_.emplace_back(static_cast<std::int32_t>(near.size()), body);
@@ -53,11 +54,11 @@ void Elimination::eliminate(std::int32_t body)
 {
     place_of_[as_index(body)] = static_cast<std::int32_t>(body_at_.size());
     body_at_.push_back(body);
-    const std::vector<std::int32_t>& column = neighbours_[as_index(body)];
+    const Array<std::int32_t>& column = neighbours_[as_index(body)];
     rows_.insert(rows_.end(), column.begin(), column.end());
     begin_.push_back(static_cast<std::int32_t>(rows_.size()));
     for (const std::int32_t other : column) {
-        std::vector<std::int32_t>& near = neighbours_[as_index(other)];
+        Array<std::int32_t>& near = neighbours_[as_index(other)];
         merged_.clear();
         std::set_union(near.begin(), near.end(), column.begin(), column.end(), std::back_inserter(merged_));
         std::erase_if(merged_, [&](std::int32_t i) { return i == body || i == other; });

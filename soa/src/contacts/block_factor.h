@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "stores/array.h"
+
 namespace motley {
 
 /// Two bodies that touch each other, by their numbers in the island.
@@ -40,11 +42,10 @@ class Elimination {
     [[nodiscard]] std::span<const std::int32_t> targets() const { return targets_; }
 
   private:
-    std::vector<std::int32_t> body_at_, place_of_, begin_, rows_, targets_;
-    std::vector<std::vector<std::int32_t>> neighbours_;  ///< of bodies that are not eliminated yet, sorted
-    std::vector<std::pair<std::int32_t, std::int32_t>>
-        waiting_;  ///< (degree, body), a heap; may be out of date
-    std::vector<std::int32_t> merged_;
+    Array<std::int32_t> body_at_, place_of_, begin_, rows_, targets_;
+    Array<Array<std::int32_t>> neighbours_;                 ///< of bodies that are not eliminated yet, sorted
+    Array<std::pair<std::int32_t, std::int32_t>> waiting_;  ///< (degree, body), a heap; may be out of date
+    Array<std::int32_t> merged_;
 
     static std::size_t as_index(std::int32_t i) { return static_cast<std::size_t>(i); }
     void eliminate(std::int32_t body);
@@ -70,7 +71,7 @@ class BlockFactor {
     void solve(const Elimination& order, std::span<double> x) const;
 
   private:
-    std::vector<double> diagonal_, below_;  ///< by place; by block
+    Array<double> diagonal_, below_;  ///< by place; by block
 };
 
 }  // namespace motley

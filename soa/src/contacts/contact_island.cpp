@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "contacts/friction_impulse.h"
+#include "stores/array.h"
 
 namespace motley {
 namespace {
@@ -36,7 +37,7 @@ auto ContactIsland<size>::rows_of(const Contact& contact) const -> const Row*
 
 /// j s of a row, for numbers s of the bodies.
 template <int size>
-double ContactIsland<size>::along(const Contact& contact, const Row& row, const std::vector<double>& s) const
+double ContactIsland<size>::along(const Contact& contact, const Row& row, const Array<double>& s) const
 {
     double sum = 0;
     if (contact.a >= 0) sum += product(row.a, s.data() + std::int64_t{contact.a} * size);
@@ -47,7 +48,7 @@ double ContactIsland<size>::along(const Contact& contact, const Row& row, const 
 /// s += j^T times a number.
 template <int size>
 void ContactIsland<size>::add_across(const Contact& contact, const Row& row, double times,
-                                     std::vector<double>& s) const
+                                     Array<double>& s) const
 {
     const auto add = [&](std::int32_t body, const double* j) {
         double* x = s.data() + std::int64_t{body} * size;

@@ -33,6 +33,7 @@
 #include "contacts/block_factor.h"
 #include "contacts/contact_directions.h"
 #include "layout/batches.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -107,22 +108,22 @@ class ContactIsland {
     struct Residual {
         double energy = 0, speed = 0;  ///< J, and m/s
     };
-    std::vector<Body> bodies_;
-    std::vector<IslandContact> places_;
-    std::vector<Contact> contacts_;
-    std::vector<Carrier> carriers_;
-    std::vector<Row> rows_;
-    std::vector<double> impulses_;            ///< by row, as they were stored last
-    std::vector<double> speeds_;              ///< by row: J v
-    std::vector<double> predicted_, change_;  ///< by row: J v and the change of lambda by a step
-    std::vector<double> best_;                ///< by row: the best lambda that was tried
-    std::vector<double> s_, step_;            ///< `size` numbers a body: dv = W s; and the next change of s
-    std::vector<State> guess_, factored_;     ///< the present guess, and that of the matrix
+    Array<Body> bodies_;
+    Array<IslandContact> places_;
+    Array<Contact> contacts_;
+    Array<Carrier> carriers_;
+    Array<Row> rows_;
+    Array<double> impulses_;            ///< by row, as they were stored last
+    Array<double> speeds_;              ///< by row: J v
+    Array<double> predicted_, change_;  ///< by row: J v and the change of lambda by a step
+    Array<double> best_;                ///< by row: the best lambda that was tried
+    Array<double> s_, step_;            ///< `size` numbers a body: dv = W s; and the next change of s
+    Array<State> guess_, factored_;     ///< the present guess, and that of the matrix
     bool is_sparse_ = false;
     bool has_rows_ = false;
     bool has_guess_ = false;  ///< guess_ solved these contacts
     bool has_factor_ = false;
-    std::vector<BodyEdge> edges_;
+    Array<BodyEdge> edges_;
     Elimination order_;
     BlockFactor<size> factor_;
 
@@ -143,8 +144,8 @@ class ContactIsland {
 
     [[nodiscard]] Row* rows_of(const Contact& contact);
     [[nodiscard]] const Row* rows_of(const Contact& contact) const;
-    [[nodiscard]] double along(const Contact& contact, const Row& row, const std::vector<double>& s) const;
-    void add_across(const Contact& contact, const Row& row, double times, std::vector<double>& s) const;
+    [[nodiscard]] double along(const Contact& contact, const Row& row, const Array<double>& s) const;
+    void add_across(const Contact& contact, const Row& row, double times, Array<double>& s) const;
     [[nodiscard]] double speed(const Contact& contact, const Row& row) const;
     void refresh_speeds();
     /// Gives a row another impulse, and the bodies what follows.

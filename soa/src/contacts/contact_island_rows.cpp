@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "contacts/contact_island.h"
+#include "stores/array.h"
 
 namespace motley {
 namespace {
@@ -121,7 +122,7 @@ bool ContactIsland<size>::lay_out(std::span<const BodyRow> bodies, std::span<con
     guess_.resize(contacts.size());
     factored_.resize(contacts.size());
     rows_.resize(rows);
-    for (std::vector<double>* numbers : {&impulses_, &speeds_, &predicted_, &change_, &best_})
+    for (Array<double>* numbers : {&impulses_, &speeds_, &predicted_, &change_, &best_})
         numbers->resize(rows);
     s_.resize(bodies.size() * size);
     step_.resize(bodies.size() * size);

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "contacts/contact_island.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -13,8 +14,8 @@ struct ExactContacts::Island {
     bool is_flat = false;  ///< all bodies have three degrees of freedom
     bool is_left_out = false;
     double residual = 0;  ///< m/s
-    std::vector<BodyRow> bodies;
-    std::vector<IslandContact> contacts;
+    Array<BodyRow> bodies;
+    Array<IslandContact> contacts;
     ContactIsland<3> flat;
     ContactIsland<6> spatial;
 };

@@ -8,6 +8,7 @@
 
 #include "layout/batches.h"
 #include "layout/body_sets.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -39,12 +40,12 @@ class ExactContacts {
 
   private:
     struct Island;
-    std::vector<IslandContact> contacts_, now_;  ///< by which the islands were made; of this step
+    Array<IslandContact> contacts_, now_;  ///< by which the islands were made; of this step
     bool has_islands_ = false;
     BodySets sets_;
-    std::vector<std::int32_t> island_of_;           ///< by root
-    std::vector<std::int32_t> local_;               ///< number in its island, by BodySets::number
-    std::vector<std::unique_ptr<Island>> islands_;  ///< never shrinks, so that islands keep their memory
+    Array<std::int32_t> island_of_;           ///< by root
+    Array<std::int32_t> local_;               ///< number in its island, by BodySets::number
+    Array<std::unique_ptr<Island>> islands_;  ///< never shrinks, so that islands keep their memory
     std::int64_t count_ = 0, left_out_ = 0;
 
     void list_contacts(const BodyStore& bodies, const SweepLists& sweeps, std::span<const SweepChunk> discs,

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "stores/array.h"
 #include "stores/disc_store.h"
 
 namespace motley {
@@ -75,7 +76,7 @@ class BlockFiller {
     };
     DiscBlocks* blocks_ = nullptr;
     std::size_t row_floats_ = 0, impulse_floats_ = 0;
-    std::vector<std::uint32_t> masks_;  ///< by body: in which open blocks it is
+    Array<std::uint32_t> masks_;  ///< by body: in which open blocks it is
     std::array<Open, most_open> opened_;
     std::uint32_t open_ = 0;  ///< a bit for each open block
 

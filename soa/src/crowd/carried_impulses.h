@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/scene_core.h"
+#include "stores/array.h"
 #include "stores/disc_store.h"
 
 namespace motley {
@@ -70,11 +71,10 @@ class CarriedImpulses {
         std::uint32_t next;   ///< entry of the same row, or none
         Impulse impulse;
     };
-    std::vector<Entry> entries_;
+    Array<Entry> entries_;
     std::uint32_t used_ = 0;
-    std::vector<std::uint32_t> heads_;  ///< by row: its first entry, or none
-    std::vector<std::uint32_t>
-        places_;  ///< by band: the number of its entries, then the place of the first one
+    Array<std::uint32_t> heads_;   ///< by row: its first entry, or none
+    Array<std::uint32_t> places_;  ///< by band: the number of its entries, then the place of the first one
 
     [[nodiscard]] const Entry* find(std::uint32_t row, std::uint32_t other) const
     {

@@ -7,6 +7,7 @@
 
 #include "motley/core/invalid_input.h"
 #include "scene/wall_ends.h"
+#include "stores/array.h"
 #include "stores/disc_fields.h"
 #include "stores/growth.h"
 
@@ -158,7 +159,7 @@ void DiscFinder::place_segments(const DiscStore& discs)
 {
     const auto bands = static_cast<std::size_t>(strips.band_count()) + 1;
     if (segments_.size() < bands) segments_.resize(bands);
-    for (std::vector<PlacedSegment>& list : segments_) list.clear();
+    for (Array<PlacedSegment>& list : segments_) list.clear();
     const double reach = static_cast<double>(strips.most_reach()) + static_cast<double>(discs.wall_skin);
     for (std::size_t i = 0; i < discs.segments.size(); ++i) {
         const PlacedSegment segment = place_segment(discs, static_cast<std::uint32_t>(i));
@@ -228,7 +229,7 @@ void DiscFinder::count_pairs(const DiscStore& discs, std::size_t more)
 }
 
 /// The pairs of a strip with itself and with the next one, in order.
-void DiscFinder::list_pairs(std::int32_t strip, std::vector<Pair>& pairs) const
+void DiscFinder::list_pairs(std::int32_t strip, Array<Pair>& pairs) const
 {
     const std::span<const PlacedDisc> here = strips.strip(strip);
     const std::span<const PlacedDisc> next =
@@ -277,7 +278,7 @@ void DiscFinder::add_pair(SceneCore& scene, DiscBand& band, Worker& worker, cons
     DiscStore& discs = scene.discs;
     float friction = 0;
     if (discs.rough_discs > 0 || discs.filtered_discs > 0) {
-        const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+        const Array<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
         const DiscShape& shape_a = discs.shapes[slots[a.row]];
         const DiscShape& shape_b = discs.shapes[slots[b.row]];
         if (!do_meet(shape_a, shape_b)) return;

@@ -15,6 +15,7 @@
 #include "crowd/carried_impulses.h"
 #include "crowd/disc_split.h"
 #include "crowd/disc_strips.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -76,7 +77,7 @@ class DiscFinder {
         std::uint32_t a, b;  ///< places in the order of the strips
     };
     struct Worker {
-        std::vector<Pair> pairs;
+        Array<Pair> pairs;
         std::array<BlockFiller, disc_class_count> fillers, resting_fillers;
         DiscSplit split;
         template <class Work>
@@ -93,14 +94,13 @@ class DiscFinder {
     std::shared_ptr<const char> self_ =
         std::make_shared<const char>('\0');  ///< its address names this finder
     std::uint64_t searches_ = 0;             ///< the last one is that of the strips
-    std::vector<std::uint32_t> places_;      ///< of each row in the strips; empty until they are asked for
-    std::vector<std::uint32_t>
-        renewed_in_;  ///< by row: the last call of begin_late() that renewed its anchor
+    Array<std::uint32_t> places_;            ///< of each row in the strips; empty until they are asked for
+    Array<std::uint32_t> renewed_in_;  ///< by row: the last call of begin_late() that renewed its anchor
     std::uint32_t late_call_ = 0;
     struct Leaving {
         std::uint32_t place, row;
     };
-    std::vector<Leaving> leaving_;  ///< the discs of begin_late(), in the order of the strips
+    Array<Leaving> leaving_;  ///< the discs of begin_late(), in the order of the strips
     double late_room_ =
         INFINITY;  ///< m: how far the nearest of them is, beyond its reach, from bands not beside its own
     /// A contact that may be new: of the disc in row `a`, which left its skin, with that in row `b`, or with segment `b`.
@@ -112,19 +112,19 @@ class DiscFinder {
     };
     struct LateList {
         std::size_t first = 0, last = 0;  ///< in leaving_: the discs of the band
-        std::vector<LateContact> contacts;
+        Array<LateContact> contacts;
         bool has_wide = false;  ///< some are of band 0
         bool is_sparse = true;
     };
-    std::vector<LateList> late_;                ///< by band of the disc that left
-    std::vector<std::uint64_t> fresh_;          ///< the keys of all of them
+    Array<LateList> late_;                      ///< by band of the disc that left
+    Array<std::uint64_t> fresh_;                ///< the keys of all of them
     std::atomic<std::size_t> found_in_all_{0};  ///< pairs in this search of all discs
     struct PlacedSegment {
         Vec2<double> from, to;  ///< in the frame of the strips
         std::uint32_t index;
     };
-    std::vector<Worker> workers_;
-    std::vector<std::vector<PlacedSegment>> segments_;  ///< by band
+    Array<Worker> workers_;
+    Array<Array<PlacedSegment>> segments_;  ///< by band
 
     [[nodiscard]] PlacedSegment place_segment(const DiscStore& discs, std::uint32_t index) const;
     void place_segments(const DiscStore& discs);
@@ -145,7 +145,7 @@ class DiscFinder {
     void find_in_strips(SceneCore& scene, std::size_t band, Worker& worker);
     void find_wide(SceneCore& scene, Worker& worker);
     void count_pairs(const DiscStore& discs, std::size_t more);
-    void list_pairs(std::int32_t strip, std::vector<Pair>& pairs) const;
+    void list_pairs(std::int32_t strip, Array<Pair>& pairs) const;
     void add_pair(SceneCore& scene, DiscBand& band, Worker& worker, const PlacedDisc& a, const PlacedDisc& b,
                   const CarriedImpulses::Impulse& impulse, std::uint32_t number_a,
                   std::uint32_t number_b) const;

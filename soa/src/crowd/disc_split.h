@@ -8,6 +8,7 @@
 
 #include "crowd/block_filler.h"
 #include "scene/scene_core.h"
+#include "stores/array.h"
 #include "stores/disc_store.h"
 
 namespace motley {
@@ -19,10 +20,10 @@ class DiscSplit {
     void divide(const SceneCore& scene, DiscBand& band, Fillers& fillers, Fillers& resting_fillers);
 
   private:
-    std::vector<float> floats_;        ///< rows, impulses and sums of contacts, one after another
-    std::vector<std::uint32_t> rows_;  ///< of their bodies, two a contact
-    std::vector<WallTouch> touches_;   ///< of walls
-    std::vector<std::uint8_t> rests_;  ///< by contact
+    Array<float> floats_;        ///< rows, impulses and sums of contacts, one after another
+    Array<std::uint32_t> rows_;  ///< of their bodies, two a contact
+    Array<WallTouch> touches_;   ///< of walls
+    Array<std::uint8_t> rests_;  ///< by contact
 
     template <DiscClass c>
     void divide_class(const SceneCore& scene, DiscBand& band, BlockFiller& filler, BlockFiller& resting);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "maths/bit_cast.h"
+#include "stores/array.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -221,8 +222,8 @@ void DiscStrips::sort(const SceneCore& scene, std::int64_t group)
                         end = first_in_group_[static_cast<std::size_t>(group) + 1];
     const std::span<const PlacedDisc> discs =
         std::span<const PlacedDisc>(placed_).subspan(begin, end - begin);
-    const std::vector<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
-    const std::vector<std::uint64_t>& numbers = scene.discs.numbers;
+    const Array<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
+    const Array<std::uint64_t>& numbers = scene.discs.numbers;
     const auto comes_before = [&](const PlacedDisc& p, const PlacedDisc& q) {
         if (p.along != q.along) return p.along < q.along;
         if (p.across != q.across) return p.across < q.across;

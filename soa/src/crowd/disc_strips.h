@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "scene/scene_core.h"
+#include "stores/array.h"
 #include "stores/disc_store.h"
 
 namespace motley {
@@ -179,20 +180,19 @@ class DiscStrips {
 
   private:
     static constexpr std::int32_t most_groups = 256;
-    std::vector<Measured> measured_;  ///< by chunk
+    Array<Measured> measured_;  ///< by chunk
     std::int64_t chunks_ = 0;
     float dt_ = 0;
     StripFrame frame_;
     std::int64_t discs_ = 0;
     std::int32_t strips_ = 1, groups_ = 1, strips_per_group_ = 1;
-    std::vector<std::uint32_t>
-        places_;  ///< by chunk and group: the number of discs, then the next free place
-    std::vector<std::uint32_t> first_in_group_;
-    std::vector<std::uint32_t> starts_;          ///< by group: of the bins of its strips
+    Array<std::uint32_t> places_;  ///< by chunk and group: the number of discs, then the next free place
+    Array<std::uint32_t> first_in_group_;
+    Array<std::uint32_t> starts_;                ///< by group: of the bins of its strips
     AlignedVector<PlacedDisc> placed_, sorted_;  ///< by group; in order
-    std::vector<std::uint32_t> first_;           ///< by strip, one past the last, and one past the wide ones
-    std::vector<std::int32_t> band_strips_;
-    std::vector<std::uint32_t> in_strip_;  ///< discs of all scenes; empty: there is one
+    Array<std::uint32_t> first_;                 ///< by strip, one past the last, and one past the wide ones
+    Array<std::int32_t> band_strips_;
+    Array<std::uint32_t> in_strip_;  ///< discs of all scenes; empty: there is one
 
     /// Calls work(row, rows) for each disc that was measured in a chunk of rows.
     template <class Work>

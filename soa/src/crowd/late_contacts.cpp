@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "crowd/disc_finder.h"
+#include "stores/array.h"
 #include "stores/disc_fields.h"
 #include "stores/growth.h"
 
@@ -21,7 +22,7 @@ bool are_near(const Vec2<double>& p, const Vec2<double>& q, float near)
 }
 
 /// Merges a sorted list into another one, from the back, in place.
-void merge_into(std::vector<std::uint64_t>& all, const std::vector<std::uint64_t>& more)
+void merge_into(Array<std::uint64_t>& all, const Array<std::uint64_t>& more)
 {
     std::size_t left = all.size(), take = more.size();
     make_room_for(all, take);

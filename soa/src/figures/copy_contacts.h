@@ -9,6 +9,7 @@
 
 #include "figures/figure.h"
 #include "layout/batches.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -42,12 +43,12 @@ class CopyContacts {
 
   private:
     static constexpr int none = -1;
-    std::vector<Slot> slots_;
-    std::vector<int> last_slot_;  ///< by body of the figure
+    Array<Slot> slots_;
+    Array<int> last_slot_;  ///< by body of the figure
     AlignedVector<BlockBodies> bodies_;
     AlignedVector<BlockConstraints> who_;
     AlignedVector<float> present_;
-    std::vector<std::uint8_t> counts_;
+    Array<std::uint8_t> counts_;
     AlignedVector<std::int32_t> fixed_offsets_;
     int fixed_count_ = 0;
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "layout/block.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -54,7 +55,7 @@ struct FigureNode {
         bool locks_point;  ///< its first three rows hold a point on a point, along x, y and z
         bool reversed;     ///< the child body is the joint's body a: errors and impulses change sign
     };
-    std::vector<Lock> locks;
+    Array<Lock> locks;
     /// Whether the node has a single lock, whose first three rows hold a point on a point along x, y and z, and whose
     /// other rows are purely angular.
     [[nodiscard]] bool hangs_by_point() const { return locks.size() == 1 && locks.front().locks_point; }
@@ -79,10 +80,10 @@ struct FigureShape {
         bool locks_point;  ///< the first three of them hold a point on a point
         bool in_tree = false;
     };
-    std::vector<BodyKind> bodies;
-    std::vector<Joint> joints;      ///< by colour
-    std::vector<FigureNode> nodes;  ///< children before parents; empty unless locks are solved exactly
-    std::vector<FigureClosure> closures;
+    Array<BodyKind> bodies;
+    Array<Joint> joints;      ///< by colour
+    Array<FigureNode> nodes;  ///< children before parents; empty unless locks are solved exactly
+    Array<FigureClosure> closures;
     int closure_rows = 0;
     std::int64_t closure_jacobian = 0, closure_factor = 0, closure_target = 0;  ///< like those of a node
     std::int64_t closure_alone =

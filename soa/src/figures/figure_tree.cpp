@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "figures/figure.h"
+#include "stores/array.h"
 
 namespace motley {
 namespace {
@@ -39,12 +40,12 @@ class TreeBuilder {
   private:
     static constexpr int none = -1;
     FigureShape& shape_;
-    std::vector<std::vector<int>> locks_on_;  ///< joints, by body
-    std::vector<int> node_of_;                ///< by body
-    std::vector<std::uint8_t> is_in_node_;    ///< by joint
-    std::vector<FigureNode> nodes_;           ///< parents before children
-    std::size_t spread_ = 0;                  ///< nodes whose neighbours all have a node
-    std::vector<FigureClosure> closures_;
+    Array<Array<int>> locks_on_;      ///< joints, by body
+    Array<int> node_of_;              ///< by body
+    Array<std::uint8_t> is_in_node_;  ///< by joint
+    Array<FigureNode> nodes_;         ///< parents before children
+    std::size_t spread_ = 0;          ///< nodes whose neighbours all have a node
+    Array<FigureClosure> closures_;
     int closure_rows_ = 0;
 
     [[nodiscard]] bool moves(int body) const { return shape_.bodies[at(body)] == BodyKind::rigid; }

@@ -8,6 +8,7 @@
 
 #include "figures/copy_contacts.h"
 #include "figures/figures.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -32,9 +33,9 @@ class FigureWorkspace {
   private:
     BatchSet::Count contacts_taken_;
     AlignedVector<float> floats_;
-    std::vector<FigureBlock::Joint> joints_;
+    Array<FigureBlock::Joint> joints_;
     CopyContacts sorted_;
-    std::vector<FigureBlock::Contact> contacts_;
+    Array<FigureBlock::Contact> contacts_;
 };
 
 }  // namespace motley

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "layout/disjoint_sets.h"
+#include "stores/array.h"
 
 namespace motley {
 namespace {
@@ -31,11 +32,11 @@ std::uint32_t rigid_row_of(const Placement& joint)
 /// Components that may be figures, in flat lists: the joints of member m are those from first_joint[m] to
 /// first_joint[m + 1], and likewise its bodies and its signature.
 struct Members {
-    std::vector<const Figures::Candidate*> joints;  ///< by colour, type and body
-    std::vector<BodyRow> bodies;                    ///< in the order in which the joints name them
-    std::vector<std::uint32_t> signatures;  ///< the shapes, in numbers: members with equal ones are copies
-    std::vector<std::size_t> first_joint{0}, first_body{0}, first_number{0};
-    std::vector<std::uint8_t>
+    Array<const Figures::Candidate*> joints;  ///< by colour, type and body
+    Array<BodyRow> bodies;                    ///< in the order in which the joints name them
+    Array<std::uint32_t> signatures;          ///< the shapes, in numbers: members with equal ones are copies
+    Array<std::size_t> first_joint{0}, first_body{0}, first_number{0};
+    Array<std::uint8_t>
         is_refused;  ///< light_between_heavy() has found a body, so its locks are not solved exactly
 
     [[nodiscard]] std::size_t count() const { return first_joint.size() - 1; }
@@ -89,7 +90,7 @@ class BodyNames {
     void start_figure() { ++figure_; }
     /// The number of a body. One that this figure has not numbered yet is added to the end of `bodies`, in which the
     /// figure begins at `first`.
-    std::uint32_t name(BodyRow body, std::vector<BodyRow>& bodies, std::size_t first)
+    std::uint32_t name(BodyRow body, Array<BodyRow>& bodies, std::size_t first)
     {
         Name& name = (is_rigid(body) ? rigid_ : fixed_)[body.row()];
         if (name.figure != figure_) {
@@ -103,7 +104,7 @@ class BodyNames {
     struct Name {
         std::uint32_t figure = 0, number = 0;
     };
-    std::vector<Name> rigid_, fixed_;
+    Array<Name> rigid_, fixed_;
     std::uint32_t figure_ = 0;
 };
 
@@ -164,9 +165,9 @@ struct JointOfComponent {
 };
 
 /// The joints of all components that may be figures and have at most `largest` moving bodies, by component.
-std::vector<JointOfComponent> joints_by_component(std::span<const Figures::Candidate> joints,
-                                                  const BodyStore& bodies, const KernelTable& kernels,
-                                                  std::size_t largest)
+Array<JointOfComponent> joints_by_component(std::span<const Figures::Candidate> joints,
+                                            const BodyStore& bodies, const KernelTable& kernels,
+                                            std::size_t largest)
 {
     const BodyRows& rigid = bodies.rows(BodyKind::rigid);
     const std::size_t rigid_rows = rigid.size();
@@ -178,16 +179,16 @@ std::vector<JointOfComponent> joints_by_component(std::span<const Figures::Candi
                            static_cast<std::int32_t>(joint.b.row()));
     }
     components.flatten();
-    std::vector<std::uint32_t> size(rigid_rows, 0);
+    Array<std::uint32_t> size(rigid_rows, 0);
     for (std::size_t row = 0; row < rigid_rows; ++row) ++size[static_cast<std::size_t>(components.root(row))];
-    std::vector<std::uint8_t> excluded(rigid_rows, 0);
+    Array<std::uint8_t> excluded(rigid_rows, 0);
     for (const auto& [joint, equalities, locks_point] : joints) {
         if (can_be_in_lanes(joint, kernels)) continue;
         for (const BodyRow body : {joint.a, joint.b})
             if (is_rigid(body)) excluded[static_cast<std::size_t>(components.root(body.row()))] = 1;
     }
     // Joints are counted by component, stored one component after another, and sorted in each of them.
-    std::vector<std::uint32_t> end(rigid_rows + 1, 0);
+    Array<std::uint32_t> end(rigid_rows + 1, 0);
     const auto root_of = [&](const Figures::Candidate& joint) {
         if (!can_be_in_lanes(joint.placement, kernels)) return no_root;
         const std::int32_t root = components.root(rigid_row_of(joint.placement));
@@ -199,7 +200,7 @@ std::vector<JointOfComponent> joints_by_component(std::span<const Figures::Candi
         if (root != no_root) ++end[static_cast<std::size_t>(root)];
     }
     std::exclusive_scan(end.begin(), end.end(), end.begin(), 0U);
-    std::vector<JointOfComponent> found(end.back());
+    Array<JointOfComponent> found(end.back());
     for (const Figures::Candidate& joint : joints) {
         const std::int32_t root = root_of(joint);
         if (root == no_root) continue;
@@ -220,7 +221,7 @@ std::vector<JointOfComponent> joints_by_component(std::span<const Figures::Candi
 Members members_of(std::span<const Figures::Candidate> joints, const BodyStore& bodies,
                    const KernelTable& kernels, bool exact, Figures::Refused& refused)
 {
-    const std::vector<JointOfComponent> found = joints_by_component(
+    const Array<JointOfComponent> found = joints_by_component(
         joints, bodies, kernels, exact ? bodies.rows(BodyKind::rigid).size() : most_bodies);
     Members members;
     members.joints.reserve(found.size());
@@ -246,16 +247,16 @@ Members members_of(std::span<const Figures::Candidate> joints, const BodyStore& 
 
 /// The members in an order in which copies follow each other. (If two shapes had the same hash, fewer copies would be
 /// found at once.)
-std::vector<std::size_t> sorted_by_signature(const Members& members)
+Array<std::size_t> sorted_by_signature(const Members& members)
 {
-    std::vector<std::pair<std::uint64_t, std::size_t>> hashed(members.count());
+    Array<std::pair<std::uint64_t, std::size_t>> hashed(members.count());
     for (std::size_t i = 0; i < hashed.size(); ++i) {
         std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
         for (const std::uint32_t number : members.signature_of(i)) hash = (hash ^ number) * 1099511628211ULL;
         hashed[i] = {hash, i};
     }
     std::sort(hashed.begin(), hashed.end());
-    std::vector<std::size_t> order(hashed.size());
+    Array<std::size_t> order(hashed.size());
     std::transform(hashed.begin(), hashed.end(), order.begin(),
                    [](const auto& member) { return member.second; });
     return order;
@@ -277,7 +278,7 @@ Placement gap_beside(Placement placement)
 }  // namespace
 
 void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, const KernelTable& kernels,
-                   bool exact, std::vector<Placement>& placed)
+                   bool exact, Array<Placement>& placed)
 {
     const std::size_t rigid_rows = bodies.rows(BodyKind::rigid).size();
     refused_ = {};
@@ -286,14 +287,14 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
     lone_.clear();
     touched_trees_.clear();
     const Members members = members_of(joints, bodies, kernels, exact, refused_);
-    const std::vector<std::size_t> order = sorted_by_signature(members);
+    const Array<std::size_t> order = sorted_by_signature(members);
 
     placed.clear();
     block_of_row_.assign(rigid_rows, none);
     place_of_row_.assign(rigid_rows, 0);
-    std::vector<std::int32_t> offsets;
+    Array<std::int32_t> offsets;
     std::int64_t memory = 0;
-    std::vector<std::int64_t> first_float;
+    Array<std::int64_t> first_float;
     std::span<const std::size_t> copies;
     for (std::size_t next = 0; next < order.size(); next += copies.size()) {
         std::size_t end = next + 1;

@@ -9,6 +9,7 @@
 
 #include "figures/figure.h"
 #include "layout/batches.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -25,7 +26,7 @@ class Figures {
     /// follow in their old order. `exact`: the locks of figures are solved by trees, however few copies there are,
     /// except for the locks that refused() counts.
     void find(std::span<const Candidate> joints, const BodyStore& bodies, const KernelTable& kernels,
-              bool exact, std::vector<Placement>& placed);
+              bool exact, Array<Placement>& placed);
     /// Locks that are not solved exactly, because their figure has no fixed body and has a body too light for the
     /// other bodies; see StepReport::exact_joints_refused.
     struct Refused {
@@ -78,24 +79,24 @@ class Figures {
 
   private:
     Refused refused_;
-    std::vector<std::unique_ptr<FigureShape>> shapes_;
-    std::vector<FigureBlock> blocks_;
-    std::vector<std::vector<FigureBlock::Joint>> joints_;  ///< of each block
-    std::vector<std::vector<std::uint8_t*>> skipped_;  ///< of each block and joint: BatchSet::Block::skipped
-    AlignedVector<std::int32_t> offsets_;              ///< of all blocks, one after another
-    AlignedVector<float> memory_;                      ///< likewise
-    std::vector<std::int32_t> block_of_row_;           ///< one entry per rigid row that existed at find()
-    std::vector<std::int32_t> place_of_row_;           ///< likewise; see places()
+    Array<std::unique_ptr<FigureShape>> shapes_;
+    Array<FigureBlock> blocks_;
+    Array<Array<FigureBlock::Joint>> joints_;  ///< of each block
+    Array<Array<std::uint8_t*>> skipped_;      ///< of each block and joint: BatchSet::Block::skipped
+    AlignedVector<std::int32_t> offsets_;      ///< of all blocks, one after another
+    AlignedVector<float> memory_;              ///< likewise
+    Array<std::int32_t> block_of_row_;         ///< one entry per rigid row that existed at find()
+    Array<std::int32_t> place_of_row_;         ///< likewise; see places()
     /// none for a body of no figure. Bodies added since find() have no joints.
     [[nodiscard]] std::int32_t block_of(std::size_t row) const
     {
         return row < block_of_row_.size() ? block_of_row_[row] : none;
     }
-    std::vector<std::uint8_t> alone_, was_alone_;  ///< by block, in this step and in the last
-    std::vector<std::uint32_t> contacts_;          ///< block after block
-    std::vector<std::uint32_t> end_of_contacts_;   ///< by block
+    Array<std::uint8_t> alone_, was_alone_;  ///< by block, in this step and in the last
+    Array<std::uint32_t> contacts_;          ///< block after block
+    Array<std::uint32_t> end_of_contacts_;   ///< by block
     std::size_t most_contacts_ = 0;
-    std::vector<std::int32_t> lone_, touched_trees_;
+    Array<std::int32_t> lone_, touched_trees_;
     std::int64_t lone_joints_ = 0;
 
     void list_lone_blocks();

@@ -292,7 +292,7 @@ inline void stiffen_locks(const FigureBlock& figure, const FigureNode& node, flo
 
 inline void factor_tree(const FigureBlock& figure, int lane)
 {
-    const std::vector<FigureNode>& nodes = figure.shape->nodes;
+    const Array<FigureNode>& nodes = figure.shape->nodes;
     float* system = figure.system + lane;
     for (const FigureNode& node : nodes) {
         for (const FigureNode::Lock& lock : node.locks) {
@@ -325,7 +325,7 @@ inline void factor_tree(const FigureBlock& figure, int lane)
 /// Changes the velocities of all bodies such that J v + rate C = 0 for the locks of the tree.
 inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, int lane)
 {
-    const std::vector<FigureNode>& nodes = figure.shape->nodes;
+    const Array<FigureNode>& nodes = figure.shape->nodes;
     float* system = figure.system + lane;
     const auto parent_of = [&](const FigureNode& node, std::int64_t FigureNode::*part) {
         return node.parent_node < 0 ? nullptr

@@ -102,8 +102,8 @@ struct PatchChunks {
 /// What a sweep runs over: chunks of each colour, of the overflow, and those of the patches.
 struct SweepLists {
     static constexpr int patch_list = parallel_colours + 1;
-    std::array<std::vector<SweepChunk>, patch_list + 1> lists;
-    std::vector<PatchChunks> patches;
+    std::array<Array<SweepChunk>, patch_list + 1> lists;
+    Array<PatchChunks> patches;
     std::uint32_t colours = 0;  ///< a bit for each colour in use, inside patches or outside
 
     [[nodiscard]] std::span<const SweepChunk> of_colour(int colour) const
@@ -154,8 +154,8 @@ struct SweepLists {
     }
 };
 struct TransferList {
-    std::vector<TransferTile::Part> parts;
-    std::vector<TransferTile> tiles;
+    Array<TransferTile::Part> parts;
+    Array<TransferTile> tiles;
     /// Makes a tile of the parts from `first_part` on, if there are any.
     void close_tile(std::int32_t first_part)
     {
@@ -252,18 +252,18 @@ class BatchSet {
     };
 
     int first_class_;
-    std::vector<Pool> pools_;           ///< by class, from first_class_ on
-    std::vector<std::uint8_t> occurs_;  ///< by class: 1 when a chunk has constraints of it
-    std::vector<std::size_t> used_;     ///< classes with blocks, so that a step skips hundreds of empty ones
+    Array<Pool> pools_;           ///< by class, from first_class_ on
+    Array<std::uint8_t> occurs_;  ///< by class: 1 when a chunk has constraints of it
+    Array<std::size_t> used_;     ///< classes with blocks, so that a step skips hundreds of empty ones
     std::span<const Placement> placements_;
     std::size_t per_chunk_ = 1;
     /// For each chunk, and in it for each class and colour: first the number of constraints, then the next free place
     /// of the colour.
-    std::vector<std::int32_t> places_;
+    Array<std::int32_t> places_;
     /// The same for chunks that are patches. `patch_places_`: the number of constraints, then the next free place,
     /// counted in lanes of the class's blocks. `patch_blocks_`: the first block. A patch has no overflow, so the
     /// entry of the overflow colour marks the end of the class's blocks.
-    std::vector<std::int32_t> patch_places_, patch_blocks_;
+    Array<std::int32_t> patch_places_, patch_blocks_;
     bool has_patches_ = false, adds_up_ = false;
 
     [[nodiscard]] std::size_t keys() const { return pools_.size() * colours; }
@@ -273,7 +273,7 @@ class BatchSet {
         return static_cast<std::size_t>(pool * colours + placement.colour);
     }
     /// A chunk's part of a table with an entry for each chunk, class and colour.
-    [[nodiscard]] std::span<std::int32_t> of_chunk(std::vector<std::int32_t>& table, std::int64_t chunk) const
+    [[nodiscard]] std::span<std::int32_t> of_chunk(Array<std::int32_t>& table, std::int64_t chunk) const
     {
         return std::span(table).subspan(static_cast<std::size_t>(chunk) * keys(), keys());
     }

@@ -11,6 +11,7 @@
 #include "layout/batches.h"
 #include "layout/patches.h"
 #include "scene/scene_core.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -45,8 +46,7 @@ class ContactIntake {
     std::span<const ContactSurface<float>> surfaces;
     AlignedVector<Placement> placements;  ///< with the colour of the step before, or no_colour
     Patches patches;
-    std::vector<std::int32_t>
-        memory_index;  ///< entry in the last list's impulses; 0, the zero entry, when new
+    Array<std::int32_t> memory_index;  ///< entry in the last list's impulses; 0, the zero entry, when new
 
   private:
     static constexpr std::size_t none = SIZE_MAX;

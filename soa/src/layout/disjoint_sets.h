@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "stores/array.h"
+
 namespace motley {
 
 /// Union-find. The smallest member names its set, so that its name does not depend on the order of ties.
@@ -40,7 +42,7 @@ class DisjointSets {
     [[nodiscard]] std::int32_t root(std::size_t member) const { return parent_[member]; }
 
   private:
-    std::vector<std::int32_t> parent_;
+    Array<std::int32_t> parent_;
 };
 
 }  // namespace motley

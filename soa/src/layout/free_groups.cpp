@@ -1,5 +1,6 @@
 // Groups are found when joints change, and used at the beginning and the end of each step.
 #include "layout/free_groups.h"
+#include "stores/array.h"
 
 #include <utility>
 
@@ -27,7 +28,7 @@ void FreeGroups::find(std::span<const Tie> ties, const BodyStore& bodies)
 
     // Groups are numbered in the order of their first tie; then their members are counted, and stored group by group.
     constexpr std::int32_t none = -1, held = -2;
-    std::vector<std::int32_t> group_of_root(sets_.size(), none);
+    Array<std::int32_t> group_of_root(sets_.size(), none);
     const auto group_of = [&](BodyRow body) -> std::int32_t& {
         return group_of_root[static_cast<std::size_t>(sets_.root(body))];
     };
@@ -35,7 +36,7 @@ void FreeGroups::find(std::span<const Tie> ties, const BodyStore& bodies)
         if (tie.locks_place && is_fixed(tie.a) != is_fixed(tie.b))
             group_of(is_fixed(tie.a) ? tie.b : tie.a) = held;
     }
-    std::vector<std::uint8_t> is_listed(sets_.size());
+    Array<std::uint8_t> is_listed(sets_.size());
     const auto for_each_member = [&](const auto& work) {
         is_listed.assign(sets_.size(), 0);
         for (const Tie& tie : ties) {

@@ -7,6 +7,7 @@
 
 #include "layout/block.h"
 #include "layout/body_sets.h"
+#include "stores/array.h"
 #include "stores/body_store.h"
 
 namespace motley {
@@ -39,9 +40,9 @@ class FreeGroups {
         bool is_damped = false;            ///< some body is, so the group does not fly on a parabola
     };
     [[nodiscard]] Sums sums_of(const KernelContext& context, std::int64_t group) const;
-    std::vector<std::uint32_t> end_of_members_;  ///< by group
-    std::vector<BodyRow> members_;               ///< of all groups, one after another
-    std::vector<Vec3<double>> start_momenta_;    ///< by group
+    Array<std::uint32_t> end_of_members_;  ///< by group
+    Array<BodyRow> members_;               ///< of all groups, one after another
+    Array<Vec3<double>> start_momenta_;    ///< by group
     BodySets sets_;
 };
 

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "stores/array.h"
 #include "stores/disc_store.h"
 #include "stores/growth.h"
 #include "stores/joint_store.h"
@@ -218,7 +219,7 @@ bool Layout::note_awake(const BodyStore& bodies)
     for (std::size_t kind = 0; kind < body_kind_count; ++kind) {
         const BodyRows& rows = bodies.rows(static_cast<BodyKind>(kind));
         const bool may_skip = bodies.sleepers > 0 && static_cast<BodyKind>(kind) != BodyKind::fixed;
-        std::vector<std::uint8_t>& noted = awake_[kind];
+        Array<std::uint8_t>& noted = awake_[kind];
         same = same && noted.size() == rows.awake.size();
         noted.resize(rows.awake.size());
         for (std::size_t chunk = 0; chunk < noted.size(); ++chunk) {
@@ -233,7 +234,7 @@ bool Layout::note_awake(const BodyStore& bodies)
 void Layout::list_rows(const SceneCore& scene)
 {
     for (int kind = 0; kind < body_kind_count; ++kind) {
-        std::vector<RowRange>& ranges = rows_[static_cast<std::size_t>(kind)];
+        Array<RowRange>& ranges = rows_[static_cast<std::size_t>(kind)];
         const auto size = static_cast<std::int32_t>(scene.bodies.rows(static_cast<BodyKind>(kind)).size());
         const bool has_lone = static_cast<BodyKind>(kind) == BodyKind::rigid && !figures.lone().empty();
         ranges.clear();
@@ -252,7 +253,7 @@ void Layout::list_rows(const SceneCore& scene)
                 first, last,
                 [&](std::int32_t row) { return !figures.is_alone(static_cast<std::size_t>(row)); }, add);
         };
-        const std::vector<std::uint8_t>& awake = awake_[static_cast<std::size_t>(kind)];
+        const Array<std::uint8_t>& awake = awake_[static_cast<std::size_t>(kind)];
         constexpr auto a_chunk = static_cast<std::int32_t>(BodyRows::rows_per_chunk);
         for_each_run(
             0, static_cast<std::int32_t>(awake.size()),

@@ -16,6 +16,7 @@
 #include "layout/free_groups.h"
 #include "motley/core/step_report.h"
 #include "scene/scene_core.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -69,7 +70,7 @@ class Layout {
     /// Groups of bodies that joints connect: see FreeGroups.
     FreeGroups groups;
     /// The bodies of a kind, except those of figures that are alone.
-    [[nodiscard]] const std::vector<RowRange>& rows(int kind) const
+    [[nodiscard]] const Array<RowRange>& rows(int kind) const
     {
         return rows_[static_cast<std::size_t>(kind)];
     }
@@ -109,8 +110,8 @@ class Layout {
   private:
     const KernelTable& kernels_;
     BatchSet joints_{contact_type_count, constraint_type_count};
-    std::vector<Placement> joint_placements_;
-    std::vector<std::uint32_t> uncoloured_;
+    Array<Placement> joint_placements_;
+    Array<std::uint32_t> uncoloured_;
     std::shared_ptr<const char> joint_version_;
     FigureUse use_;
     /// What the chunks of a step without blocks of contacts depend on in addition to the joints and lone figures.
@@ -120,21 +121,20 @@ class Layout {
         friend bool operator==(const Cut&, const Cut&) = default;
     };
     std::optional<Cut> cut_;  ///< what sweeps_ and transfers_ were cut for; empty if they must be cut again
-    std::vector<Figures::Candidate> candidates_;
-    std::vector<FreeGroups::Tie> ties_;
-    std::array<std::vector<std::uint8_t>, body_kind_count> is_jointed_;  ///< by kind and row
-    std::array<AlignedVector<float>, body_kind_count> start_along_;      ///< see Flight
-    std::array<AlignedVector<float>, body_kind_count> decay_;            ///< see BodyArrays
+    Array<Figures::Candidate> candidates_;
+    Array<FreeGroups::Tie> ties_;
+    std::array<Array<std::uint8_t>, body_kind_count> is_jointed_;    ///< by kind and row
+    std::array<AlignedVector<float>, body_kind_count> start_along_;  ///< see Flight
+    std::array<AlignedVector<float>, body_kind_count> decay_;        ///< see BodyArrays
     std::atomic<bool> overloaded_ = false;
-    std::array<std::vector<std::uint8_t>, body_kind_count>
-        awake_;  ///< by chunk of rows: whether a step visits it
-    std::array<std::vector<RowRange>, body_kind_count> rows_;
+    std::array<Array<std::uint8_t>, body_kind_count> awake_;  ///< by chunk of rows: whether a step visits it
+    std::array<Array<RowRange>, body_kind_count> rows_;
     std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< in no patch; at the range's first row
     ColourMasks joint_masks_, masks_;
     SweepLists sweeps_;
     TransferList transfers_;
-    std::vector<SweepChunk> disc_chunks_;  ///< of each band and class
-    std::vector<PatchChunks> disc_bands_;
+    Array<SweepChunk> disc_chunks_;  ///< of each band and class
+    Array<PatchChunks> disc_bands_;
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(SceneCore& scene);

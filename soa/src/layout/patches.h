@@ -128,7 +128,7 @@ class Patches {
     bool wanted_ = false;
     std::uint32_t list_ = 0;  ///< the number of the list, unique among the last few thousand
     std::array<AlignedVector<std::uint32_t>, moving_kinds> owners_;  ///< the largest claim, by row
-    std::vector<KindCounts> counts_;                                 ///< of each patch's bodies
+    Array<KindCounts> counts_;                                       ///< of each patch's bodies
     AlignedVector<BodyRow> bodies_;                                  ///< of each patch, in a range of its own
 };
 

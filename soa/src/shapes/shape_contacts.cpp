@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "maths/across.h"
+#include "stores/array.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -105,7 +106,7 @@ double margin_of(const PlacedCapsule& a, const PlacedCapsule& b)
 }
 
 /// Lists the contacts of two capsules that may touch within the step. `key` is that of the first one.
-void list_capsules(const Side& a, const Side& b, std::uint64_t key, std::vector<Contact>& contacts)
+void list_capsules(const Side& a, const Side& b, std::uint64_t key, Array<Contact>& contacts)
 {
     const PlacedCapsule &of_a = *a.shape, &of_b = *b.shape;
     const bool is_flat = of_a.is_flat || of_b.is_flat;
@@ -159,7 +160,7 @@ WallPlaces places_at_wall(const Axis& wall, const Axis& capsule)
 /// Lists the contacts of a capsule with a wall that it may touch within the step. Beside the wall it is held on the left
 /// (side 1), on the right (-1), or where it is (0), however far it has been pressed beyond.
 void list_at_wall(const Side& a, const Side& b, double side, double margin, std::uint64_t key,
-                  std::vector<Contact>& contacts)
+                  Array<Contact>& contacts)
 {
     const Axis &wall = a.shape->axis, axis = flattened(b.shape->axis);
     // Who is known to be on neither side is on that of the middle.
@@ -182,7 +183,7 @@ void list_at_wall(const Side& a, const Side& b, double side, double margin, std:
 
 /// Lists the contacts of a capsule with a half-space: one at each end of its axis.
 void list_half_space(const Side& a, const PlacedHalfSpace& half_space, const Side& b, std::uint64_t key,
-                     std::vector<Contact>& contacts)
+                     Array<Contact>& contacts)
 {
     const PlacedCapsule& capsule = *b.shape;
     const int ends = dot(capsule.axis.along, capsule.axis.along) > 0 ? 2 : 1;
@@ -290,7 +291,7 @@ ContactSurface<float> ShapeContacts::surface_of(const SceneCore& scene, const Sh
 
 void ShapeContacts::list(const SceneCore& scene, const ShapePairs& pairs, std::int64_t chunk)
 {
-    std::vector<Contact>& contacts = listed_[static_cast<std::size_t>(chunk)];
+    Array<Contact>& contacts = listed_[static_cast<std::size_t>(chunk)];
     contacts.clear();
     std::size_t part = 0;
     while (chunk >= first_chunk_[part + 1]) ++part;
@@ -319,7 +320,7 @@ void ShapeContacts::list(const SceneCore& scene, const ShapePairs& pairs, std::i
 }
 
 void ShapeContacts::list_half_spaces(const SceneCore& scene, const ShapePairs& pairs, std::uint32_t capsule,
-                                     std::vector<Contact>& contacts) const
+                                     Array<Contact>& contacts) const
 {
     const Side b = side_of(scene, pairs, capsule);
     if (!b.shape->can_move || b.shape->is_flat) return;
@@ -334,7 +335,7 @@ void ShapeContacts::list_half_spaces(const SceneCore& scene, const ShapePairs& p
 }
 
 void ShapeContacts::list_pair(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
-                              std::vector<Contact>& contacts)
+                              Array<Contact>& contacts)
 {
     const PlacedCapsule &a = pairs.capsule(pair.capsule), &b = pairs.capsule(pair.partner);
     if (!may_be_within(a, b, a.radius + b.radius + margin_of(a, b))) return;
@@ -344,7 +345,7 @@ void ShapeContacts::list_pair(const SceneCore& scene, const ShapePairs& pairs, c
 }
 
 void ShapeContacts::list_wall(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
-                              std::vector<Contact>& contacts) const
+                              Array<Contact>& contacts) const
 {
     const WallSegment& segment = scene.discs.segments[pair.partner];
     const Vec2<double> from = pairs.wall_ends()[2 * pair.partner],
@@ -367,7 +368,7 @@ void ShapeContacts::list_wall(const SceneCore& scene, const ShapePairs& pairs, c
 }
 
 void ShapeContacts::list_disc(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
-                              std::vector<Contact>& contacts) const
+                              Array<Contact>& contacts) const
 {
     const BodyId body = scene.bodies.id_of_slot(pair.partner);
     const DiscShape& shape = *scene.discs.shape_of(pair.partner);
@@ -377,10 +378,10 @@ void ShapeContacts::list_disc(const SceneCore& scene, const ShapePairs& pairs, c
                   key_of(Partner::disc, slot_of(scene, pair.capsule), pair.partner, 0), contacts);
 }
 
-void ShapeContacts::append_to(std::vector<Contact>& contacts) const
+void ShapeContacts::append_to(Array<Contact>& contacts) const
 {
     for (std::int64_t chunk = 0; chunk < chunk_count(); ++chunk) {
-        const std::vector<Contact>& part = listed_[static_cast<std::size_t>(chunk)];
+        const Array<Contact>& part = listed_[static_cast<std::size_t>(chunk)];
         contacts.insert(contacts.end(), part.begin(), part.end());
     }
 }

@@ -12,6 +12,7 @@
 #include "motley/core/constraints/contact_definition.h"
 #include "scene/scene_core.h"
 #include "shapes/shape_pairs.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -36,7 +37,7 @@ class ShapeContacts {
     void list(const SceneCore& scene, const ShapePairs& pairs, std::int64_t chunk);
     /// Appends all that were listed: those with half-spaces, of capsules with each other, with walls and with discs, each
     /// in the order of the capsules.
-    void append_to(std::vector<Contact>& contacts) const;
+    void append_to(Array<Contact>& contacts) const;
     /// The segment of a wall that a contact is with, and its side.
     static WallMet wall_met(const SceneCore& scene, const ShapePairs& pairs, std::size_t segment,
                             const Contact& contact);
@@ -61,23 +62,23 @@ class ShapeContacts {
         bool holds;
         double side;  ///< 1, -1, or 0: where it is
     };
-    std::vector<PlacedHalfSpace> half_spaces_;
-    std::vector<Beside> beside_;  ///< sorted
+    Array<PlacedHalfSpace> half_spaces_;
+    Array<Beside> beside_;  ///< sorted
     double dt_ = 0;
     std::array<std::int64_t, 5> first_chunk_{};  ///< of each of the four parts, and behind the last one
-    std::vector<std::vector<Contact>> listed_;   ///< by chunk
+    Array<Array<Contact>> listed_;               ///< by chunk
 
     void list_half_spaces(const SceneCore& scene, const ShapePairs& pairs, std::uint32_t capsule,
-                          std::vector<Contact>& contacts) const;
+                          Array<Contact>& contacts) const;
     static void list_pair(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
-                          std::vector<Contact>& contacts);
+                          Array<Contact>& contacts);
     void list_wall(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
-                   std::vector<Contact>& contacts) const;
+                   Array<Contact>& contacts) const;
     void remember_sides(const SceneCore& scene, const ShapePairs& pairs);
     [[nodiscard]] Hold hold_of(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
                                const Axis& wall) const;
     void list_disc(const SceneCore& scene, const ShapePairs& pairs, const ShapePair& pair,
-                   std::vector<Contact>& contacts) const;
+                   Array<Contact>& contacts) const;
 };
 
 }  // namespace motley

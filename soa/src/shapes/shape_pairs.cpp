@@ -10,6 +10,7 @@
 #include "queries/line_of_sight.h"
 #include "queries/radix_sort.h"
 #include "scene/wall_ends.h"
+#include "stores/array.h"
 #include "stores/growth.h"
 #include "stores/joint_store.h"
 
@@ -272,7 +273,7 @@ void ShapePairs::find_capsules(const SceneCore& scene, std::size_t first, std::s
     }
 }
 
-bool ShapePairs::are_too_many(std::size_t before, const std::vector<ShapePair>& pairs)
+bool ShapePairs::are_too_many(std::size_t before, const Array<ShapePair>& pairs)
 {
     const auto more = static_cast<std::int64_t>(pairs.size() - before);
     return found_in_all_.fetch_add(more, std::memory_order_relaxed) + more > most_pairs();
@@ -352,11 +353,11 @@ void ShapePairs::find(const SceneCore& scene, std::int64_t chunk)
     }
     if (chunk < chunk_count()) find_walls(scene, chunk, found);
     if (chunk < disc_chunk_count()) find_discs(scene, chunk, found);
-    for (std::vector<ShapePair>* pairs : {&found.capsules, &found.walls, &found.discs}) keep_room(*pairs);
+    for (Array<ShapePair>* pairs : {&found.capsules, &found.walls, &found.discs}) keep_room(*pairs);
     keep_room(found.near);
 }
 
-void ShapePairs::sort(std::vector<ShapePair>& pairs)
+void ShapePairs::sort(Array<ShapePair>& pairs)
 {
     grow_to(spare_, pairs.size());
     radix_sort(std::span(pairs), std::span(spare_), [](const ShapePair& pair) { return pair.order(); });
@@ -370,7 +371,7 @@ void ShapePairs::collect(SceneCore& scene)
     capsules_.clear();
     walls_.clear();
     discs_.clear();
-    const auto append = [](std::vector<ShapePair>& all, const std::vector<ShapePair>& part) {
+    const auto append = [](Array<ShapePair>& all, const Array<ShapePair>& part) {
         all.insert(all.end(), part.begin(), part.end());
     };
     for (const Found& found : found_) {
@@ -378,7 +379,7 @@ void ShapePairs::collect(SceneCore& scene)
         append(walls_, found.walls);
         append(discs_, found.discs);
     }
-    for (std::vector<ShapePair>* pairs : {&capsules_, &walls_, &discs_}) {
+    for (Array<ShapePair>* pairs : {&capsules_, &walls_, &discs_}) {
         sort(*pairs);
         keep_room(*pairs);
     }

@@ -21,6 +21,7 @@
 #include "queries/curve_order.h"
 #include "scene/scene_core.h"
 #include "shapes/placed_shapes.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -53,7 +54,7 @@ class ShapePairs {
 
     /// Where capsules and wall ends are now.
     [[nodiscard]] const PlacedCapsule& capsule(std::uint32_t index) const { return placed_[index]; }
-    [[nodiscard]] const std::vector<Vec2<double>>& wall_ends() const { return wall_ends_; }
+    [[nodiscard]] const Array<Vec2<double>>& wall_ends() const { return wall_ends_; }
     [[nodiscard]] double walls_go() const { return walls_go_; }
     /// Pairs of capsules, of which the first one has the lower index, in order...
     [[nodiscard]] std::span<const ShapePair> capsules() const { return capsules_; }
@@ -73,31 +74,31 @@ class ShapePairs {
     };
     /// What one chunk found.
     struct Found {
-        std::vector<ShapePair> capsules, walls, discs;
-        std::vector<std::uint32_t> near;           ///< places in the order: space for find_capsules()
+        Array<ShapePair> capsules, walls, discs;
+        Array<std::uint32_t> near;                 ///< places in the order: space for find_capsules()
         bool leaves = false, discs_leave = false;  ///< whether a shape may leave its skin in this step
         double fastest = 0, fastest_disc = 0;      ///< m: how far any of them goes
     };
     double dt_ = 0;
     std::size_t count_ = 0, disc_rows_ = 0;
-    std::vector<PlacedCapsule> placed_;
-    std::vector<Anchor> anchors_;            ///< by capsule
-    std::vector<DiscAnchor> disc_anchors_;   ///< by row of planar bodies
-    std::vector<std::uint32_t> disc_slots_;  ///< by row: whose anchor it is
-    std::vector<Vec2<double>> wall_ends_, wall_anchors_;
+    Array<PlacedCapsule> placed_;
+    Array<Anchor> anchors_;            ///< by capsule
+    Array<DiscAnchor> disc_anchors_;   ///< by row of planar bodies
+    Array<std::uint32_t> disc_slots_;  ///< by row: whose anchor it is
+    Array<Vec2<double>> wall_ends_, wall_anchors_;
     double walls_go_ = 0, wall_skin_ = -1;
     double fastest_ = 0, blow_skin_ = -1;  ///< m: fastest(), and how far a blow may throw what is near a wall
-    std::vector<std::uint64_t> joined_;    ///< pairs of bodies that joints connect, by slots, sorted
+    Array<std::uint64_t> joined_;          ///< pairs of bodies that joints connect, by slots, sorted
     std::shared_ptr<const char> shape_version_, joint_version_;
     /// The plane of the tree, by two of the coordinates: x and y where anything is met as seen from above, else those along
     /// which the capsules are spread furthest.
     std::array<Vec3<double>, 2> plane_{};
-    std::vector<Vec2<double>> centres_;
+    Array<Vec2<double>> centres_;
     CurveOrder order_;
     BoxTree tree_;  ///< over capsules with their skins, in that order
-    std::vector<Found> found_;
+    Array<Found> found_;
     std::atomic<std::int64_t> found_in_all_{0};
-    std::vector<ShapePair> capsules_, walls_, discs_, spare_;
+    Array<ShapePair> capsules_, walls_, discs_, spare_;
 
     static bool leaves(const PlacedCapsule& placed, const Anchor& anchor);
     void choose_plane();
@@ -119,10 +120,10 @@ class ShapePairs {
         return (std::int64_t{1} << 22) + 16 * static_cast<std::int64_t>(count_ + disc_rows_);
     }
     /// Counts what a chunk has found since it had `before` pairs. Returns whether there are too many in all.
-    bool are_too_many(std::size_t before, const std::vector<ShapePair>& pairs);
+    bool are_too_many(std::size_t before, const Array<ShapePair>& pairs);
     void find_discs(const SceneCore& scene, std::int64_t chunk, Found& found);
     void find_walls(const SceneCore& scene, std::int64_t chunk, Found& found);
-    void sort(std::vector<ShapePair>& pairs);
+    void sort(Array<ShapePair>& pairs);
 };
 
 }  // namespace motley

@@ -12,6 +12,7 @@
 #include "layout/batches.h"
 #include "layout/body_sets.h"
 #include "scene/scene_core.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -43,9 +44,9 @@ class Convergence {
     [[nodiscard]] std::int64_t unfinished() const { return unfinished_; }
 
   private:
-    BodySets bodies_;                   ///< an island is named by its root
-    std::vector<std::int32_t> worst_;   ///< largest residual, as the bits of a float in m/s, by root
-    std::vector<std::int32_t> wanted_;  ///< sweeps, by root
+    BodySets bodies_;             ///< an island is named by its root
+    Array<std::int32_t> worst_;   ///< largest residual, as the bits of a float in m/s, by root
+    Array<std::int32_t> wanted_;  ///< sweeps, by root
     std::int64_t islands_ = 0, unfinished_ = 0;
     int most_wanted_ = 0;
 

@@ -1,5 +1,6 @@
 // See plan.h. make_plan() lists the stages of a step as the README describes them.
 #include "step/plan.h"
+#include "stores/array.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -62,7 +63,7 @@ const char* name_of(Substeps substeps)
     return "";
 }
 
-void append(std::string& text, const std::vector<PlanStage>& stages, const char* indent)
+void append(std::string& text, const Array<PlanStage>& stages, const char* indent)
 {
     for (const PlanStage& stage : stages) {
         text += indent;
@@ -74,7 +75,7 @@ void append(std::string& text, const std::vector<PlanStage>& stages, const char*
     }
 }
 
-std::vector<PlanStage>::iterator find(std::vector<PlanStage>& stages, Operation operation)
+Array<PlanStage>::iterator find(Array<PlanStage>& stages, Operation operation)
 {
     return std::find_if(stages.begin(), stages.end(),
                         [&](const PlanStage& stage) { return stage.operation == operation; });
@@ -94,8 +95,7 @@ Stage stage_of(Operation operation)
 
 void make_plan(const SolverSettings& settings, const StepNeeds& needs, Plan& plan)
 {
-    for (std::vector<PlanStage>* stages : {&plan.before, &plan.substep, &plan.after, &plan.visit})
-        stages->clear();
+    for (Array<PlanStage>* stages : {&plan.before, &plan.substep, &plan.after, &plan.visit}) stages->clear();
     plan.replays_warm_starts = false;
     if (settings.method == Method::direct) {
         plan.substeps = 0;  // the reference solver makes its own

@@ -12,6 +12,7 @@
 
 #include "motley/core/settings.h"
 #include "motley/core/step_report.h"
+#include "stores/array.h"
 
 namespace motley {
 
@@ -87,9 +88,9 @@ struct StepNeeds {
 
 struct Plan {
     int substeps = 1;
-    std::vector<PlanStage> before, substep,
+    Array<PlanStage> before, substep,
         after;                         ///< what is done before, in each of, and after the substeps
-    std::vector<PlanStage> visit;      ///< what Operation::visit_patches does at one visit of a patch
+    Array<PlanStage> visit;            ///< what Operation::visit_patches does at one visit of a patch
     bool replays_warm_starts = false;  ///< see replay_warm_starts()
 };
 

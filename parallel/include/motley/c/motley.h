@@ -43,9 +43,8 @@
 //   may grow at their end in later versions; a library reads what an older host knows and takes the defaults for the
 //   rest, and refuses a size that it does not know. All others say that they never change.
 // - Memory. What create, copy and load make is destroyed by the host. Pointers that the host passes are read and written
-//   during the call only. The library allocates by operator new of the process (and by malloc() what motley_free() frees), which a host in
-//   C++ may replace. It has no
-//   hooks of its own: its containers do not share one place that could serve them.
+//   during the call only. The library allocates by operator new of the process, or by the hooks of motley_set_memory_hooks(), and by
+//   malloc() what motley_free() frees.
 // - Figures. Copies of a figure are bodies and joints like all others, whether they come from a motley_figure or one by one; a
 //   solver finds out by itself which are alike, and solves sixteen of them together.
 // - Threads. Different scenes and solvers are independent of each other. Of one scene, calls that take a const one may run

@@ -36,6 +36,26 @@ const char* motley_last_error(void);
 /// Frees memory that a call of this interface gave to the host. Null is allowed.
 void motley_free(void* memory);
 
+/// Functions of the host that the library calls for memory instead of operator new and operator delete. Threads may call them
+/// at the same time. Neither may throw. Never changes.
+typedef struct motley_memory_hooks {
+    /// Returns `bytes` (above 0) aligned to `alignment` (a power of two), or null where there are none: then the call of the
+    /// library ends with MOTLEY_OUT_OF_MEMORY, or MOTLEY_REFUSED for a step.
+    void* (*allocate)(size_t bytes, size_t alignment, void* user);
+    /// Takes back what `allocate` returned for the same `bytes` and `alignment`.
+    void (*release)(void* memory, size_t bytes, size_t alignment, void* user);
+    void* user;  ///< passed on to both
+} motley_memory_hooks;
+
+/// From now on all that grows with what is in scenes, solvers and indices is in memory of these hooks; with null, of operator new
+/// again. Not asked for here is the memory that motley_free() frees, that in which queries gather what they find, the text of
+/// errors, a fixed number of objects a scene and a solver, that of MOTLEY_DIRECT, and that of threads by oneTBB. MOTLEY_REFUSED for one function without the other, and for any change while the
+/// library holds memory: set hooks before the first scene. One thread at a time.
+motley_status motley_set_memory_hooks(const motley_memory_hooks* hooks);
+
+/// Bytes that the library holds now of the memory that hooks would serve, whether there are any or not.
+size_t motley_bytes_held(void);
+
 /// 0: no; 1: yes. Other values are refused.
 typedef int32_t motley_bool;
 
