@@ -20,11 +20,13 @@ struct HookedAllocator {
     HookedAllocator(const HookedAllocator<U>&)
     {
     }
+    // NOLINTBEGIN(bugprone-sizeof-expression): elements may be pointers
     T* allocate(std::size_t count) { return static_cast<T*>(allocate_memory(count * sizeof(T), alignof(T))); }
     void deallocate(T* elements, std::size_t count)
     {
         release_memory(elements, count * sizeof(T), alignof(T));
     }
+    // NOLINTEND(bugprone-sizeof-expression)
     friend bool operator==(const HookedAllocator&, const HookedAllocator&) { return true; }
 };
 
