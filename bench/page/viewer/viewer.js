@@ -203,14 +203,25 @@ function speeds() {
 }
 speeds.frame = -1;
 
-// People on each square metre of the plane.
-function densities() {
-  const cells = new Map(), seen = new Set();
+// How far up the ramp what a shape belongs to is: discs, torsos (one capsule) and ragdolls (several).
+const MODELS = { disc: 0, torso: 0.62, ragdoll: 1 };
+function models() {
+  const shapes = new Map();
+  for (let i = 0; i < run.count; ++i) shapes.set(run.person[i], (shapes.get(run.person[i]) || 0) + 1);
+  return (i) => shapes.get(run.person[i]) > 1 ? MODELS.ragdoll : run.isLong[i] ? MODELS.torso : MODELS.disc;
+}
+
+// Each square metre of the plane that somebody is on: how many are, and the sum of the largest pressures on each, N/m.
+function squareMetres() {
+  const cells = new Map(), most = new Map();
+  for (let i = 0; i < run.count; ++i) most.set(run.person[i], Math.max(run.pressure[i], most.get(run.person[i]) || 0));
   for (let i = 0; i < run.count; ++i) {
-    if (seen.has(run.person[i])) continue;
-    seen.add(run.person[i]);
-    const key = Math.floor(run.ends[4 * i] / 1000) + "," + Math.floor(run.ends[4 * i + 1] / 1000);
-    cells.set(key, (cells.get(key) || 0) + 1);
+    if (!most.has(run.person[i])) continue;
+    const x = Math.floor(run.ends[4 * i] / 1000), y = Math.floor(run.ends[4 * i + 1] / 1000), key = x + "," + y;
+    if (!cells.has(key)) cells.set(key, { x, y, people: 0, pressure: 0 });
+    ++cells.get(key).people;
+    cells.get(key).pressure += most.get(run.person[i]);
+    most.delete(run.person[i]);  // a person counts once
   }
   return cells;
 }
@@ -220,15 +231,16 @@ function frameNow() { return Math.min(run.frames - 1, Math.floor(time / run.seco
 function drawFrame() {
   const frame = frameNow();
   run.seek(frame);
-  const bySpeed = element("colour").value === "speed", speed = bySpeed ? speeds() : null;
+  const colour = element("colour").value, speed = colour === "speed" ? speeds() : null;
   if (following && picked >= 0) {
     const i = run.find(picked);
     if (i >= 0) [eye.x, eye.y] = [run.ends[4 * i] / 1000, run.ends[4 * i + 1] / 1000];
   }
   placeCamera();
-  drawPeople(speed ? (i) => speed[i] / FULL.speed : (i) => run.pressure[i] / FULL.pressure);
+  if (colour === "model") drawPeople(models());
+  else drawPeople(speed ? (i) => speed[i] / FULL.speed : (i) => run.pressure[i] / FULL.pressure);
   drawWalls();
-  drawDensity();
+  drawField();
   drawPicked();
   renderer.render(world, camera);
   element("clock").textContent = (frame * run.secondsAFrame).toFixed(1) + " of " + ((run.frames - 1) * run.secondsAFrame).toFixed(1) + " s";
@@ -284,13 +296,15 @@ function drawWalls() {
   walls.show(at);
 }
 
-function drawDensity() {
-  if (!element("density").checked) { fields.show(0); return; }
-  const cells = densities();
+// A square metre each: how many are on it, or the mean of the pressures on them.
+function drawField() {
+  const field = element("field").value;
+  if (field === "none") { fields.show(0); return; }
+  const cells = squareMetres();
   fields.reserve(cells.size);
   let at = 0;
-  for (const [key, people_in_it] of cells) {
-    const [x, y] = key.split(",").map(Number), colour = rampColour(people_in_it / FULL.density);
+  for (const { x, y, people, pressure } of cells.values()) {
+    const colour = rampColour(field === "density" ? people / FULL.density : pressure / people / FULL.pressure);
     fields.set(at++, x + 0.5, y + 0.5, x + 0.5, y + 0.5, 0.5 - metresAPixel(), colour, 0.35);
   }
   fields.show(at);
@@ -372,13 +386,16 @@ function personAt(px, py) {
 
 function drawLegend() {
   const ramp = element("ramp"), pen = ramp.getContext("2d");
+  const blocks = element("colour").value === "model" ? Object.values(MODELS) : null;
   for (let x = 0; x < ramp.width; ++x) {
-    pen.fillStyle = "rgb(" + rampColour(x / (ramp.width - 1)).join() + ")";
+    const share = x / (ramp.width - 1);
+    pen.fillStyle = "rgb(" + rampColour(blocks ? blocks[Math.min(2, Math.floor(3 * share))] : share).join() + ")";
     pen.fillRect(x, 0, 1, ramp.height);
   }
-  const speed = element("colour").value === "speed";
-  element("scale").textContent = (speed ? "0 to " + FULL.speed + " m/s" : "0 to " + FULL.pressure + " N per m of circumference") +
-      "; walls to " + FULL.wall / 1000 + " kN/m" + (element("density").checked ? "; cells to " + FULL.density + " per m2" : "");
+  const scales = { speed: "0 to " + FULL.speed + " m/s", pressure: "0 to " + FULL.pressure + " N per m of circumference",
+                   model: "from left to right: discs, torsos, ragdolls" };
+  const fieldScales = { none: "", density: "; cells to " + FULL.density + " per m2", pressure: "; cells to " + FULL.pressure + " N/m in the mean" };
+  element("scale").textContent = scales[element("colour").value] + "; walls to " + FULL.wall / 1000 + " kN/m" + fieldScales[element("field").value];
 }
 
 function play(on) { playing = on; element("play").textContent = on ? "pause" : "play"; }
@@ -388,7 +405,7 @@ element("play").onclick = () => {
 };
 element("time").max = run.frames - 1;
 element("time").oninput = () => { time = Number(element("time").value) * run.secondsAFrame; play(false); dirty = true; };
-element("colour").onchange = element("density").onchange = () => { drawLegend(); dirty = true; };
+element("colour").onchange = element("field").onchange = () => { drawLegend(); dirty = true; };
 element("follow").onclick = () => { following = !following; element("follow").textContent = following ? "stay" : "follow"; dirty = true; };
 element("leave").onclick = () => { following = false; element("follow").textContent = "follow"; pick(-1); };
 const view = element("view");
@@ -445,6 +462,14 @@ function check() {
     found += personAt(px, py) === run.person[k] ? 1 : 0;
   }
   pick(run.person[0]);
+  for (const colour of ["model", "speed", "pressure"]) {
+    for (const field of ["density", "pressure", "none"]) {
+      [element("colour").value, element("field").value] = [colour, field];
+      drawLegend();
+      drawFrame();
+    }
+  }
+  const on_cells = [...squareMetres().values()].reduce((sum, cell) => sum + cell.people, 0) === new Set(run.person).size ? 1 : 0;
   const began = performance.now(), draws = 20;
   for (let i = 0; i < draws; ++i) { time = run.secondsAFrame * Math.min(i, run.frames - 1); drawFrame(); gl.finish(); }
   const milliseconds = (performance.now() - began) / draws;
@@ -454,7 +479,7 @@ function check() {
   gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
   let coloured = 0;
   for (let i = 0; i < pixels.length; i += 4) coloured += Math.abs(pixels[i] - pixels[i + 2]) > 20 ? 1 : 0;
-  console.info("check " + JSON.stringify({ frames: run.frames, people: seen.people, pressures: seen.pressures, found, tried, coloured,
+  console.info("check " + JSON.stringify({ frames: run.frames, people: seen.people, pressures: seen.pressures, found, tried, coloured, on_cells,
                                            milliseconds, gl_error: gl.getError(), history: history.values.length }));
 }
 
