@@ -49,7 +49,7 @@ std::string escaped(const std::string& text)
 
 }  // namespace
 
-std::string write_viewer_page(const std::string& recording, const std::string& page)
+ViewerPage make_viewer_page(const std::string& recording)
 {
     std::int64_t shapes = 0;
     const Recording run = read_recording(recording, [&](const RecordedFrame& frame) {
@@ -66,19 +66,28 @@ std::string write_viewer_page(const std::string& recording, const std::string& p
         {"@RECORDING@", in_base64(bytes)},
         {"@DECODER@", std::string(viewer_decoder)},
         {"@VIEWER@", std::string(viewer_code)}};
-    std::ofstream out(page, std::ios::binary);
+    std::string html;
     std::string_view rest = viewer_html;
     for (const auto& [mark, text] : parts) {
         const std::size_t at = rest.find(mark);
-        out << rest.substr(0, at) << text;
+        html.append(rest.substr(0, at)).append(text);
         rest.remove_prefix(at + mark.size());
     }
-    out << rest;
+    html.append(rest);
+    return {std::move(html),
+            fmt::format("{} frames, {:.0f} people in the mean{}", run.frames,
+                        static_cast<double>(shapes) / static_cast<double>(run.frames),
+                        run.is_cut ? "; the recording was cut off, and its last frame is left out" : "")};
+}
+
+std::string write_viewer_page(const std::string& recording, const std::string& page)
+{
+    const ViewerPage made = make_viewer_page(recording);
+    std::ofstream out(page, std::ios::binary);
+    out << made.html;
     out.close();
     if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", page));
-    return fmt::format("{}: {} frames, {:.0f} people in the mean{}", page, run.frames,
-                       static_cast<double>(shapes) / static_cast<double>(run.frames),
-                       run.is_cut ? "; the recording was cut off, and its last frame is left out" : "");
+    return fmt::format("{}: {}", page, made.facts);
 }
 
 }  // namespace motley::bench

@@ -5,9 +5,16 @@
 
 namespace motley::bench {
 
-/// Writes the page of a recording to `page`. Reads the whole recording first, so that a bad one is refused; returns a line that says
-/// what is on the page, and whether the recording was cut off. Throws std::runtime_error, also where three.js is missing
-/// (Debian's package libjs-three).
+struct ViewerPage {
+    std::string html;
+    std::string facts;  ///< what is on the page, and whether the recording was cut off
+};
+
+/// The page of a recording. Reads the whole recording first, so that a bad one is refused. Throws std::runtime_error, also where
+/// three.js is missing (Debian's package libjs-three).
+ViewerPage make_viewer_page(const std::string& recording);
+
+/// The same, written to `page`. Returns a line that says so.
 std::string write_viewer_page(const std::string& recording, const std::string& page);
 
 }  // namespace motley::bench

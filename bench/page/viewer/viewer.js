@@ -203,12 +203,12 @@ function speeds() {
 }
 speeds.frame = -1;
 
-// How far up the ramp what a shape belongs to is: discs, torsos (one capsule) and ragdolls (several).
-const MODELS = { disc: 0, torso: 0.62, ragdoll: 1 };
+// How far up the ramp what a shape belongs to is: discs, those who are one capsule, and ragdolls.
+const MODELS = { disc: 0, capsule: 0.62, ragdoll: 1 };
 function models() {
   const shapes = new Map();
   for (let i = 0; i < run.count; ++i) shapes.set(run.person[i], (shapes.get(run.person[i]) || 0) + 1);
-  return (i) => shapes.get(run.person[i]) > 1 ? MODELS.ragdoll : run.isLong[i] ? MODELS.torso : MODELS.disc;
+  return (i) => shapes.get(run.person[i]) > 1 ? MODELS.ragdoll : run.isLong[i] ? MODELS.capsule : MODELS.disc;
 }
 
 // Each square metre of the plane that somebody is on: how many are, and the sum of the largest pressures on each, N/m.
@@ -393,7 +393,7 @@ function drawLegend() {
     pen.fillRect(x, 0, 1, ramp.height);
   }
   const scales = { speed: "0 to " + FULL.speed + " m/s", pressure: "0 to " + FULL.pressure + " N per m of circumference",
-                   model: "from left to right: discs, torsos, ragdolls" };
+                   model: "from left to right: discs, single capsules, ragdolls" };
   const fieldScales = { none: "", density: "; cells to " + FULL.density + " per m2", pressure: "; cells to " + FULL.pressure + " N/m in the mean" };
   element("scale").textContent = scales[element("colour").value] + "; walls to " + FULL.wall / 1000 + " kN/m" + fieldScales[element("field").value];
 }
