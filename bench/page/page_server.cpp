@@ -17,6 +17,11 @@ void serve_page([[maybe_unused]] const std::string& html, [[maybe_unused]] int p
 #ifdef MOTLEY_HAS_HTTPLIB
     constexpr const char* loopback = "127.0.0.1";  // nobody else's business
     httplib::Server server;
+    // By default two servers may share a port, and neither would know.
+    server.set_socket_options([](socket_t socket) {
+        const int yes = 1;
+        setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
     server.Get("/", [&](const httplib::Request&, httplib::Response& response) {
         response.set_content(html, "text/html; charset=utf-8");
     });
