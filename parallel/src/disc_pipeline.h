@@ -2,8 +2,6 @@
 // function here, in the order in which they run.
 #pragma once
 
-#include <vector>
-
 #include "crowd/disc_finder.h"
 #include "layout/layout.h"
 #include "region_link.h"

@@ -4,7 +4,6 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
 #include "shapes/shape_contacts.h"
 #include "shapes/shape_pairs.h"

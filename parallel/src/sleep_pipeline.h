@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "layout/body_sets.h"
 #include "layout/layout.h"

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "contacts/exact_contacts.h"
 #include "figures/figure_step.h"

@@ -154,7 +154,7 @@ const renderer = new THREE.WebGLRenderer({ canvas: element("view"), antialias: f
 renderer.setClearColor(0xfafaf8);
 const world = new THREE.Scene(), camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -10, 10);
 const fields = new Capsules(world, 0, SQUARE), walls = new Capsules(world, 1), people = new Capsules(world, 2), ring = new Capsules(world, 3);
-const dots = new Dots(world, 2), DOT_PIXELS = 12;  // a larger disc would vanish at an edge of the view, where its middle leaves it
+const dots = new Dots(world, 2), DOT_PIXELS = 12;  // larger discs are capsules: few are in view, and each has many pixels
 const eye = { x: 0, y: 0, metres: 10 };  // middle of the view, and metres from its lower to its upper edge
 let playing = false, time = 0, picked = -1, following = false, dirty = true, before = new Map();
 

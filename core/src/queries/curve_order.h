@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "motley/core/strided_span.h"
 #include "motley/core/vector.h"

@@ -2,7 +2,6 @@
 #include "motley/core/wall_index.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "queries/box_tree.h"
 #include "queries/curve_order.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "queries/radix_sort.h"
 #include "scene/disc_impulses.h"

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "motley/core/boxed.h"
 #include "motley/core/scene.h"

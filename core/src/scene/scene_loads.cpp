@@ -1,7 +1,6 @@
 // The loads that contacts put on bodies, in bulk.
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "motley/core/invalid_input.h"
 #include "scene/disc_impulses.h"

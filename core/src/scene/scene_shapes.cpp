@@ -21,8 +21,7 @@ void check_end(const char* name, const Vec3<float>& end, BodyModel model)
 {
     check_vector(name, end, 1e6F, "a finite value from -1e6 to 1e6 (m)");
     if (model == BodyModel::particle) check_vector(name, end, 0, "0 of a particle (m)");
-    if (model == BodyModel::planar)
-        check((std::string(name) + ".z").c_str(), end.z, 0, 0, "0 of a planar body (m)");
+    if (model == BodyModel::planar) check_range({name, ".z"}, end.z, 0, 0, "0 of a planar body (m)");
 }
 
 }  // namespace

@@ -23,7 +23,6 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "motley/core/vector.h"
 #include "stores/array.h"

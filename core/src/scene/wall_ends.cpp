@@ -1,6 +1,5 @@
 // See wall_ends.h.
 #include "scene/wall_ends.h"
-#include "stores/array.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "scene/scene_core.h"
 #include "stores/array.h"

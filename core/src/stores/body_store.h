@@ -14,7 +14,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "maths/flight.h"
 #include "motley/core/body.h"

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "motley/core/constraints/contact_definition.h"
 #include "stores/aligned_vector.h"

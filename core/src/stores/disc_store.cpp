@@ -1,7 +1,6 @@
 // See disc_store.h.
 #include "stores/disc_store.h"
 
-#include "stores/array.h"
 #include "stores/disc_fields.h"
 
 #include <algorithm>

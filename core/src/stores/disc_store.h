@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "motley/core/crowd.h"
 #include "stores/aligned_vector.h"

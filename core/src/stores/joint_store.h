@@ -5,7 +5,6 @@
 #include <cstring>
 #include <memory>
 #include <tuple>
-#include <vector>
 
 #include "contract/constraint_type.h"
 #include "contract/constraint_types.h"

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "motley/core/constraints/contact_definition.h"
 #include "motley/core/shapes.h"

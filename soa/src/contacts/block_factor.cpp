@@ -1,6 +1,5 @@
 // See block_factor.h.
 #include "contacts/block_factor.h"
-#include "stores/array.h"
 
 #include <algorithm>
 #include <cmath>

@@ -28,7 +28,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "contacts/block_factor.h"
 #include "contacts/contact_directions.h"

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "layout/batches.h"
 #include "layout/body_sets.h"

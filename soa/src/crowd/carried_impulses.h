@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "scene/scene_core.h"
 #include "stores/array.h"

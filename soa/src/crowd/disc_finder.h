@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "crowd/block_filler.h"
 #include "crowd/carried_impulses.h"

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "crowd/block_filler.h"
 #include "scene/scene_core.h"

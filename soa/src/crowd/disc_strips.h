@@ -13,7 +13,6 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "scene/scene_core.h"
 #include "stores/array.h"

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "figures/copy_contacts.h"
 #include "figures/figures.h"

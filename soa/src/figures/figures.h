@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "figures/figure.h"
 #include "layout/batches.h"

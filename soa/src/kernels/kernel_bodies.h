@@ -111,15 +111,6 @@ template <class Body>
     store_quads(tensors + 4, offset_floats, offsets, {i.yz, i.zz, Lanes(0), Lanes(0)}, count);
 }
 
-/// Rotates the inertia of a body from the start of the step to its present orientation.
-template <BodyKind kind>
-[[gnu::always_inline]] inline void turn_inertia(const BodyArrays& arrays, const std::int32_t* offsets,
-                                                Body<kind>& body)
-{
-    if constexpr (kind == BodyKind::rigid)
-        body.inverse_inertia =
-            rotate_tensor(body.delta_rotation, load_tensor(arrays.start_inverse_inertia, offsets));
-}
 /// Stores the displacement, and the inertia that rotates with it.
 [[gnu::always_inline]] inline void store_delta(const BodyArrays& arrays, const std::int32_t* offsets,
                                                const Body<BodyKind::particle>& body, int count)

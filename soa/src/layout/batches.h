@@ -11,7 +11,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "kernels/kernel_table.h"
 #include "layout/colouring.h"

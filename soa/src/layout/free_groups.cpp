@@ -1,6 +1,5 @@
 // Groups are found when joints change, and used at the beginning and the end of each step.
 #include "layout/free_groups.h"
-#include "stores/array.h"
 
 #include <utility>
 

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "layout/block.h"
 #include "layout/body_sets.h"

@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "figures/figure_workspace.h"
 #include "figures/figures.h"

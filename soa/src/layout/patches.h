@@ -14,7 +14,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "stores/aligned_vector.h"
 #include "stores/atomic_ref.h"

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <tuple>
-#include <vector>
 
 #include "maths/contact_surface.h"
 #include "motley/core/constraints/contact_definition.h"

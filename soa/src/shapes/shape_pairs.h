@@ -15,7 +15,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "queries/box_tree.h"
 #include "queries/curve_order.h"

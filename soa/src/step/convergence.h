@@ -7,7 +7,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "layout/batches.h"
 #include "layout/body_sets.h"

@@ -1,6 +1,5 @@
 // See plan.h. make_plan() lists the stages of a step as the README describes them.
 #include "step/plan.h"
-#include "stores/array.h"
 
 #include <algorithm>
 #include <cstddef>

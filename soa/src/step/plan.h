@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "motley/core/settings.h"
 #include "motley/core/step_report.h"

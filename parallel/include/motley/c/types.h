@@ -49,8 +49,9 @@ typedef struct motley_memory_hooks {
 
 /// From now on all that grows with what is in scenes, solvers and indices is in memory of these hooks; with null, of operator new
 /// again. Not asked for here is the memory that motley_free() frees, that in which queries gather what they find, the text of
-/// errors, a fixed number of objects a scene and a solver, that of MOTLEY_DIRECT, and that of threads by oneTBB. MOTLEY_REFUSED for one function without the other, and for any change while the
-/// library holds memory: set hooks before the first scene. One thread at a time.
+/// errors, a fixed number of objects a scene and a solver, that of MOTLEY_DIRECT, and that of threads by oneTBB. MOTLEY_REFUSED
+/// for one function without the other, and for any change while the library holds memory: set hooks before the first scene. One
+/// thread at a time.
 motley_status motley_set_memory_hooks(const motley_memory_hooks* hooks);
 
 /// Bytes that the library holds now of the memory that hooks would serve, whether there are any or not.
