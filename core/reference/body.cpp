@@ -102,9 +102,8 @@ void Body::move_on(double seconds, bool sweeps)
     Body half_way = *this;
     half_way.advance(velocity, seconds / 2);
     const Eigen::Matrix3d then = inertia_at(before), between = inertia_at(half_way.orientation).inverse();
-    double change = sweeps && has_constraints ? (then * between).trace() - 3 : 0;
-    if (sweeps && contacts_made_at)
-        change = std::max(change, (inertia_at(*contacts_made_at) * between).trace() - 3);
+    double change = sweeps && has_joints ? (then * between).trace() - 3 : 0;
+    if (sweeps && rows_made_at) change = std::max(change, (inertia_at(*rows_made_at) * between).trace() - 3);
     inertia_kept_at.reset();
     if (change > 0.125) inertia_kept_at = before;
     // A body that turns by a radian or more keeps its angular velocity, and with it its energy.

@@ -247,26 +247,21 @@ World::Soft World::contact_softness(int a, int b, double h, const SolverSettings
     return softness((on_fixed ? 2 : 1) * hertz, settings.contact_damping_ratio, h);
 }
 
-void World::note_constraint(int a, int b, bool is_contact)
-{
-    for (const int end : {a, b}) {
-        Body& body = bodies[static_cast<std::size_t>(end)];
-        body.has_constraints = true;
-        if (is_contact) body.contacts_made_at = body.orientation;
-    }
-}
-
 /// Notes poses and the speeds along the blocks of joints when a step begins.
 void World::begin_step()
 {
     for (Body& body : bodies) {
-        body.has_constraints = false;
-        body.contacts_made_at.reset();
+        body.has_joints = false;
+        body.rows_made_at.reset();
         body.inertia_kept_at.reset();
     }
     start_ = bodies;
     for (Joint& joint : joints) {
-        note_constraint(joint.a, joint.b, joint.model->keeps_rows_of_start());
+        for (const int end : {joint.a, joint.b}) {
+            Body& body = bodies[static_cast<std::size_t>(end)];
+            body.has_joints = true;
+            if (joint.model->keeps_rows_of_start()) body.rows_made_at = body.orientation;
+        }
         joint.wrench.setZero();
         joint.approaches.clear();
         const bool recalls = joint.impulses.empty() && !joint.memory.empty();
@@ -283,14 +278,10 @@ void World::begin_step()
 World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
 {
     const Contact& c = point.contact;
-    const Body& a = bodies[static_cast<std::size_t>(point.a)];
-    const Body& b = bodies[static_cast<std::size_t>(point.b)];
-    note_constraint(point.a, point.b, true);
     const Eigen::Vector3d n = eigen(c.normal), arm_a = eigen(c.arm_a), arm_b = eigen(c.arm_b);
     ContactRow row;
     row.point = &point;
     row.normal = direction_jacobian(n, arm_a, arm_b);
-    row.normal_mass = effective_mass(row.normal, a, b)(0, 0);
     row.approach = speed(point.a, point.b, row.normal)(0);
     const ContactResult before = memory_.contains(c.key) ? memory_.at(c.key) : ContactResult{};
     row.impulse = warm * before.normal;
@@ -306,8 +297,6 @@ World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
         row.tangents << direction_jacobian(t1, arm_a, arm_b), direction_jacobian(t2, arm_a, arm_b);
         row.friction = warm * Eigen::Vector2d(t1.dot(before.friction), t2.dot(before.friction));
     }
-    row.tangent_mass = effective_mass(row.tangents, a, b);
-    row.tangent_response = row.tangents * pair_inverse_mass(a, b) * row.tangents.transpose();
     return row;
 }
 
@@ -331,6 +320,27 @@ Eigen::Matrix<double, 12, 1> World::moved_since_start(int a, int b) const
     return moved;
 }
 
+/// The bodies whose inertias give a contact its K: those of the step's beginning, until one of the two has turned so far that
+/// its inertia may have changed by an eighth, measured by tr(I I'^-1) - 3; then the bodies as they are.
+const std::vector<Body>& World::bodies_of_response(const ContactPoint& point) const
+{
+    for (const int end : {point.a, point.b}) {
+        const Body& body = bodies[static_cast<std::size_t>(end)];
+        if (body.motion != BodyMotion::dynamic_body || body.model != BodyModel::rigid) continue;
+        const double spread = body.inertia.trace() * body.inertia.inverse().trace() - 9;
+        const Eigen::Quaterniond turn =
+            body.orientation * start_[static_cast<std::size_t>(end)].orientation.conjugate();
+        if (4 * turn.vec().squaredNorm() * spread > 0.125) return bodies;
+    }
+    return start_;
+}
+
+Eigen::MatrixXd World::effective_mass_along(const ContactPoint& point, const Jacobian& rows) const
+{
+    const std::vector<Body>& of = bodies_of_response(point);
+    return effective_mass(rows, of[static_cast<std::size_t>(point.a)], of[static_cast<std::size_t>(point.b)]);
+}
+
 double World::separation(const ContactRow& row) const
 {
     return static_cast<double>(row.point->contact.separation) +
@@ -342,12 +352,19 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
     const ContactPoint& point = *row.point;
     const double mu = static_cast<double>(point.contact.friction);
     if (mu > 0 || point.contact.restitution > 0) {
-        const Eigen::VectorXd free = row.friction - row.tangent_mass * speed(point.a, point.b, row.tangents);
-        const Eigen::Index rows = free.size();
-        const Eigen::MatrixXd& k = row.tangent_response;
+        const std::vector<Body>& of = bodies_of_response(point);
+        const Eigen::MatrixXd k =
+            row.tangents *
+            pair_inverse_mass(of[static_cast<std::size_t>(point.a)], of[static_cast<std::size_t>(point.b)]) *
+            row.tangents.transpose();
         const double most = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k).eigenvalues().maxCoeff();
-        const Eigen::VectorXd next =
-            bounded(row.friction, free, Eigen::MatrixXd::Identity(rows, rows), k, most, mu * row.impulse);
+        const Eigen::Index rows = row.friction.size();
+        const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(rows, rows);
+        // Once the bodies have turned far, the largest response is used along both tangents.
+        Eigen::MatrixXd inverse = effective_mass_along(point, row.tangents);
+        if (&of == &bodies && rows > 1) inverse = identity / most;
+        const Eigen::VectorXd free = row.friction - inverse * speed(point.a, point.b, row.tangents);
+        const Eigen::VectorXd next = bounded(row.friction, free, identity, k, most, mu * row.impulse);
         apply(point.a, point.b, row.tangents, next - row.friction);
         row.friction = next;
     }
@@ -364,15 +381,23 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
         bias = 0;
     }
     const double opening = speed(point.a, point.b, row.normal)(0);
-    const double wanted =
-        row.impulse - row.normal_mass * soft.mass_scale * (opening + bias) - soft.impulse_scale * row.impulse;
+    const double normal_effective_mass = effective_mass_along(point, row.normal)(0, 0);
+    const double wanted = row.impulse - normal_effective_mass * soft.mass_scale * (opening + bias) -
+                          soft.impulse_scale * row.impulse;
     // The impulse with which the contact would open at push_out_speed.
     const double most =
-        row.impulse - row.normal_mass * (opening - static_cast<double>(settings.push_out_speed));
+        row.impulse - normal_effective_mass * (opening - static_cast<double>(settings.push_out_speed));
     const double impulse = std::max(std::min(wanted, most), 0.0);
     apply(point.a, point.b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
     row.impulse = impulse;
     row.peak = std::max(row.peak, impulse);
+    // Planar bodies lose what the contact, pressing less, cannot hold any more.
+    const double most_friction = mu * impulse;
+    if (is_planar_pair(point.a, point.b) && row.friction.norm() > most_friction) {
+        const Eigen::VectorXd shorter = most_friction * row.friction.normalized();
+        apply(point.a, point.b, row.tangents, shorter - row.friction);
+        row.friction = shorter;
+    }
 }
 
 /// Projects the points of a manifold one by one, each taking the displacements by those before it into account; the
@@ -421,7 +446,8 @@ void World::project(std::vector<ContactRow>& contacts, const SolverSettings& set
     }
     for (ContactRow& row : contacts) {
         const double deep = std::min(separation(row) + static_cast<double>(settings.penetration_slop), 0.0);
-        const double push = -row.normal_mass * static_cast<double>(settings.baumgarte) * std::max(deep, -0.2);
+        const double push = -effective_mass_along(*row.point, row.normal)(0, 0) *
+                            static_cast<double>(settings.baumgarte) * std::max(deep, -0.2);
         move(row.point->a, row.point->b, row.normal, Eigen::VectorXd::Constant(1, push));
     }
 }
@@ -572,7 +598,8 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSetti
             const double opening =
                 opening_speed(a, b, row.normal, row.approach, separation(row), e, settings);
             const double leaving = speed(a, b, row.normal)(0) - opening;
-            const double impulse = std::max(row.impulse - row.normal_mass * leaving, 0.0);
+            const double impulse =
+                std::max(row.impulse - effective_mass_along(*row.point, row.normal)(0, 0) * leaving, 0.0);
             apply(a, b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
             row.step.normal += impulse - row.impulse;
             row.impulse = impulse;

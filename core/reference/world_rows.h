@@ -31,8 +31,6 @@ struct World::BlockRow {
 struct World::ContactRow {
     const ContactPoint* point;
     Jacobian normal, tangents;
-    double normal_mass;
-    Eigen::MatrixXd tangent_mass, tangent_response;  ///< K^-1 and K
     double approach;
     double impulse, peak = 0;
     Eigen::VectorXd friction;

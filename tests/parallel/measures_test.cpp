@@ -121,7 +121,7 @@ TEST(Measures, ResidualIsTheEnergyThatSolvingTakesFromPlanarBodies)
 
 TEST(Measures, ResidualOfContactsVanishesAsIterationsGrow)
 {
-    // Falling balls, friction and a floor: inequalities and cones.
+    // Falling balls, friction and a floor: inequalities and cones. A thousand sweeps reach what rounding leaves.
     double last = 0;
     for (const int iterations : {1, 10, 100, 1000, 10000}) {
         testing::MixedScene mixed;
@@ -138,13 +138,15 @@ TEST(Measures, ResidualOfContactsVanishesAsIterationsGrow)
         std::printf("%4d iterations: residual %.3g sqrt(J), rms %.3g m/s, max %.3g m/s\n", iterations,
                     report.measures.residual_norm, report.measures.residual_rms,
                     report.measures.residual_max);
-        if (iterations > 1) {
+        if (iterations > 1 && iterations < 10000) {
             EXPECT_LT(report.measures.residual_norm, last) << iterations;
         }
         last = report.measures.residual_norm;
+        // Bound: rounding of speeds of some m/s.
+        if (iterations >= 1000) {
+            EXPECT_LT(last, 1e-5) << iterations;
+        }
     }
-    // Bound: rounding of speeds of some m/s.
-    EXPECT_LT(last, 1e-4);
 }
 
 TEST(Measures, EnergyMomentumAndPenetrationAreOfTheStep)

@@ -120,7 +120,7 @@ TEST(Projection, GivesNoEnergyToAStickThatFallsOnAFloor)
 {
     for_each_rigid_sweep([](const SolverSettings& settings) {
         for (const float friction : {0.0F, 0.5F}) {
-            for (const float thinness : {0.3F, 0.1F, 0.02F}) {
+            for (const float thinness : {0.3F, 0.1F, 0.02F, 0.004F}) {
                 for (std::uint64_t seed = 0; seed < 16; ++seed)
                     EXPECT_LT(most_energy_of_stick(friction, thinness, 20, seed, settings), 1.01)
                         << static_cast<int>(settings.drift_correction) << " " << settings.substeps << " "
@@ -130,21 +130,25 @@ TEST(Projection, GivesNoEnergyToAStickThatFallsOnAFloor)
     });
 }
 
-/// From a radian a step on, the rows of contacts, which are those of the step's beginning, tell little of the stick, whose
-/// end may be half a metre in the floor before it is found. It is thrown up then, but not ever faster.
+/// From a radian a step on, the arms of contacts, which are those of the step's beginning, tell little of the stick, whose
+/// end may be half a metre in the floor before it is found. Each sweep takes energy from it all the same.
 TEST(Relaxation, DoesNotThrowAwayAStickThatTurnsByMoreThanARadianAStep)
 {
-    const auto gains_less_than = [](double bound, const SolverSettings& settings) {
-        for (const float thinness : {0.3F, 0.1F, 0.02F, 0.004F}) {
-            for (const float speed : {20.0F, 60.0F, 100.0F, 200.0F}) {
-                for (std::uint64_t seed = 0; seed < 16; ++seed)
-                    EXPECT_LT(most_energy_of_stick(0.5F, thinness, speed, seed, settings), bound)
-                        << thinness << " " << speed << " " << seed;
-            }
-        }
+    const auto gains_none = [](const SolverSettings& settings, float thinness, float speed) {
+        for (std::uint64_t seed = 0; seed < 16; ++seed)
+            EXPECT_LT(most_energy_of_stick(0.5F, thinness, speed, seed, settings), 1.01)
+                << thinness << " " << speed << " " << seed;
     };
-    gains_less_than(100, {});
-    for_each_rigid_sweep([&](const SolverSettings& settings) { gains_less_than(1000, settings); });
+    for (const float thinness : {0.3F, 0.1F, 0.02F, 0.004F}) {
+        for (const float speed : {20.0F, 60.0F, 100.0F, 200.0F}) {
+            for_each_rigid_sweep(
+                [&](const SolverSettings& settings) { gains_none(settings, thinness, speed); });
+            // 200 rad/s are nearly a radian a substep, and a body of this kind precesses by much of that.
+            if (thinness > 0.01F || speed < 200) gains_none({}, thinness, speed);
+        }
+    }
+    for (std::uint64_t seed = 0; seed < 16; ++seed)
+        EXPECT_LT(most_energy_of_stick(0.5F, 0.004F, 200, seed), 3);
 }
 
 }  // namespace

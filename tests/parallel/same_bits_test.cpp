@@ -23,12 +23,12 @@ struct Way {
 
 #ifdef __EMSCRIPTEN__
 // WebAssembly cannot take denormals for zero. x86 without the flags of float_environment.h makes these hashes too.
-constexpr std::uint64_t golden_of_projection = 14024760835313221269ULL;
-constexpr std::uint64_t goldens_of_joints[] = {17736930031411029828ULL, 15591534779837994044ULL,
+constexpr std::uint64_t golden_of_projection = 13846762397380652402ULL;
+constexpr std::uint64_t goldens_of_joints[] = {8662818479421590613ULL, 15591534779837994044ULL,
                                                11399275872141604730ULL, 12406295055911852085ULL};
 #else
-constexpr std::uint64_t golden_of_projection = 10247293119629759869ULL;
-constexpr std::uint64_t goldens_of_joints[] = {4530132620800024310ULL, 5729159093528177483ULL,
+constexpr std::uint64_t golden_of_projection = 12171202070393168714ULL;
+constexpr std::uint64_t goldens_of_joints[] = {65681483077663907ULL, 5729159093528177483ULL,
                                                6428428978917121013ULL, 1670723440159367013ULL};
 #endif
 
@@ -44,9 +44,9 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 1598249910398570807ULL},
-            {"baumgarte", iterative, 6138062718512207380ULL},
-            {"no drift correction", none, 6572963383240114672ULL},
+    return {{"soft_step", soft, 18333919312895799432ULL},
+            {"baumgarte", iterative, 2695358381567364164ULL},
+            {"no drift correction", none, 15788934183794200964ULL},
             {"projection", projection, golden_of_projection}};
 }
 

@@ -7,6 +7,10 @@
 // they were when the step began, so J is constant and the separation follows from the displacement delta since then,
 // C = C_0 + J delta: exact for discs and balls, with an error of second order in the rotation for other shapes. The
 // surface of a may run along the tangents and bound lambda_n: see contact_surface.h.
+//
+// M turns with the bodies. K = J M^-1 J^T is that of the step's beginning until one of them has turned so far that a
+// response may have changed by half (turned_inertia.h); then K is found anew before each sweep. A thin body that turns
+// fast would otherwise get impulses that are many times too large for it, and gain energy.
 #pragma once
 
 #include <type_traits>
@@ -17,6 +21,7 @@
 #include "maths/lever.h"
 #include "maths/limit.h"
 #include "maths/restitution.h"
+#include "maths/turned_inertia.h"
 #include "motley/core/constraints/contact_definition.h"
 
 namespace motley {
@@ -175,8 +180,8 @@ struct ContactKind : ConstraintTraits {
             if constexpr (is_planar_pair(A::kind, B::kind)) {
                 impulse.tangent = warm * dot(tangent_of(row.normal), to_space<Vector>(memory.friction));
             } else {
-                const Vector s1 = tangent_of(row.normal), s2 = cross(row.normal, s1), k1 = k * s1;
-                const Principal<Real> most = principal(Sym2<Real>{dot(s1, k1), dot(s2, k1), dot(s2, k * s2)});
+                const Vector s1 = tangent_of(row.normal), s2 = cross(row.normal, s1);
+                const Principal<Real> most = principal(across(s1, s2, k));
                 row.tangent = most.direction.x * s1 + most.direction.y * s2;
                 row.tangent_effective_mass = {inverse_or_zero(most.largest), inverse_or_zero(most.smallest)};
                 const Vector t2 = cross(row.normal, row.tangent);
@@ -191,19 +196,36 @@ struct ContactKind : ConstraintTraits {
         return whole;
     }
 
+    /// Finds K anew where the bodies have turned far. Tangents stay, because impulses are along them; K may couple them
+    /// now, and so both have the effective mass of the largest response, with which no step is too long.
+    template <class Real, class Row, class A, class B>
+    static void renew_response(Row& whole, const A& a, const B& b)
+    {
+        auto& row = in_sweep(whole);
+        const auto turned = maximum(change_at_most(a), change_at_most(b)) > Real(most_change);
+        if constexpr (smooth) {
+            const Real k =
+                response_along(a, row.normal, row.lever_a) + response_along(b, row.normal, row.lever_b);
+            row.normal_effective_mass = select(turned, inverse_or_zero(k), row.normal_effective_mass);
+        } else {
+            const Sym3<Real> k = point_response(a, row.arm_a, b, row.arm_b);
+            const Vec3<Real> t2 = cross(row.normal, row.tangent);
+            const Real largest = inverse_or_zero(principal(across(row.tangent, t2, k)).largest);
+            Vec2<Real>& masses = row.tangent_effective_mass;
+            row.normal_effective_mass =
+                select(turned, effective_mass_along(row.normal, k), row.normal_effective_mass);
+            masses = {select(turned, largest, masses.x), select(turned, largest, masses.y)};
+        }
+    }
+
     template <class Real, class Row, class Impulse>
     static auto total_impulse(const Row& row, const Impulse& impulse)
     {
-        auto push = impulse.normal * row.normal;
-        if constexpr (!smooth) {
-            if constexpr (requires { row.tangent; }) {
-                push = push + impulse.tangent.x * row.tangent +
-                       impulse.tangent.y * cross(row.normal, row.tangent);
-            } else {
-                push = push + impulse.tangent * tangent_of(row.normal);
-            }
+        if constexpr (smooth) {
+            return impulse.normal * row.normal;
+        } else {
+            return impulse.normal * row.normal + vector_of<Real>(row, impulse.tangent);
         }
-        return push;
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
@@ -213,13 +235,13 @@ struct ContactKind : ConstraintTraits {
         if constexpr (smooth) {
             push<Real>(row, impulse.normal, a, b);
         } else {
-            const auto both = total_impulse<Real>(row, impulse);
-            apply_impulse(a, row.arm_a, -both);
-            apply_impulse(b, row.arm_b, both);
+            push_both<Real>(row, impulse.normal, impulse.tangent, a, b);
         }
     }
 
-    /// One sweep over this contact: friction with the bound of the normal impulse so far, then the normal.
+    /// One sweep over this contact: friction within the bound of the normal impulse so far, then the normal. Where that
+    /// becomes less, planar bodies lose what friction is more than the new bound, so that a contact that opens keeps none.
+    /// Others keep it until the next sweep: with one substep figures lie more calmly so.
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row& row, const Substep&, Impulse& impulse, A& a, B& b)
     {
@@ -230,7 +252,16 @@ struct ContactKind : ConstraintTraits {
                                       row.separation + moved<Real>(row, a, b), speed<Real>(row, a, b),
                                       normal_effective_mass<Real>(row, a, b), impulse.normal);
         if constexpr (has_restitution) wanted = minimum(wanted, Real(step.substep) * row.most_force);
-        push_normal<Real>(row, wanted, impulse, a, b);
+        const Real change = wanted - impulse.normal;
+        impulse.normal = wanted;
+        if constexpr (has_restitution) impulse.peak = maximum(impulse.peak, wanted);
+        if constexpr (smooth || !is_planar_pair(A::kind, B::kind)) {
+            push<Real>(row, change, a, b);
+        } else {
+            const Real held = impulse.tangent;
+            impulse.tangent = within(held, row.friction * wanted);
+            push_both<Real>(row, change, impulse.tangent - held, a, b);
+        }
     }
 
     /// After the substeps: contacts that were hit fast enough leave with restitution times the speed of the impact.
@@ -245,7 +276,10 @@ struct ContactKind : ConstraintTraits {
         const Real wanted = minimum(maximum(free, Real(0)), Real(step.substep) * row.most_force);
         const auto bounces = (whole.restitution > Real(0)) & (impulse.peak > Real(0)) &
                              (whole.approach < Real(-step.restitution_threshold));
-        push_normal<Real>(row, select(bounces, wanted, impulse.normal), impulse, a, b);
+        const Real held = impulse.normal;
+        impulse.normal = select(bounces, wanted, held);
+        impulse.peak = maximum(impulse.peak, impulse.normal);
+        push<Real>(row, impulse.normal - held, a, b);
     }
 
     /// A position solve: moves the bodies along J^T until `projection_rate` of the penetration is gone.
@@ -292,6 +326,13 @@ struct ContactKind : ConstraintTraits {
     static auto point_response(const A& a, const Vector& arm_a, const B& b, const Vector& arm_b)
     {
         return inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b);
+    }
+    /// K along two directions.
+    template <class Real>
+    static Sym2<Real> across(const Vec3<Real>& x, const Vec3<Real>& y, const Sym3<Real>& k)
+    {
+        const Vec3<Real> kx = k * x;
+        return {dot(x, kx), dot(y, kx), dot(y, k * y)};
     }
     /// 1 / (J M^-1 J^T) along a direction, from K of the point.
     template <class Vector, class Symmetric>
@@ -340,13 +381,29 @@ struct ContactKind : ConstraintTraits {
         }
     }
 
-    template <class Real, class Row, class Impulse, class A, class B>
-    static void push_normal(const Row& row, const Real& wanted, Impulse& impulse, A& a, B& b)
+    /// Along the normal and the tangents.
+    template <class Real, class Row, class Tangent, class A, class B>
+    static void push_both(const Row& row, const Real& normal, const Tangent& tangent, A& a, B& b)
     {
-        const Real change = wanted - impulse.normal;
-        impulse.normal = wanted;
-        if constexpr (has_restitution) impulse.peak = maximum(impulse.peak, wanted);
-        push<Real>(row, change, a, b);
+        const auto both = normal * row.normal + vector_of<Real>(row, tangent);
+        apply_impulse(a, row.arm_a, -both);
+        apply_impulse(b, row.arm_b, both);
+    }
+    /// The vector of components along the tangents.
+    template <class Real, class Row, class Tangent>
+    static auto vector_of(const Row& row, const Tangent& tangent)
+    {
+        if constexpr (requires { row.tangent; }) {
+            return tangent.x * row.tangent + tangent.y * cross(row.normal, row.tangent);
+        } else {
+            return tangent * tangent_of(row.normal);
+        }
+    }
+    /// Shortened to the bound where it is longer.
+    template <class Real>
+    static Real within(const Real& tangent, const Real& bound)
+    {
+        return maximum(minimum(tangent, bound), -bound);
     }
 
     /// The components of a vector along the tangents.
@@ -386,7 +443,7 @@ struct ContactKind : ConstraintTraits {
             Real along = dot(t, slip);
             if constexpr (has_restitution) along = along - row.surface_speed;
             const Real free = impulse.tangent - effective_mass * along;
-            const Real held = maximum(minimum(free, bound), -bound);
+            const Real held = within(free, bound);
             const Vec2<Real> push = (held - impulse.tangent) * t;
             impulse.tangent = held;
             apply_impulse(a, row.arm_a, -push);

@@ -36,6 +36,7 @@
 //     scale(impulse&, share)                                          with has_torque: keeps a share of the impulses
 //     prepare_substep<Real>(row, impulse, substep&, a, b)             J, C and K^-1 where the bodies are now
 //     warm_start<Real>(row, substep, impulse, a&, b&)                 v += M^-1 J^T lambda
+//     renew_response<Real>(row&, a, b)                                of a contact whose bodies turned far: K as it is now
 //     solve<Real>(step, in_sweep, substep, impulse&, a&, b&)          one sweep, as soft as `step` says: rigid to relax
 //     project<Real>(step, row, a&, b&)                                moves the bodies along J^T
 //     wrench<Real>(row, substep, impulse) -> Wrench                   of a joint: its impulse on b where it acts

@@ -129,18 +129,16 @@ struct DiscContactKind : ConstraintTraits {
         if constexpr (rough) push_tangent<Real>(row.in_sweep, impulse.tangent, a, b);
     }
 
-    /// One sweep: friction with the bound of the normal impulse so far, then the normal.
+    /// One sweep: friction within the bound of the normal impulse so far, then the normal. Where that becomes less,
+    /// friction is shortened with it, so that a contact that opens keeps none.
     template <class Real, class Sweep, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Sweep& row, const Substep&, Impulse& impulse, A& a,
                       B& b)
     {
         if constexpr (rough) {
-            const Real bound = row.friction * impulse.normal;
             const Real free =
                 impulse.tangent - tangent_effective_mass<Real>(row, a, b) * slip<Real>(row, a, b);
-            const Real held = maximum(minimum(free, bound), -bound);
-            push_tangent<Real>(row, held - impulse.tangent, a, b);
-            impulse.tangent = held;
+            set_tangent<Real>(row, free, impulse, a, b);
         }
         const Softness& soft = A::kind == BodyKind::fixed ? step.static_contact : step.contact;
         Real wanted =
@@ -150,6 +148,7 @@ struct DiscContactKind : ConstraintTraits {
             wanted = minimum(wanted, Real(step.substep) * row.most_force);
         push_normal<Real>(row, wanted - impulse.normal, a, b);
         impulse.normal = wanted;
+        if constexpr (rough) set_tangent<Real>(row, impulse.tangent, impulse, a, b);
     }
 
     /// A position solve, as in contact.h.
@@ -214,6 +213,15 @@ struct DiscContactKind : ConstraintTraits {
         if constexpr (A::kind == BodyKind::planar)
             k = k + (a.inverse_mass + a.inverse_inertia * row.arm_a * row.arm_a);
         return inverse_or_zero(k);
+    }
+    /// Friction becomes `wanted`, within its bound.
+    template <class Real, class Sweep, class Impulse, class A, class B>
+    static void set_tangent(const Sweep& row, const Real& wanted, Impulse& impulse, A& a, B& b)
+    {
+        const Real bound = row.friction * impulse.normal;
+        const Real held = maximum(minimum(wanted, bound), -bound);
+        push_tangent<Real>(row, held - impulse.tangent, a, b);
+        impulse.tangent = held;
     }
     template <class Real, class Sweep, class A, class B>
     static void push_tangent(const Sweep& row, const Real& lambda, A& a, B& b)

@@ -79,6 +79,22 @@ void push_along(LaneBody<Real, BodyKind::fixed>&, const Vector&, const Lever&, c
 {
 }
 
+// ---- the part of J M^-1 J^T of one body -----------------------------------------------------------------------------
+
+template <class Real, BodyKind kind, class Vector, class Lever>
+Real response_along(const LaneBody<Real, kind>& body, const Vector& n, const Lever& lever)
+{
+    if constexpr (kind == BodyKind::fixed) {
+        return Real(0);
+    } else if constexpr (kind == BodyKind::particle) {
+        return body.inverse_mass * dot(n, n);
+    } else if constexpr (kind == BodyKind::planar) {
+        return body.inverse_mass * (n.x * n.x + n.y * n.y) + body.inverse_inertia * lever * lever;
+    } else {
+        return body.inverse_mass * dot(n, n) + dot(lever, body.inverse_inertia * lever);
+    }
+}
+
 // ---- the same for displacements since the step began, to first order in the rotation --------------------------------
 
 template <class Real>

@@ -246,6 +246,7 @@ template <BodyKind kind>
         load_quads(arrays.delta + 4, offset_floats, offsets, q);
         const Quat<Lanes> turn = body.delta_rotation * Quat<Lanes>{-q[0], -q[1], -q[2], q[3]};
         body.inverse_inertia = rotate_tensor(turn, body.inverse_inertia);
+        tell_contacts(body, arrays);
         const Vec3<Lanes> w = rotate(turn, body.angular);
         store_quads(arrays.velocity + 4, offset_floats, offsets, {w.x, w.y, w.z, Lanes(0)}, count);
     }

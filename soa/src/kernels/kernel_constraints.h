@@ -262,10 +262,45 @@ struct Kernels {
     {
         sweep(context, context.relaxing, streams, begin, end);
     }
+    /// Whether rows have responses that a body's turn may change within a step.
+    static constexpr bool may_renew =
+        Type::is_contact && (kind_a == BodyKind::rigid || kind_b == BodyKind::rigid);
+    static bool has_turned_far(const KernelContext& context)
+    {
+        return context.turned_far != nullptr && context.turned_far->load(std::memory_order_relaxed);
+    }
+    /// Before a sweep: finds responses anew, if a body has turned far.
+    [[gnu::always_inline]] static void renew_responses(const KernelContext& context,
+                                                       const BlockStreams& streams, std::int32_t begin,
+                                                       std::int32_t end)
+    {
+        if constexpr (may_renew) {
+            if (has_turned_far(context)) [[unlikely]]
+                renew_rows(context, streams, begin, end);
+        }
+    }
+    [[gnu::noinline, gnu::cold]] static void renew_rows(const KernelContext& context,
+                                                        const BlockStreams& streams, std::int32_t begin,
+                                                        std::int32_t end)
+    {
+        for (std::int32_t block = begin; block < end; ++block) {
+            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+                renew_row(bundle, bundle.load_a(), bundle.load_b());
+            });
+        }
+    }
+    static void renew_row(const Bundle& bundle, const A& a, const B& b)
+    {
+        auto row = load_row<Row>(bundle.row);
+        Type::template renew_response<Lanes>(row, a, b);
+        store_row(row, bundle.row);
+    }
+
     /// Shared by solve and relax: a copy for each would make the kernels half as large again.
     [[gnu::noinline]] static void sweep(const KernelContext& context, const StepConstants& step,
                                         const BlockStreams& streams, std::int32_t begin, std::int32_t end)
     {
+        renew_responses(context, streams, begin, end);
         for (std::int32_t block = begin; block < end; ++block) {
             prefetch<!sees_delta_once>(context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
@@ -284,6 +319,7 @@ struct Kernels {
     static void restitute(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
                           std::int32_t end)
     {
+        renew_responses(context, streams, begin, end);
         for (std::int32_t block = begin; block < end; ++block) {
             prefetch<true>(context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
@@ -300,6 +336,7 @@ struct Kernels {
     static void project(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
                         std::int32_t end)
     {
+        renew_responses(context, streams, begin, end);
         for (std::int32_t block = begin; block < end; ++block) {
             prefetch<true>(context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
@@ -439,10 +476,31 @@ struct Kernels {
     {
         sweep_copies(context, context.relaxing, streams, block, body_a, body_b);
     }
+    [[gnu::always_inline]] static void renew_responses_of_copies(const KernelContext& context,
+                                                                 const BlockStreams& streams,
+                                                                 std::int32_t block, const float* body_a,
+                                                                 const float* body_b)
+    {
+        if constexpr (may_renew) {
+            if (has_turned_far(context)) [[unlikely]]
+                renew_rows_of_copies(context, streams, block, body_a, body_b);
+        }
+    }
+    [[gnu::noinline, gnu::cold]] static void renew_rows_of_copies(const KernelContext& context,
+                                                                  const BlockStreams& streams,
+                                                                  std::int32_t block, const float* body_a,
+                                                                  const float* body_b)
+    {
+        for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+            renew_row(bundle, load_copy<kind_a>(body_a + bundle.lane),
+                      load_copy<kind_b>(body_b + bundle.lane));
+        });
+    }
     [[gnu::noinline]] static void sweep_copies(const KernelContext& context, const StepConstants& step,
                                                const BlockStreams& streams, std::int32_t block, float* body_a,
                                                float* body_b)
     {
+        renew_responses_of_copies(context, streams, block, body_a, body_b);
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
             A a = load_copy<kind_a>(body_a + bundle.lane);
             B b = load_copy<kind_b>(body_b + bundle.lane);
@@ -459,6 +517,7 @@ struct Kernels {
     static void restitute_copies(const KernelContext& context, const BlockStreams& streams,
                                  std::int32_t block, float* body_a, float* body_b)
     {
+        renew_responses_of_copies(context, streams, block, body_a, body_b);
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
             A a = load_copy<kind_a>(body_a + bundle.lane);
             B b = load_copy<kind_b>(body_b + bundle.lane);

@@ -101,6 +101,7 @@ inline void integrate_copy_velocities(const KernelContext& context, const Figure
     rotate_again(body, load_row<Mover>(lanes),
                  load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), Lanes(h), arrays,
                  offsets);
+    tell_contacts(body, arrays);
 }
 
 inline void integrate_copy_positions(const KernelContext& context, const FigureBlock& figure)

@@ -181,22 +181,6 @@ void integrate_velocities(const KernelContext& context, std::int32_t begin, std:
 
 // ---- x += h v ----------------------------------------------------------------------------------------
 
-/// A rotation half way through which change_of_inertia() is larger has doubled a response at its end.
-inline constexpr float most_change = 0.125F;
-
-/// tr(I I'^-1) - 3: how much a rotation changed the inertia I, with I' after it. Where it made a response c times as high
-/// or as low, about a principal axis, it is c + 1/c - 2.
-inline Lanes change_of_inertia(const Sym3<Lanes>& inertia, const Sym3<Lanes>& inverse_after)
-{
-    return trace_of_product(inertia, inverse_after) - Lanes(3);
-}
-
-/// tr I tr I^-1 - 9: 0 for a body whose inertia is that of a ball, the larger the thinner or flatter it is.
-inline Lanes spread_of(const Sym3<Lanes>& inertia, const Sym3<Lanes>& inverse_inertia)
-{
-    return trace(inertia) * trace(inverse_inertia) - Lanes(9);
-}
-
 /// Whether a body precesses too fast to be rotated in one piece: the square of its turn in radians is above 0.01. Its
 /// energy would grow by z^4 / 4 in each, with z the turn of w in the body's frame.
 inline auto precesses(const Lanes& turn_squared, const Lanes& spread)
@@ -237,11 +221,12 @@ inline void rotate_in_pieces(Body<BodyKind::rigid>& body, const Sym3<Lanes>& sta
 /// Rotates again what tumble() cannot rotate well: `body` is `before` after tumble(), `start` is I^-1 when the step began,
 /// and `offsets` says where the body is in `arrays`.
 ///
-/// A body with constraints keeps I and w where a response would more than double. Sweeps divide by the responses that rows
-/// had when they were made: those of joints when the substep began, those of contacts when the step began. Where a response
-/// has become c times as high since, a sweep leaves 1 - c of the speed that it should take away, and above c = 2 that is more
-/// than there was: relaxation, or the next substep, throws the body. The change is looked at half way through the substep,
-/// where it is about a quarter of that at the end. Any other body that precesses() is rotated in pieces.
+/// A body with joints keeps I and w where a response would more than double. Sweeps divide by the responses that rows had
+/// when they were made: when the substep began, or, of manifolds, when the step began. Where a response has become c times
+/// as high since, a sweep leaves 1 - c of the speed that it should take away, and above c = 2 that is more than there was:
+/// relaxation, or the next substep, throws the body. The change is looked at half way through the substep, where it is
+/// about a quarter of that at the end: beyond `most_change`, responses double. Any other body that precesses() is rotated
+/// in pieces. Contacts are told when a body has turned far, and find their responses anew.
 inline void rotate_again(Body<BodyKind::rigid>& body, const Body<BodyKind::rigid>& before,
                          const Sym3<Lanes>& start, const Lanes& h, const BodyArrays& arrays,
                          const std::int32_t* offsets)
@@ -256,16 +241,16 @@ inline void rotate_again(Body<BodyKind::rigid>& body, const Body<BodyKind::rigid
     const auto fast =
         precesses(turn_squared, spread_of(inertia, before.inverse_inertia)) & (turn_squared < one);
     if (!any(maximum(in_substep, in_step) > Lanes(most_change)) && !any(fast)) return;
-    alignas(64) float has_constraints[Lanes_width], has_contacts[Lanes_width];  // 1 or 0
+    alignas(64) float has_joints[Lanes_width], has_start_rows[Lanes_width];  // 1 or 0
     for (int lane = 0; lane < Lanes_width; ++lane) {
-        const std::uint32_t mask = arrays.colours[offsets[lane] / offsets_a_row(BodyKind::rigid)];
-        has_constraints[lane] = mask != 0 ? 1.0F : 0.0F;
-        has_contacts[lane] = (mask & contact_bit) != 0 ? 1.0F : 0.0F;
+        const std::uint32_t mask = arrays.joint_colours[offsets[lane] / offsets_a_row(BodyKind::rigid)];
+        has_joints[lane] = mask != 0 ? 1.0F : 0.0F;
+        has_start_rows[lane] = (mask & start_rows_bit) != 0 ? 1.0F : 0.0F;
     }
-    const Lanes bound = load_lanes(has_constraints), touched = load_lanes(has_contacts);
+    const Lanes jointed = load_lanes(has_joints), from_start = load_lanes(has_start_rows);
     Body<BodyKind::rigid> kept = before;
     kept.delta_rotation = normalised(rotation_by(h * w) * before.delta_rotation);
-    const Lanes most = maximum(bound * in_substep, touched * in_step);
+    const Lanes most = maximum(jointed * in_substep, from_start * in_step);
     replace_rotation(body, most > Lanes(most_change), kept);
     const auto in_pieces = fast & (Lanes(most_change) > most);
     if (!any(in_pieces)) return;
@@ -278,7 +263,7 @@ inline void rotate_again(Body<BodyKind::rigid>& body, const Body<BodyKind::rigid
 /// through the rotation (I: inertia, w: angular velocity): afterwards w = I^-1 L with the rotated inertia. So L is
 /// kept to rounding, the rotation is right to second order, and a tumbling body cannot gain energy without bound. A
 /// body that turns by more than a radian per substep, which no substep can follow, or that has no inverse inertia
-/// keeps w instead, and with it its energy. Returns whether a lane may want rotate_again().
+/// keeps w instead, and with it its energy. Returns whether a lane may want rotate_again() or tell_contacts().
 inline bool tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse_inertia, const Lanes& h)
 {
     const Vec3<Lanes> speed = body.angular;
@@ -296,11 +281,10 @@ inline bool tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse
     body.delta_rotation = normalised(rotation_by(h * then) * body.delta_rotation);
     body.inverse_inertia = rotate_tensor(body.delta_rotation, start_inverse_inertia);
     body.angular = speed_of(body.inverse_inertia);
-    // With s the sine of half the angle so far, no rotation changes I by more than 4 s^2 times the spread.
-    const Vec3<Lanes> sines{half_way.x, half_way.y, half_way.z};
+    // A little less than most_change, because change_at_most() is rounded differently.
     const Lanes spread = spread_of(inertia, i);
-    const Lanes at_most = maximum(Lanes(4) * dot(sines, sines), Lanes(0.25F) * turn_squared) * spread;
-    return any(at_most > Lanes(most_change)) || any(precesses(turn_squared, spread));
+    const Lanes at_most = maximum(Lanes(4) * squared_half_sine(body), Lanes(0.25F) * turn_squared) * spread;
+    return any(at_most > Lanes(0.9F * most_change)) || any(precesses(turn_squared, spread));
 }
 
 /// rotate_again() for bodies whose state before is that of the arrays. It takes little, so that the call is small where it is
@@ -311,6 +295,7 @@ inline bool tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse
 {
     rotate_again(body, load_body(arrays, offsets, static_cast<Body<BodyKind::rigid>*>(nullptr)),
                  load_tensor(arrays.start_inverse_inertia, offsets), Lanes(h), arrays, offsets);
+    tell_contacts(body, arrays);
 }
 
 template <BodyKind kind>

@@ -16,5 +16,6 @@
 #include "maths/lane_body.h"
 #include "maths/lane_residual.h"
 #include "maths/tension.h"
+#include "maths/turned_inertia.h"
 #include "motley/core/joint_report.h"
 #include "scene/joint_pose.h"

@@ -60,8 +60,9 @@ struct ConstraintData {
     std::int32_t first_surface = 0;
 };
 
-/// A bit of a body's ColourMasks, beside those of the colours and of the overflow: contacts act on the body.
-inline constexpr std::uint32_t contact_bit = 1U << 31;
+/// A bit of a body's mask of joints, beside those of the colours and of the overflow: a joint whose rows are made once a
+/// step, and not once a substep, acts on the body.
+inline constexpr std::uint32_t start_rows_bit = 1U << 31;
 
 /// Rows of one kind as the kernels see them.
 struct BodyArrays {
@@ -70,7 +71,8 @@ struct BodyArrays {
     float* unpushed = nullptr;
     float* start_along = nullptr;  ///< see Flight, like is_jointed
     const std::uint8_t* is_jointed = nullptr;
-    const std::uint32_t* colours = nullptr;  ///< rigid bodies, by row: see ColourMasks
+    const std::uint32_t* joint_colours = nullptr;  ///< rigid bodies, by row, of their joints: see ColourMasks
+    std::atomic<bool>* turned_far = nullptr;       ///< rigid bodies: see KernelContext
     const float* acceleration = nullptr;
     /// As velocity: by what a substep multiplies each component, and last in each row's first quad whether free flight
     /// keeps to its parabola (1 or 0). Null unless a body of the kind is damped.
@@ -113,6 +115,9 @@ struct KernelContext {
     /// Set by prepare where a joint pulls harder than a substep can follow: then `stiffen` must be run. See
     /// tension.h.
     std::atomic<bool>* overloaded = nullptr;
+    /// Set where bodies move: in this step a rigid body has turned so far that contacts have to look whether their
+    /// responses have changed. See contact.h.
+    std::atomic<bool>* turned_far = nullptr;
 };
 
 /// The kernels of one type and pair: each runs over blocks begin ... end - 1.

@@ -31,12 +31,12 @@ class ColourMasks {
             masks_[kind].assign(bodies.rows(static_cast<BodyKind>(kind)).size(), 0U);
         }
     }
-    /// The masks of `other`, grown with clear ones to as many as the store has rows.
-    void copy(const ColourMasks& other, const BodyStore& bodies)
+    /// Appends clear masks for rows that were added to the store.
+    void grow(const BodyStore& bodies)
     {
         for (int kind = 0; kind < moving_kinds; ++kind) {
-            masks_[kind] = other.masks_[kind];
-            masks_[kind].resize(bodies.rows(static_cast<BodyKind>(kind)).size(), 0U);
+            const std::size_t rows = bodies.rows(static_cast<BodyKind>(kind)).size();
+            if (masks_[kind].size() < rows) masks_[kind].resize(rows, 0U);
         }
     }
     /// Takes the colour and returns true if neither body has it yet. The overflow colour is always free; its bit only says
@@ -59,7 +59,7 @@ class ColourMasks {
         note(1U << colour, mask_a, mask_b);
         return static_cast<std::uint8_t>(colour);
     }
-    void note_contact(BodyRow a, BodyRow b) { note(contact_bit, mask(a), mask(b)); }
+    void note_start_rows(BodyRow a, BodyRow b) { note(start_rows_bit, mask(a), mask(b)); }
     /// A mask a row: 0 where no constraint acts.
     [[nodiscard]] const std::uint32_t* of(BodyKind kind) const
     {

@@ -18,6 +18,11 @@
 namespace motley {
 namespace {
 
+/// Whether a joint of this type has rows that are made once a step, and not once a substep.
+template <class Type>
+constexpr bool has_start_rows =
+    std::is_empty_v<typename Type::template SubstepRow<float, BodyKind::rigid, BodyKind::rigid>>;
+
 /// Bodies per range: a few microseconds of streaming.
 constexpr std::int32_t rows_per_range = 512;
 
@@ -76,8 +81,8 @@ void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse&
             grow_to(decay_[kind], 4 * static_cast<std::size_t>(quads_of(static_cast<BodyKind>(kind))) * rows);
     }
     figures.make_room(contact_count);
-    const bool any_rigid = scene.bodies.rows(BodyKind::rigid).size() > 1;  // row 0 is no body's
-    if (contact_count > 0 || any_rigid) masks_.copy(joint_masks_, scene.bodies);
+    joint_masks_.grow(scene.bodies);
+    if (contact_count > 0) masks_ = joint_masks_;
     grow_to(uncoloured_, contact_count);
     contacts.begin({intake.placements.data(), contact_count}, intake.patches.are_wanted());
 }
@@ -106,6 +111,7 @@ void Layout::place_joints(SceneCore& scene)
             }
             if (bodies.is_asleep(a) || bodies.is_asleep(b)) continue;  // it keeps what it bore
             if (store.colours[i] == no_colour) store.colours[i] = joint_masks_.take_first(a, b);
+            if (has_start_rows<Type>) joint_masks_.note_start_rows(a, b);
             const int equalities = Type::is_equality(store.definitions[i]) ? Type::equality_count : 0;
             candidates_.push_back({{a, b, static_cast<std::int32_t>(i),
                                     static_cast<std::uint8_t>(contact_type_count + type), store.colours[i]},
@@ -157,7 +163,6 @@ void Layout::colour_contacts(const BodyStore& bodies, ContactCache& cache)
                 continue;
             }
         }
-        masks_.note_contact(placement.a, placement.b);
         // A joint added since may have taken the colour; then the contact gets another one below. So does one in the
         // overflow: its hub may have fewer constraints by now.
         const bool keeps =
@@ -360,7 +365,8 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
             rows.unpushed.data(),
             start_along_[static_cast<std::size_t>(kind)].data(),
             is_jointed_[static_cast<std::size_t>(kind)].data(),
-            static_cast<BodyKind>(kind) == BodyKind::rigid ? masks_.of(BodyKind::rigid) : nullptr,
+            static_cast<BodyKind>(kind) == BodyKind::rigid ? joint_masks_.of(BodyKind::rigid) : nullptr,
+            &turned_far_,
             rows.acceleration.data(),
             decays ? decay_[static_cast<std::size_t>(kind)].data() : nullptr,
             rows.world_inverse_inertia.data(),
@@ -373,8 +379,9 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
     }
     context.largest_response = scene.bodies.largest_response;
     context.bodies_are_far = swept > second_level_cache();
-    overloaded_ = false;
+    overloaded_ = turned_far_ = false;
     context.overloaded = &overloaded_;
+    context.turned_far = &turned_far_;
 }
 
 void Layout::report(StepReport& report, const BatchSet::Count& in_lockstep) const

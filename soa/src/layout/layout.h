@@ -125,7 +125,7 @@ class Layout {
     std::array<Array<std::uint8_t>, body_kind_count> is_jointed_;    ///< by kind and row
     std::array<AlignedVector<float>, body_kind_count> start_along_;  ///< see Flight
     std::array<AlignedVector<float>, body_kind_count> decay_;        ///< see BodyArrays
-    std::atomic<bool> overloaded_ = false;
+    std::atomic<bool> overloaded_ = false, turned_far_ = false;
     std::array<Array<std::uint8_t>, body_kind_count> awake_;  ///< by chunk of rows: whether a step visits it
     std::array<Array<RowRange>, body_kind_count> rows_;
     std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< in no patch; at the range's first row

@@ -23,9 +23,9 @@ struct Body {
     double mass = 1;
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< body frame
     double linear_damping = 0, angular_damping = 0;         ///< 1/s
-    bool has_constraints = false;                           ///< in the present step
-    std::optional<Eigen::Quaterniond>
-        contacts_made_at;  ///< if it has contacts: the orientation of their rows
+    bool has_joints = false;                                ///< in the present step
+    /// The orientation when the step began, if the body has joints whose rows are made then and not in each substep.
+    std::optional<Eigen::Quaterniond> rows_made_at;
     /// The orientation in which inverse_mass() sees the inertia: see move_on().
     std::optional<Eigen::Quaterniond> inertia_kept_at;
 

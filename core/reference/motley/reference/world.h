@@ -83,7 +83,6 @@ class World {
     [[nodiscard]] std::vector<Block> blocks_of(const Joint& joint) const;
     [[nodiscard]] Soft contact_softness(int a, int b, double h, const SolverSettings& settings) const;
     void begin_step();
-    void note_constraint(int a, int b, bool is_contact);
     void find_rows(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows) const;
     void begin_joint(Joint& joint, double h, const SolverSettings& settings, std::vector<BlockRow>& rows);
     [[nodiscard]] Eigen::MatrixXd mass_of(const Joint& joint, const Block& block) const;
@@ -92,6 +91,8 @@ class World {
     [[nodiscard]] Eigen::Matrix<double, 12, 1> moved_since_start(int a, int b) const;
     ContactRow begin_contact(const ContactPoint& point, double warm);
     void solve_contact(ContactRow& row, double h, const SolverSettings& settings, bool relax);
+    [[nodiscard]] const std::vector<Body>& bodies_of_response(const ContactPoint& point) const;
+    [[nodiscard]] Eigen::MatrixXd effective_mass_along(const ContactPoint& point, const Jacobian& rows) const;
     [[nodiscard]] double separation(const ContactRow& row) const;
     void project_contacts(const Joint& joint, const SolverSettings& settings);
     void project(std::vector<ContactRow>& contacts, const SolverSettings& settings);
