@@ -105,7 +105,7 @@ void Body::move_on(double seconds, bool sweeps)
     double change = sweeps && has_joints ? (then * between).trace() - 3 : 0;
     if (sweeps && rows_made_at) change = std::max(change, (inertia_at(*rows_made_at) * between).trace() - 3);
     inertia_kept_at.reset();
-    if (change > 0.125) inertia_kept_at = before;
+    if (change > most_change) inertia_kept_at = before;
     // A body that turns by a radian or more keeps its angular velocity, and with it its energy.
     const double turn = seconds * velocity.tail<3>().norm();
     if (inertia_kept_at || turn >= 1) {

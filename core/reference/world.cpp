@@ -321,7 +321,7 @@ Eigen::Matrix<double, 12, 1> World::moved_since_start(int a, int b) const
 }
 
 /// The bodies whose inertias give a contact its K: those of the step's beginning, until one of the two has turned so far that
-/// its inertia may have changed by an eighth, measured by tr(I I'^-1) - 3; then the bodies as they are.
+/// its inertia may have changed by more than most_change; then the bodies as they are.
 const std::vector<Body>& World::bodies_of_response(const ContactPoint& point) const
 {
     for (const int end : {point.a, point.b}) {
@@ -330,7 +330,7 @@ const std::vector<Body>& World::bodies_of_response(const ContactPoint& point) co
         const double spread = body.inertia.trace() * body.inertia.inverse().trace() - 9;
         const Eigen::Quaterniond turn =
             body.orientation * start_[static_cast<std::size_t>(end)].orientation.conjugate();
-        if (4 * turn.vec().squaredNorm() * spread > 0.125) return bodies;
+        if (4 * turn.vec().squaredNorm() * spread > most_change) return bodies;
     }
     return start_;
 }

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <span>
+#include <vector>
 
 #include "mixed_scene.h"
 #include "motley/motley.h"

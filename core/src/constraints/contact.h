@@ -241,7 +241,8 @@ struct ContactKind : ConstraintTraits {
 
     /// One sweep over this contact: friction within the bound of the normal impulse so far, then the normal. Where that
     /// becomes less, planar bodies lose what friction is more than the new bound, so that a contact that opens keeps none.
-    /// Others keep it until the next sweep: with one substep figures lie more calmly so.
+    /// Others keep it until the next sweep: if it were shortened, a few of a thousand figures on a floor would not come to
+    /// rest with exact joints at one substep.
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row& row, const Substep&, Impulse& impulse, A& a, B& b)
     {
@@ -252,9 +253,7 @@ struct ContactKind : ConstraintTraits {
                                       row.separation + moved<Real>(row, a, b), speed<Real>(row, a, b),
                                       normal_effective_mass<Real>(row, a, b), impulse.normal);
         if constexpr (has_restitution) wanted = minimum(wanted, Real(step.substep) * row.most_force);
-        const Real change = wanted - impulse.normal;
-        impulse.normal = wanted;
-        if constexpr (has_restitution) impulse.peak = maximum(impulse.peak, wanted);
+        const Real change = set_normal(wanted, impulse);
         if constexpr (smooth || !is_planar_pair(A::kind, B::kind)) {
             push<Real>(row, change, a, b);
         } else {
@@ -276,10 +275,7 @@ struct ContactKind : ConstraintTraits {
         const Real wanted = minimum(maximum(free, Real(0)), Real(step.substep) * row.most_force);
         const auto bounces = (whole.restitution > Real(0)) & (impulse.peak > Real(0)) &
                              (whole.approach < Real(-step.restitution_threshold));
-        const Real held = impulse.normal;
-        impulse.normal = select(bounces, wanted, held);
-        impulse.peak = maximum(impulse.peak, impulse.normal);
-        push<Real>(row, impulse.normal - held, a, b);
+        push<Real>(row, set_normal(select(bounces, wanted, impulse.normal), impulse), a, b);
     }
 
     /// A position solve: moves the bodies along J^T until `projection_rate` of the penetration is gone.
@@ -381,6 +377,15 @@ struct ContactKind : ConstraintTraits {
         }
     }
 
+    /// Notes a new normal impulse, and returns the change.
+    template <class Real, class Impulse>
+    static Real set_normal(const Real& wanted, Impulse& impulse)
+    {
+        const Real change = wanted - impulse.normal;
+        impulse.normal = wanted;
+        if constexpr (has_restitution) impulse.peak = maximum(impulse.peak, wanted);
+        return change;
+    }
     /// Along the normal and the tangents.
     template <class Real, class Row, class Tangent, class A, class B>
     static void push_both(const Row& row, const Real& normal, const Tangent& tangent, A& a, B& b)

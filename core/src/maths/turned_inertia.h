@@ -26,15 +26,11 @@ Real spread_of(const Sym3<Real>& inertia, const Sym3<Real>& inverse_inertia)
 inline constexpr float most_change = 0.125F;
 
 /// s^2 of the turn since the step began.
-template <class Real, BodyKind kind>
-Real squared_half_sine(const LaneBody<Real, kind>& body)
+template <class Real>
+Real squared_half_sine(const LaneBody<Real, BodyKind::rigid>& body)
 {
-    if constexpr (kind == BodyKind::rigid) {
-        const Quat<Real>& q = body.delta_rotation;
-        return q.x * q.x + q.y * q.y + q.z * q.z;
-    } else {
-        return Real(0);
-    }
+    const Quat<Real>& q = body.delta_rotation;
+    return q.x * q.x + q.y * q.y + q.z * q.z;
 }
 
 /// The most that the turn since the step began may have changed I; 0 for bodies whose inertia does not turn.

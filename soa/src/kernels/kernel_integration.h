@@ -281,9 +281,9 @@ inline bool tumble(Body<BodyKind::rigid>& body, const Sym3<Lanes>& start_inverse
     body.delta_rotation = normalised(rotation_by(h * then) * body.delta_rotation);
     body.inverse_inertia = rotate_tensor(body.delta_rotation, start_inverse_inertia);
     body.angular = speed_of(body.inverse_inertia);
-    // A little less than most_change, because change_at_most() is rounded differently.
     const Lanes spread = spread_of(inertia, i);
     const Lanes at_most = maximum(Lanes(4) * squared_half_sine(body), Lanes(0.25F) * turn_squared) * spread;
+    // A little less than most_change: change_at_most(), which then decides, is rounded differently.
     return any(at_most > Lanes(0.9F * most_change)) || any(precesses(turn_squared, spread));
 }
 

@@ -12,6 +12,9 @@ namespace motley::reference {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
+/// tr(I I'^-1) - 3 of a rotation that takes the inertia I to I': up to this, responses may stay as they were computed.
+inline constexpr double most_change = 0.125;
+
 /// A body in the world frame, SI units.
 struct Body {
     BodyModel model = BodyModel::rigid;
