@@ -28,7 +28,7 @@ void DiscPipeline::find(SceneCore& scene, float dt)
         return;
     }
     find_wall_ends(scene, wall_ends_);
-    if (!discs.is_stale && !is_anyone_awake(scene) && region == nullptr) return;
+    if (do_all_rest(scene)) return;
     if (discs.steps_since_sorting < DiscStore::least_steps_between_sortings) ++discs.steps_since_sorting;
     if (may_keep_contacts(scene, dt)) return;
     // Should memory run out on the way, the next step searches again.
@@ -62,7 +62,6 @@ bool DiscPipeline::add_those_of_fast_discs(SceneCore& scene, float dt)
 bool DiscPipeline::may_keep_contacts(SceneCore& scene, float dt)
 {
     DiscStore& discs = scene.discs;
-    if (region != nullptr) region->renew_copies(scene);
     const bool must_search = discs.is_stale || ++discs.age >= longest_age || have_walls_left(scene, dt);
     leaving_.clear();
     if (!must_search) list_leaving(scene, dt);
@@ -93,10 +92,13 @@ SearchVote DiscPipeline::vote(const SceneCore& scene, bool must_search) const
 }
 
 /// Nobody has a new neighbour while all planar bodies sleep.
-bool DiscPipeline::is_anyone_awake(const SceneCore& scene)
+bool DiscPipeline::do_all_rest(const SceneCore& scene) const
 {
+    if (region != nullptr && !region->anybody_sleeps()) return false;
     const Array<std::uint32_t>& awake = scene.bodies.rows(BodyKind::planar).awake;
-    return std::any_of(awake.begin(), awake.end(), [](std::uint32_t count) { return count > 0; });
+    const bool do_here = !scene.discs.is_stale && std::all_of(awake.begin(), awake.end(),
+                                                              [](std::uint32_t count) { return count == 0; });
+    return region == nullptr ? do_here : region->is_so_everywhere(do_here);
 }
 
 void DiscPipeline::divide(SceneCore& scene)
@@ -126,7 +128,8 @@ bool DiscPipeline::have_walls_left(const SceneCore& scene, float dt) const
     return false;
 }
 
-/// Lists the discs that may leave their skins in this step: only these may touch others that are not near them yet.
+/// Lists the discs that may leave their skins in this step: only these may touch others that are not near them yet. Those that
+/// sleep stay where they are.
 void DiscPipeline::list_leaving(const SceneCore& scene, float dt)
 {
     const DiscStore& discs = scene.discs;
@@ -142,6 +145,7 @@ void DiscPipeline::list_leaving(const SceneCore& scene, float dt)
         leaving.clear();
         if (!rows.is_chunk_awake(chunk)) return;
         for_each_row_of_chunk(chunk, size, [&](std::uint32_t row) {
+            if (scene.bodies.is_asleep(BodyRow(BodyKind::planar, row))) return;
             const DiscAnchor& anchor = discs.anchors[row];
             const Vec3<PoseReal>& at = rows.pose[row].position;
             const double x = static_cast<double>(at.x) - discs.frame.origin.x - static_cast<double>(anchor.x);

@@ -37,7 +37,7 @@ class DiscPipeline {
         return region == nullptr || band == 0 || region->has_band(band);
     }
 
-    [[nodiscard]] static bool is_anyone_awake(const SceneCore& scene);
+    [[nodiscard]] bool do_all_rest(const SceneCore& scene) const;
     [[nodiscard]] bool have_walls_left(const SceneCore& scene, float dt) const;
     bool may_keep_contacts(SceneCore& scene, float dt);
     void list_leaving(const SceneCore& scene, float dt);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "crowd/disc_finder.h"
+#include "layout/body_sets.h"
 #include "scene/scene_core.h"
 
 namespace motley {
@@ -35,9 +36,25 @@ class RegionLink {
     /// Whether the body is a copy of one of the region above.
     [[nodiscard]] virtual bool is_copy(std::uint32_t slot) const = 0;
 
-    // ---- contacts ----
     /// When a step begins: copies get the states and forces of those whom they are copies of.
     virtual void renew_copies(SceneCore& scene) = 0;
+
+    // ---- sleep ----
+    /// Whether anybody in any region may be asleep. All regions say the same.
+    [[nodiscard]] virtual bool anybody_sleeps() const = 0;
+    /// Tells all regions which islands have people who woke here since the last call; sleepers of those that woke anywhere
+    /// wake here too.
+    virtual void spread_waking(SceneCore& scene) = 0;
+    /// Copies get BodyStore::slow_for from those whom they are copies of.
+    virtual void renew_slowness(SceneCore& scene) = 0;
+    /// Islands of this region are parts of islands of all. Marks those whose other parts are restless; see
+    /// SleepPipeline::find_islands.
+    virtual void join_islands(const SceneCore& scene, const BodySets& islands,
+                              std::span<std::uint8_t> restless) = 0;
+    /// People have fallen asleep, and may wake again.
+    virtual void note_sleepers(const SceneCore& scene) = 0;
+
+    // ---- contacts ----
     /// Adds up the votes of all regions.
     virtual void agree(SearchVote& vote) = 0;
     /// Reach, drift and room of the discs that left their skins: the most, the most and the least of all regions.

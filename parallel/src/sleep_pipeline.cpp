@@ -82,12 +82,20 @@ void SleepPipeline::keep_loads(SceneCore& scene)
 void SleepPipeline::fall_asleep(const Step& step)
 {
     if (step.settings.sleep_speed == 0) return;
+    // Of bodies that this step has contained.
+    if (region != nullptr) region->spread_waking(step.scene);
     std::int32_t& pause = step.scene.sleep.pause;
     if (pause > 0) --pause;
-    if (!is_any_slow_for_long(step) || pause > 0) return;
+    bool is_any = is_any_slow_for_long(step);
+    if (pause > 0) return;
+    if (region != nullptr) is_any = !region->is_so_everywhere(!is_any);
+    if (!is_any) return;
     pause = steps_between_searches;
+    if (region != nullptr) region->renew_slowness(step.scene);
     find_islands(step);
+    if (region != nullptr) region->join_islands(step.scene, islands_, restless_);
     put_to_sleep(step);
+    if (region != nullptr) region->note_sleepers(step.scene);
 }
 
 /// Counts for how long each body has been slow, and returns whether there is a candidate for sleep.
@@ -101,6 +109,7 @@ bool SleepPipeline::is_any_slow_for_long(const Step& step)
         runner_.run(chunks, [&](std::int64_t chunk) {
             std::int64_t found = 0;
             for_each_awake(bodies, kind, chunk, [&](BodyRow where, std::uint32_t slot) {
+                if (is_copy(slot)) return;
                 const bool is_slow = square_speed(bodies, where) < limit;
                 bodies.slow_for[slot] = is_slow ? bodies.slow_for[slot] + step.dt : 0;
                 found += is_candidate(step, slot) ? 1 : 0;
@@ -127,6 +136,14 @@ void SleepPipeline::tie(const Step& step, BodyRow a, BodyRow b)
     if (a_is_slow || b_is_slow) restless_[islands_.number(a_is_slow ? a : b)] = 1;
 }
 
+/// Of bodies that do not push each other. A sleeper keeps nobody awake: it does not move, and it has not been touched, or it
+/// would have woken.
+void SleepPipeline::tie_near(const Step& step, BodyRow a, BodyRow b)
+{
+    const BodyStore& bodies = step.scene.bodies;
+    if (!bodies.is_asleep(a) && !bodies.is_asleep(b)) tie(step, a, b);
+}
+
 void SleepPipeline::tie_joints(const Step& step)
 {
     const BodyStore& bodies = step.scene.bodies;
@@ -143,12 +160,14 @@ void SleepPipeline::tie_contacts(const Step& step)
         const Placement& placement = layout_.intake.placements[i];
         if (placement.is_left_out()) continue;
         const Contact& contact = step.contacts[i];
-        if (!(list.step_impulses[i].normal > 0)) {
-            const double goes =
-                reach_of(step, placement.a, contact.arm_a) + reach_of(step, placement.b, contact.arm_b);
-            if (static_cast<double>(contact.separation) > 2 * touching_distance + goes) continue;
+        if (list.step_impulses[i].normal > 0) {
+            tie(step, placement.a, placement.b);
+            continue;
         }
-        tie(step, placement.a, placement.b);
+        const double goes =
+            reach_of(step, placement.a, contact.arm_a) + reach_of(step, placement.b, contact.arm_b);
+        if (static_cast<double>(contact.separation) <= 2 * touching_distance + goes)
+            tie_near(step, placement.a, placement.b);
     }
 }
 
@@ -178,9 +197,11 @@ void SleepPipeline::tie_discs(const Step& step)
                 } else {
                     const BodyRow a = row_at(blocks.bodies[block].a[lane], BodyKind::planar);
                     if (!candidate(a) && !candidate(b)) return;
-                    if (pushes() || gap_of<c.value>(scene, blocks, block, lane) <=
-                                        2 * touching_distance + reach_of(step, a, {}) + reach_of(step, b, {}))
+                    if (pushes())
                         tie(step, a, b);
+                    else if (gap_of<c.value>(scene, blocks, block, lane) <=
+                             2 * touching_distance + reach_of(step, a, {}) + reach_of(step, b, {}))
+                        tie_near(step, a, b);
                 }
             });
         });
@@ -205,7 +226,8 @@ void SleepPipeline::find_islands(const Step& step)
     }
 }
 
-/// Candidates whose island is not restless fall asleep, each island as a ring.
+/// Candidates whose island is not restless fall asleep, each island as a ring. In a region each of them is a ring: the region
+/// knows the islands.
 void SleepPipeline::put_to_sleep(const Step& step)
 {
     SceneCore& scene = step.scene;
@@ -220,7 +242,7 @@ void SleepPipeline::put_to_sleep(const Step& step)
                 const auto island = static_cast<std::size_t>(islands_.root(where));
                 if (!is_candidate(step, slot) || restless_[island] != 0) return;
                 Ring& ring = rings_[island];
-                if (ring.head == 0) ring.head = ring.tail = slot;
+                if (ring.head == 0 || region != nullptr) ring.head = ring.tail = slot;
                 Sleeper& sleeper = scene.sleep.sleepers[slot];
                 scene.sleep.sleepers[ring.tail].next = slot;
                 sleeper.next = ring.head;

@@ -5,6 +5,9 @@
 // DiscBand::half_awake counts such pairs, and at walls that move. Islands are looked for when somebody has been slow for
 // long, at most every eighth step. What ties two bodies reaches a little further than what wakes, or an island would wake
 // as soon as it has fallen asleep.
+//
+// An island may reach over several regions of a crowd. Each region finds its part of it; RegionLink says which parts are one,
+// and who has woken elsewhere.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +15,7 @@
 
 #include "layout/body_sets.h"
 #include "layout/layout.h"
+#include "region_link.h"
 #include "stage_runner.h"
 #include "stores/array.h"
 
@@ -20,6 +24,8 @@ namespace motley {
 class SleepPipeline {
   public:
     SleepPipeline(StageRunner& runner, Layout& layout) : runner_(runner), layout_(layout) {}
+
+    RegionLink* region = nullptr;  ///< the scene is one region of a crowd; null: it is all of it
 
     /// What the rules depend on in a step.
     struct Step {
@@ -47,6 +53,10 @@ class SleepPipeline {
     };
     Array<Ring> rings_;  ///< by index of islands_: of the sleepers that it names
 
+    [[nodiscard]] bool is_copy(std::uint32_t slot) const
+    {
+        return region != nullptr && region->is_copy(slot);
+    }
     void make_room(SceneCore& scene);
     void wake_roused(SceneCore& scene);
     void wake_beside_moving_bodies(const Step& step);
@@ -59,6 +69,7 @@ class SleepPipeline {
     void tie_contacts(const Step& step);
     void tie_discs(const Step& step);
     void tie(const Step& step, BodyRow a, BodyRow b);
+    void tie_near(const Step& step, BodyRow a, BodyRow b);
     void put_to_sleep(const Step& step);
 };
 

@@ -172,7 +172,7 @@ Solver::Solver(const SolverSettings& settings, const SolverOptions& options)
 
 void SolverAccess::set_region(Solver& solver, RegionLink* region)
 {
-    solver.impl().discs.region = solver.impl().sweeper.region = region;
+    solver.impl().discs.region = solver.impl().sleep.region = solver.impl().sweeper.region = region;
 }
 
 Solver::~Solver() = default;
@@ -241,6 +241,7 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> ho
         if (dt == 0 && report.error.empty()) report.error = ContactIntake::repeated_key(contacts);
         if (dt == 0 || !report.error.empty()) return clock.leave();
         clock.enter(Stage::colour);
+        if (discs.region != nullptr) discs.region->renew_copies(scene);
         sleep.wake({scene, contacts, dt, settings});
         // Before the layout is cut, because people of other regions may come: see RegionLink.
         discs.find(scene, dt);

@@ -21,13 +21,16 @@ void SleepPipeline::wake(const Step& step)
     sleep.gravity = is;
     sleep.speed = step.settings.sleep_speed;
     layout_.kept = {};
-    if (scene.bodies.sleepers == 0) return;
+    if (region == nullptr ? scene.bodies.sleepers == 0 : !region->anybody_sleeps()) return;
     const float substep = step.dt / static_cast<float>(step.settings.substeps);
     if (scene.last_step > 0) layout_.kept = {step.dt / scene.last_step, substep / scene.last_substep};
     wake_roused(scene);
     wake_beside_moving_bodies(step);
     wake_for_contacts(step);
+    // First of those whom hosts have woken, so that copies of them may touch others; then of the others.
+    if (region != nullptr) region->spread_waking(scene);
     wake_for_discs(step);
+    if (region != nullptr) region->spread_waking(scene);
 }
 
 /// So that nothing is allocated once the bodies have moved.

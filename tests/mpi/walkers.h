@@ -19,6 +19,7 @@ struct WalkersOptions {
     float friction = 0;      ///< of every other person
     bool to_corner = false;  ///< all want to be in one corner
     float speed = 1.4F;      ///< m/s, wanted
+    int walks_one_in = 1;    ///< the others stand; 0: nobody walks
 };
 
 class Walkers {
@@ -69,7 +70,10 @@ class Walkers {
             const double x = goal.x - state.position.x, y = goal.y - state.position.y;
             const double distance = std::sqrt(x * x + y * y);
             if (distance < 1) scene.set_user_data(person.body, reached + 1);
-            const auto wanted = static_cast<float>(1 / std::max(distance, 0.1)) * options_.speed;
+            const bool walks = options_.walks_one_in > 0 &&
+                               person.number % static_cast<std::uint64_t>(options_.walks_one_in) == 0;
+            const auto wanted =
+                walks ? static_cast<float>(1 / std::max(distance, 0.1)) * options_.speed : 0.0F;
             const float gain = bodies[person.number].mass / 0.5F;
             scene.set_force(person.body,
                             {gain * (wanted * static_cast<float>(x) - state.linear_velocity.x),
@@ -115,7 +119,16 @@ class WalkersOnOneScene {
     StepReport step(float dt)
     {
         walkers_.steer(scene, people);
-        return solver_.step(scene, dt);
+        return solve(dt);
+    }
+    StepReport solve(float dt) { return solver_.step(scene, dt); }
+    void remove(std::uint64_t number)
+    {
+        const auto person = std::find_if(people.begin(), people.end(),
+                                         [&](const OwnPerson& p) { return p.number == number; });
+        if (person == people.end()) return;
+        scene.remove_body(person->body);
+        people.erase(person);
     }
     [[nodiscard]] std::uint64_t hash() const
     {

@@ -353,6 +353,20 @@ TEST(Sleep, AListedContactThatIsAboutToTouchWakes)
     EXPECT_GT(scene.state(sleeper).linear_velocity.x, 1);
 }
 
+TEST(Sleep, ASleeperKeepsNobodyAwakeWhoStandsBesideIt)
+{
+    // A millimetre and a half is more than what wakes, and less than what ties an island.
+    Scene scene;
+    Solver solver(sleepy());
+    const BodyId first = scene.add_body(person_at(0, 0));
+    scene.set_disc(first, {radius});
+    EXPECT_LT(steps_until_asleep(solver, scene, first), 60);
+    const BodyId second = scene.add_body(person_at(2 * static_cast<double>(radius) + 0.0015, 0));
+    scene.set_disc(second, {radius});
+    EXPECT_LT(steps_until_asleep(solver, scene, second), 60);
+    EXPECT_TRUE(scene.is_asleep(first));
+}
+
 TEST(Sleep, NobodySleepsWhileAnIslandMateMoves)
 {
     // A chain of rods hangs at rest from a body that turns in its socket for longer than sleep_after.

@@ -27,21 +27,24 @@ struct SavedPerson {
 };
 struct CheckpointHead {
     std::array<char, 8> magic{'m', 'o', 't', 'l', 'e', 'y', 'M', 'P'};
-    std::uint64_t version = 1;
+    std::uint64_t version = 2;
     std::uint64_t person_bytes = sizeof(SavedPerson);  ///< fewer where positions are floats
     std::uint64_t people = 0, impulses = 0;
     std::uint64_t steps = 0;
     std::uint64_t walls = 0;  ///< a hash of them
-    std::uint64_t check = 0;  ///< the sum of the hashes of all records
+    std::uint64_t check = 0;  ///< the sum of the hashes of all records and of this head, but for its check
     float last_step = 0, last_substep = 0;
     std::uint64_t is_turned = 0;  ///< StripFrame::is_turned
+    std::array<float, 3> gravity{};
+    float sleep_speed = 0;
+    std::uint64_t pause = 0;  ///< SleepStore::pause
 };
 // Files have no undefined bytes.
-static_assert(sizeof(CheckpointHead) == 80 && sizeof(ImpulseRecord) == 32);
-static_assert(sizeof(SavedPerson) == 4 * sizeof(PoseReal) + 88);
+static_assert(sizeof(CheckpointHead) == 104 && sizeof(ImpulseRecord) == 40);
+static_assert(sizeof(SavedPerson) == 4 * sizeof(PoseReal) + 112);
 
 template <class Record>
-std::uint64_t check_of(const std::vector<Record>& records)
+std::uint64_t check_of(std::span<const Record> records)
 {
     std::uint64_t sum = 0;
     for (const Record& record : records) {
@@ -50,6 +53,11 @@ std::uint64_t check_of(const std::vector<Record>& records)
         sum += hash_bytes(0, words.data(), words.size());
     }
     return sum;
+}
+std::uint64_t check_of(CheckpointHead head)
+{
+    head.check = 0;
+    return check_of(std::span<const CheckpointHead>(&head, 1));
 }
 std::uint64_t hash_of_walls(const SceneCore& scene)
 {
@@ -80,9 +88,11 @@ bool is_fit(const PersonRecord& person)
     const Vec3<double> at = convert<double>(state.pose.position);
     bool is_good = is_coordinate(at.x) && is_coordinate(at.y) && is_coordinate(at.z) &&
                    is_within(state.pose.yaw, -1e15, 1e15) && is_within(person.inverse_mass, 1e-10, 1e10) &&
-                   is_within(person.inverse_inertia, 1e-20, 1e20) && person.is_copy == 0;
+                   is_within(person.inverse_inertia, 1e-20, 1e20) && is_within(person.slow_for, 0, 1e30) &&
+                   person.sleep <= static_cast<std::uint32_t>(Sleep::roused) && person.is_copy == 0;
     for (const float value : state.velocity) is_good = is_good && is_within(value, -1e30, 1e30);
     for (const float value : state.acceleration) is_good = is_good && is_within(value, -1e38, 1e38);
+    for (const float value : person.then) is_good = is_good && is_within(value, -1e38, 1e38);
     return is_good;
 }
 
@@ -118,12 +128,13 @@ void Region::save(const std::string& path)
     if (contained > 0)
         refuse("people contained when a checkpoint is written", static_cast<double>(contained),
                "0: revive or remove them first");
+    spread_waking(scene);  // of those whom the host has woken since the last step
     std::vector<SavedPerson> saved(people.size());
     std::vector<ImpulseRecord> impulses;
     const std::vector<std::vector<ImpulseRecord>> by_person = impulses_by_person(scene);
     std::array<std::uint64_t, 2> before{0, 0};  // people and impulses of the ranks before this one
     for (std::size_t i = 0; i < people.size(); ++i) {
-        saved[i] = {read_person(scene, people[i].body.slot), impulses.size()};
+        saved[i] = {read(scene, people[i].body.slot), impulses.size()};
         impulses.insert(impulses.end(), by_person[i].begin(), by_person[i].end());
     }
     const std::array<std::uint64_t, 2> own{saved.size(), impulses.size()};
@@ -132,16 +143,22 @@ void Region::save(const std::string& path)
     for (SavedPerson& person : saved) person.first_impulse += before[1];
 
     CheckpointHead head;
-    std::array<std::uint64_t, 3> sums{own[0], own[1], check_of(saved) + check_of(impulses)};
+    std::array<std::uint64_t, 3> sums{
+        own[0], own[1],
+        check_of(std::span<const SavedPerson>(saved)) + check_of(std::span<const ImpulseRecord>(impulses))};
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_UINT64_T, MPI_SUM, comm_);
     head.people = sums[0];
     head.impulses = sums[1];
-    head.check = sums[2];
     head.steps = static_cast<std::uint64_t>(figures.steps);
     head.walls = hash_of_walls(scene);
     head.last_step = scene.last_step;
     head.last_substep = scene.last_substep;
     head.is_turned = scene.discs.frame.is_turned != 0 ? 1 : 0;
+    const Vec3<float>& gravity = scene.sleep.gravity;
+    head.gravity = {gravity.x, gravity.y, gravity.z};
+    head.sleep_speed = scene.sleep.speed;
+    head.pause = static_cast<std::uint64_t>(scene.sleep.pause);
+    head.check = check_of(head) + sums[2];
 
     SharedFile file(comm_, path, SharedFile::Use::write);
     file.write(0, std::span<const CheckpointHead>(&head, rank_ == 0 ? 1 : 0));
@@ -149,8 +166,10 @@ void Region::save(const std::string& path)
     file.write(sizeof head + head.people * sizeof(SavedPerson) + before[1] * sizeof(ImpulseRecord),
                std::span<const ImpulseRecord>(impulses));
     file.finish();
-    // Who goes on from the file searches for contacts, and so does who has written it.
+    // Who goes on from the file searches for contacts, and so does who has written it. Before that neither knows who lies beside
+    // whom, so that neither wakes anybody for it.
     scene.discs.is_stale = true;
+    for (DiscBand& band : scene.discs.bands) band.half_awake = 0;
 }
 
 void Region::load(const std::string& path)
@@ -189,9 +208,10 @@ void Region::load(const std::string& path)
     std::vector<ImpulseRecord> impulses(static_cast<std::size_t>(last_impulse - first_impulse));
     file.read(sizeof head + head.people * sizeof(SavedPerson) + first_impulse * sizeof(ImpulseRecord),
               std::span<ImpulseRecord>(impulses));
-    std::uint64_t check = check_of(saved) + check_of(impulses);
+    std::uint64_t check =
+        check_of(std::span<const SavedPerson>(saved)) + check_of(std::span<const ImpulseRecord>(impulses));
     MPI_Allreduce(MPI_IN_PLACE, &check, 1, MPI_UINT64_T, MPI_SUM, comm_);
-    file.require(check == head.check, "damaged: its checksum is wrong");
+    file.require(check + check_of(head) == head.check, "damaged: its checksum is wrong");
 
     std::unordered_set<std::uint64_t> numbers;
     bool are_fit = true;
@@ -212,6 +232,10 @@ void Region::load(const std::string& path)
     scene.last_step = head.last_step;
     scene.last_substep = head.last_substep;
     scene.discs.frame.is_turned = head.is_turned != 0 ? 1 : 0;
+    scene.sleep.gravity = {head.gravity[0], head.gravity[1], head.gravity[2]};
+    scene.sleep.speed = head.sleep_speed;
+    scene.sleep.pause = static_cast<std::int32_t>(head.pause);
+    anybody_sleeps_ = true;  // until the next step knows better
 }
 
 /// After load(): the impulses go to the ranks that may find their contacts. Those that find none forget them.

@@ -25,8 +25,6 @@ void check_region_settings(const SolverSettings& settings)
         refuse("SolverSettings.tolerance", settings.tolerance, "0 of a crowd on several ranks");
     if (settings.budget_ms > 0)
         refuse("SolverSettings.budget_ms", settings.budget_ms, "0 of a crowd on several ranks");
-    if (settings.sleep_speed > 0)
-        refuse("SolverSettings.sleep_speed", settings.sleep_speed, "0 of a crowd on several ranks");
     if (settings.exact_contacts)
         refuse("SolverSettings.exact_contacts", "true, of a crowd on several ranks", "false");
 }
@@ -193,6 +191,7 @@ StepReport DistributedCrowd::step(float dt)
         MPI_Abort(region.comm(), 1);
     }
     if (report.status != StepStatus::refused) ++region.figures.steps;
+    report.bodies_asleep = region.people_asleep(core_of(impl_->scene));
     return report;
 }
 

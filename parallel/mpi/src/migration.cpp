@@ -112,7 +112,7 @@ void Region::move_people(SceneCore& scene, const DiscStrips& strips, CarriedImpu
         const std::size_t strip = strip_of_[scene.bodies.row_of(person.body).row()];
         const int owner = owners_[strip], copier = copiers_[strip];
         if (owner == rank_ && copier == nobody) continue;
-        PersonRecord record = read_person(scene, slot);
+        PersonRecord record = read(scene, slot);
         if (owner != rank_) going[static_cast<std::size_t>(owner)].push_back(record);
         record.is_copy = 1;
         if (copier != nobody) going[static_cast<std::size_t>(copier)].push_back(record);
@@ -133,9 +133,10 @@ ImpulseRecord Region::record_of(const SceneCore& scene, std::uint32_t row, std::
     const auto number_of = [&](std::uint32_t of) {
         return scene.discs.numbers[scene.bodies.rows(BodyKind::planar).slot[of]];
     };
-    return {number_of(row), is_wall ? std::uint64_t{other} : number_of(other),
-            impulse.normal, impulse.tangent,
-            impulse.side,   is_wall ? 1U : 0U};
+    return {number_of(row),       is_wall ? std::uint64_t{other} : number_of(other),
+            impulse.normal,       impulse.tangent,
+            impulse.side,         impulse.step_normal,
+            impulse.step_tangent, is_wall ? 1U : 0U};
 }
 
 /// Takes out the impulses of contacts that another rank will find, and of people whose rows change, as the records that
@@ -173,7 +174,8 @@ void Region::remove_those_who_go(SceneCore& scene)
         removed.push_back(person.body);
         forget_person(person.number);
     }
-    for (const BodyId body : removed) is_copy_[body.slot] = 0;
+    // Their islands go on sleeping elsewhere: nobody is told that who is removed here has woken.
+    for (const BodyId body : removed) is_copy_[body.slot] = was_asleep_[body.slot] = 0;
     scene_.remove_bodies(removed);
 }
 
@@ -198,6 +200,8 @@ void Region::take_in_people(SceneCore& scene, std::span<const PersonRecord> comi
         write_person(scene, body.slot, coming[i]);
         if (coming[i].user_data != 0) scene_.set_user_data(body, coming[i].user_data);
         is_copy_[body.slot] = coming[i].is_copy != 0 ? 1 : 0;
+        was_asleep_[body.slot] = coming[i].sleep != 0 ? 1 : 0;
+        island_of_[body.slot] = coming[i].island;
         if (coming[i].is_copy != 0) {
             above_.people.push_back(body);  // in their order once they are sorted
         } else {
@@ -206,6 +210,7 @@ void Region::take_in_people(SceneCore& scene, std::span<const PersonRecord> comi
             ++figures.crossings;
         }
     }
+    sleepers_ = scene.bodies.sleepers;
 }
 
 void Region::take_in_impulses(const SceneCore& scene, std::span<const ImpulseRecord> impulses,
@@ -226,7 +231,8 @@ void Region::take_in_impulses(const SceneCore& scene, std::span<const ImpulseRec
                             other = is_wall ? static_cast<std::uint32_t>(record.b) : row_of(record.b);
         // Two who are in no band of this region together any more do not touch.
         if (row == none || other == none) continue;
-        carried.put_in(row, other, is_wall, {record.normal, record.tangent, record.side, 0, 0});
+        carried.put_in(row, other, is_wall,
+                       {record.normal, record.tangent, record.side, record.step_normal, record.step_tangent});
     }
 }
 

@@ -1,6 +1,10 @@
 // See person_record.h.
 #include "person_record.h"
 
+#include <algorithm>
+
+#include "stores/growth.h"
+
 namespace motley {
 namespace {
 
@@ -41,6 +45,10 @@ PersonRecord read_person(const SceneCore& scene, std::uint32_t slot)
     person.inverse_inertia = scene.bodies.inverse_inertias[slot];
     person.shape = scene.discs.shapes[slot];
     person.user_data = slot < scene.user_data.size() ? scene.user_data[slot] : 0;
+    person.slow_for = scene.bodies.slow_for[slot];
+    person.sleep = static_cast<std::uint32_t>(scene.bodies.sleep[slot]);
+    if (scene.bodies.is_asleep(slot))
+        std::copy_n(scene.sleep.sleepers[slot].acceleration.begin(), person.then.size(), person.then.begin());
     return person;
 }
 
@@ -50,6 +58,15 @@ void write_person(SceneCore& scene, std::uint32_t slot, const PersonRecord& pers
     const std::size_t row = row_of(scene, slot);
     scene.bodies.inverse_masses[slot] = rows.velocity[4 * row + 3] = person.inverse_mass;
     scene.bodies.inverse_inertias[slot] = rows.delta[4 * row + 3] = person.inverse_inertia;
+    scene.bodies.slow_for[slot] = person.slow_for;
+    if (person.sleep != static_cast<std::uint32_t>(Sleep::awake)) {
+        grow_to(scene.sleep.sleepers, scene.bodies.slot_count());
+        scene.bodies.fall_asleep(slot);
+        scene.bodies.sleep[slot] = static_cast<Sleep>(person.sleep);
+        scene.sleep.sleepers[slot].next = slot;
+        std::copy(person.then.begin(), person.then.end(), scene.sleep.sleepers[slot].acceleration.begin());
+    }
+    // After that, because a sleeper may have been given a speed for when it wakes.
     write_state(scene, slot, person.state);
     scene.discs.numbers[slot] = person.number;
     scene.discs.set_shape(slot, person.shape);

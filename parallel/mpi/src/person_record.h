@@ -23,12 +23,16 @@ struct PersonRecord {
     float inverse_mass = 0, inverse_inertia = 0;
     DiscShape shape;
     std::uint64_t user_data = 0;
-    std::uint64_t is_copy = 0;
+    float slow_for = 0;           ///< s: BodyStore::slow_for
+    std::array<float, 3> then{};  ///< Sleeper::acceleration, of who sleeps
+    std::uint32_t sleep = 0;      ///< a Sleep
+    std::uint32_t is_copy = 0;
+    std::uint64_t island = 0;  ///< of who sleeps: see Region
 };
 
 PersonState read_state(const SceneCore& scene, std::uint32_t slot);
 void write_state(SceneCore& scene, std::uint32_t slot, const PersonState& state);
-/// `is_copy` is left to the caller.
+/// `is_copy` and `island` are left to the caller.
 PersonRecord read_person(const SceneCore& scene, std::uint32_t slot);
 /// Writes a person, but for the host's own number of it, into a planar body that was added for it.
 void write_person(SceneCore& scene, std::uint32_t slot, const PersonRecord& person);
@@ -38,6 +42,7 @@ struct ImpulseRecord {
     std::uint64_t a = 0;
     std::uint64_t b = 0;  ///< or a segment
     float normal = 0, tangent = 0, side = 0;
+    float step_normal = 0, step_tangent = 0;  ///< of people who sleep
     std::uint32_t is_wall = 0;
 };
 

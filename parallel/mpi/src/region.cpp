@@ -14,8 +14,6 @@
 namespace motley {
 namespace {
 
-enum Tag { states_tag = 1, pushed_tag, velocities_tag, loads_tag };
-
 constexpr std::size_t floats_a_person = 3;  // vx vy w
 
 }  // namespace
@@ -33,6 +31,8 @@ void Region::grow_with_slots()
     grow_to(core_of(scene_).discs.numbers, slots);
     grow_to(core_of(scene_).discs.shapes, slots);
     grow_to(is_copy_, slots);
+    grow_to(was_asleep_, slots);
+    grow_to(island_of_, slots);
 }
 
 void Region::renew_copies(SceneCore& scene)
@@ -42,8 +42,10 @@ void Region::renew_copies(SceneCore& scene)
     const auto bytes_of = [](const std::vector<PersonState>& states) {
         return static_cast<int>(states.size() * sizeof(PersonState));
     };
-    // People that were removed since send nothing of use: everybody searches in this step.
-    outgoing_states_.assign(below_.people.size(), {});
+    // Copies of people who were removed since go where they touch nobody, until everybody searches in this step.
+    PersonState removed;
+    removed.pose.position.x = static_cast<PoseReal>(1e15);
+    outgoing_states_.assign(below_.people.size(), removed);
     for (std::size_t i = 0; i < below_.people.size(); ++i) {
         if (scene.bodies.is_alive(below_.people[i]))
             outgoing_states_[i] = read_state(scene, below_.people[i].slot);

@@ -31,6 +31,8 @@ class Region final : public RegionLink {
     void forget_person(std::uint64_t number);
     /// Makes room for the numbers of bodies that were added.
     void grow_with_slots();
+    /// People of this rank who sleep.
+    [[nodiscard]] std::int64_t people_asleep(const SceneCore& scene) const;
 
     /// What people of the first band bore from contacts of the region below: the sums of one process begin with these.
     void bear_from_below(const SceneCore& scene, std::span<Borne> borne);
@@ -46,6 +48,12 @@ class Region final : public RegionLink {
         return slot < is_copy_.size() && is_copy_[slot] != 0;
     }
     void renew_copies(SceneCore& scene) override;
+    [[nodiscard]] bool anybody_sleeps() const override { return anybody_sleeps_; }
+    void spread_waking(SceneCore& scene) override;
+    void renew_slowness(SceneCore& scene) override;
+    void join_islands(const SceneCore& scene, const BodySets& islands,
+                      std::span<std::uint8_t> restless) override;
+    void note_sleepers(const SceneCore& scene) override;
     void agree(SearchVote& vote) override;
     void agree(float& reach, float& drift, double& room) override;
     bool is_so_everywhere(bool here) override;
@@ -59,6 +67,7 @@ class Region final : public RegionLink {
     void take_velocities(float* velocities, std::size_t parity) override;
 
   private:
+    enum Tag { states_tag = 1, pushed_tag, velocities_tag, loads_tag, slowness_tag, islands_tag };
     static constexpr int nobody = MPI_PROC_NULL;
     /// A border: with the region above, its people are copies here; with the region below, people here have copies there.
     struct Border {
@@ -84,6 +93,17 @@ class Region final : public RegionLink {
     std::vector<MPI_Request> requests_;
     bool has_spoken_ = false, refused_together_ = false;
 
+    // Sleep: an island is named by the smallest number of its people.
+    bool anybody_sleeps_ = false;
+    std::vector<std::uint8_t>
+        was_asleep_;  ///< by slot, copies included: until all ranks know that its island woke
+    std::vector<std::uint64_t> island_of_;  ///< by slot, of those
+    std::size_t sleepers_ = 0;              ///< how many of them sleep still, unless somebody has woken since
+    std::vector<std::uint64_t> woken_, woken_everywhere_;  ///< islands
+    struct Part {                                          ///< of an island, as one rank knows it
+        std::uint64_t island = UINT64_MAX, is_restless = 0;
+    };
+
     [[nodiscard]] int rank_of(std::size_t band) const;
     void deal_out(const DiscStrips& strips);
     static ImpulseRecord record_of(const SceneCore& scene, std::uint32_t row, std::uint32_t other,
@@ -98,6 +118,10 @@ class Region final : public RegionLink {
     void take_in_impulses(const SceneCore& scene, std::span<const ImpulseRecord> impulses,
                           CarriedImpulses& carried) const;
     void remove_those_who_go(SceneCore& scene);
+    [[nodiscard]] PersonRecord read(const SceneCore& scene, std::uint32_t slot) const;
+    void list_woken(const SceneCore& scene);
+    static bool exchange_parts(const SceneCore& scene, const Border& to, const Border& from,
+                               const BodySets& islands, std::vector<Part>& parts, MPI_Comm comm);
     void list_copies_pushed(const SceneCore& scene);
     static void find_rows(const SceneCore& scene, Border& border);
     void send(Border& border, const float* velocities);

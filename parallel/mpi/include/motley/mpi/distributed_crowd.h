@@ -46,8 +46,14 @@ struct DistributedFigures {
 /// number of ranks, threads and the instruction set. There people must be added in the order of their numbers, so that
 /// two on exactly one spot are told apart alike.
 ///
-/// What a region cannot have: joints, capsules, half-spaces, kinematic bodies, sleep, tolerances, budgets, the direct method,
-/// exact contacts, and discs that reach much further than most others, by size or by speed. Such a step is refused on all ranks.
+/// People sleep as they do in one process, in islands that may reach over several ranks. What the host does to a sleeper of
+/// its rank (Scene::wake and whatever else wakes: see SolverSettings::sleep_speed) wakes the others of the island when the next
+/// step begins; StepReport::bodies_asleep counts people of this rank.
+///
+/// Kinematic bodies with walls, such as doors, are on every rank, which all must add and move alike, as they do walls. Their
+/// contacts are on the ranks of the people who touch them.
+///
+/// What a region cannot have: joints, capsules, half-spaces, tolerances, budgets, the direct method, exact contacts, and discs that reach much further than most others, by size or by speed. Such a step is refused on all ranks.
 ///
 /// Calls that are marked collective must be made by all ranks, in the same order. Between steps each rank may change the
 /// forces, velocities and poses of its own people, as of any scene. MPI must be initialised with MPI_THREAD_SERIALIZED, or
@@ -91,7 +97,7 @@ class DistributedCrowd {
     /// written, and InvalidInput while people are contained.
     void save(const std::string& path);
     /// Collective: reads such a file, written by any number of ranks, into a crowd without people, whose walls are those of the
-    /// crowd that was saved. Throws std::runtime_error on all ranks for a file that cannot be read, is of other walls, is cut
+    /// crowd that was saved; kinematic bodies are where the host puts them. Throws std::runtime_error on all ranks for a file that cannot be read, is of other walls, is cut
     /// short or damaged, and InvalidInput for a crowd with people; then nothing is changed.
     void load(const std::string& path);
 
