@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <numbers>
 #include <optional>
@@ -305,6 +306,61 @@ TEST(SleepOnRanks, EndsOnAllRanksWhenSomebodyIsContained)
     ASSERT_EQ(seen.asleep.size(), 300U);
     EXPECT_EQ(seen.asleep[pushed_at - 2], 1200);
     EXPECT_LT(seen.asleep[pushed_at], 600);
+}
+
+/// Hosts do at random what they may do to people and walls; MOTLEY_FUZZ_ROUNDS in the environment does more of it.
+TEST(SleepOnRanks, IsThatOfOneProcessWhateverHostsDo)
+{
+    const char* const asked = std::getenv("MOTLEY_FUZZ_ROUNDS");
+    const auto rounds = static_cast<std::uint64_t>(asked == nullptr ? 4 : std::max(1, std::atoi(asked)));
+    for (std::uint64_t round = 1; round <= rounds; ++round) {
+        SCOPED_TRACE(round);
+        // A number of 0 to `below` - 1 that any rank finds for itself.
+        const auto random = [round](std::uint64_t what, std::uint64_t of, std::uint64_t below) {
+            return mix(mix(round, what), of) / 64 % below;
+        };
+        const Walkers walkers({.people = static_cast<int>(600 + random(1, 0, 1400)),
+                               .spacing = 0.39 + 0.005 * static_cast<double>(random(2, 0, 20)),
+                               .friction = random(3, 0, 2) == 0 ? 0.3F : 0.0F,
+                               .to_corner = random(4, 0, 3) == 0,
+                               .speed = 1 + static_cast<float>(random(5, 0, 3)),
+                               .walks_one_in = static_cast<int>(random(6, 0, 5) * 20)});
+        const auto happens = [&](std::uint64_t number, int step, std::uint64_t kind, std::uint64_t one_in) {
+            return random(100 * static_cast<std::uint64_t>(step) + kind, number, one_in) == 0;
+        };
+        // Busy times and quiet ones take turns.
+        const auto is_busy = [](int step) { return step / 40 % 2 == 1; };
+        const Host host{
+            .acts =
+                [&](Scene& scene, std::span<const OwnPerson> all, int step) {
+                    if (!is_busy(step)) return;
+                    if (happens(0, step, 10, 30)) {
+                        const double x = walkers.width / 8 *
+                                         static_cast<double>(random(11, static_cast<std::uint64_t>(step), 8));
+                        const std::vector<Vec2<double>> wall{{x, 0.3 * walkers.height},
+                                                             {x, 0.4 * walkers.height}};
+                        scene.add_wall({.points = wall});
+                    }
+                    for (const OwnPerson& person : all) {
+                        const BodyState state = scene.state(person.body);
+                        if (happens(person.number, step, 20, 4000)) scene.wake(person.body);
+                        if (happens(person.number, step, 21, 2000))
+                            scene.set_velocity(person.body, {2, 1, 0}, {0, 0, 1});
+                        if (happens(person.number, step, 22, 2000))
+                            scene.set_force(person.body, {300, -200, 0}, {});
+                        if (happens(person.number, step, 23, 4000))
+                            scene.set_pose(person.body, state.position + Vec3<double>{0.03, 0.3, 0},
+                                           state.orientation, state.yaw);
+                        if (happens(person.number, step, 24, 8000))
+                            scene.set_disc(person.body, {.radius = 0.23F, .friction = 0.2F});
+                    }
+                },
+            .removes = [&](std::uint64_t number,
+                           int step) { return is_busy(step) && happens(number, step, 25, 8000); }};
+        expect_the_sleep_of_one_process(
+            walkers, 320, {.threads = 1 + static_cast<int>(random(7, 0, 2)), .alone_below = 0}, host);
+        if (::testing::Test::HasFailure()) return;
+    }
 }
 
 /// A run goes on from a checkpoint in which most sleep, on fewer ranks too, and with the same sleepers.

@@ -199,6 +199,11 @@ struct DiscStore {
     {
         return row < anchors.size() && anchors[row].skin == removed_skin;
     }
+    /// Whether the impulses of the body in a row must not be used again.
+    [[nodiscard]] bool is_forgotten_row(std::size_t row) const
+    {
+        return row < anchors.size() && anchors[row].skin < 0;
+    }
     /// When a body was removed or teleported: its impulses must not be used again.
     void forget_row(std::uint32_t row);
     /// When the rows of planar bodies are renumbered: row i is now new_rows[i]. The second one leaves out what is kept by

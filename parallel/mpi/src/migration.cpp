@@ -89,8 +89,22 @@ std::vector<Record> Region::exchange(const std::vector<std::vector<Record>>& out
     return coming;
 }
 
+/// Copies are forgotten like those whom they are copies of: hosts teleport and remove people of their own rank only.
 void Region::leave_copies_out(SceneCore& scene)
 {
+    const Stopwatch watch(figures.seconds_agreeing);
+    std::vector<std::uint8_t> outgoing, incoming(above_.people.size());
+    for (const BodyId body : below_.people) {
+        const bool is_here =
+            scene.bodies.is_alive(body) && !scene.discs.is_forgotten_row(scene.bodies.row_of(body).row());
+        outgoing.push_back(is_here ? 0 : 1);
+    }
+    MPI_Sendrecv(outgoing.data(), static_cast<int>(outgoing.size()), MPI_BYTE, below_.rank, forgotten_tag,
+                 incoming.data(), static_cast<int>(incoming.size()), MPI_BYTE, above_.rank, forgotten_tag,
+                 comm_, MPI_STATUS_IGNORE);
+    is_forgotten_.assign(scene.bodies.rows(BodyKind::planar).size(), 0);
+    for (std::size_t i = 0; i < incoming.size(); ++i)
+        is_forgotten_[scene.bodies.row_of(above_.people[i]).row()] = incoming[i];
     for (const BodyId body : above_.people) scene.discs.set_shape(body.slot, {});
 }
 
@@ -151,6 +165,7 @@ std::vector<std::vector<ImpulseRecord>> Region::take_out_impulses(const SceneCor
     };
     carried.take_out([&](std::uint32_t row, std::uint32_t other, bool is_wall,
                          const CarriedImpulses::Impulse& impulse) {
+        if (is_forgotten_[row] != 0 || (!is_wall && is_forgotten_[other] != 0)) return true;
         const int finder = owners_[is_wall ? strip_of_[row] : std::min(strip_of_[row], strip_of_[other])];
         if (finder == rank_ && stays(row) && (is_wall || stays(other))) return false;
         records[static_cast<std::size_t>(finder)].push_back(record_of(scene, row, other, is_wall, impulse));

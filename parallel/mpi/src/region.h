@@ -67,7 +67,15 @@ class Region final : public RegionLink {
     void take_velocities(float* velocities, std::size_t parity) override;
 
   private:
-    enum Tag { states_tag = 1, pushed_tag, velocities_tag, loads_tag, slowness_tag, islands_tag };
+    enum Tag {
+        states_tag = 1,
+        pushed_tag,
+        velocities_tag,
+        loads_tag,
+        slowness_tag,
+        islands_tag,
+        forgotten_tag
+    };
     static constexpr int nobody = MPI_PROC_NULL;
     /// A border: with the region above, its people are copies here; with the region below, people here have copies there.
     struct Border {
@@ -82,9 +90,10 @@ class Region final : public RegionLink {
     int rank_ = 0, ranks_ = 1;
     std::size_t first_ = 1, last_ = 1;
     std::vector<std::size_t> starts_;  ///< by rank: its first band; one more at the end
-    std::vector<int> owners_,
-        copiers_;  ///< by strip: whose it is, and who has copies of its people, or nobody
-    std::vector<std::size_t> strip_of_;  ///< by row, while people move
+    /// By strip: whose it is, and who has copies of its people, or nobody.
+    std::vector<int> owners_, copiers_;
+    std::vector<std::size_t> strip_of_;       ///< by row, while people move
+    std::vector<std::uint8_t> is_forgotten_;  ///< by row, of copies: see DiscStore::is_forgotten_row
     Border above_, below_;
     bool is_dealt_anew_ = false;
     std::vector<ImpulseRecord> waiting_impulses_;  ///< from a checkpoint, for the first search
@@ -95,12 +104,13 @@ class Region final : public RegionLink {
 
     // Sleep: an island is named by the smallest number of its people.
     bool anybody_sleeps_ = false;
-    std::vector<std::uint8_t>
-        was_asleep_;  ///< by slot, copies included: until all ranks know that its island woke
-    std::vector<std::uint64_t> island_of_;  ///< by slot, of those
-    std::size_t sleepers_ = 0;              ///< how many of them sleep still, unless somebody has woken since
+    /// By slot, copies included: whether the body slept when all ranks last told each other who has woken...
+    std::vector<std::uint8_t> was_asleep_;
+    std::vector<std::uint64_t> island_of_;  ///< ...and in which island
+    std::size_t sleepers_ = 0;              ///< how many of them sleep, unless somebody has woken since
     std::vector<std::uint64_t> woken_, woken_everywhere_;  ///< islands
-    struct Part {                                          ///< of an island, as one rank knows it
+    /// Of an island, as one rank knows it.
+    struct Part {
         std::uint64_t island = UINT64_MAX, is_restless = 0;
     };
 

@@ -19,7 +19,6 @@ void CarriedImpulses::begin(const SceneCore& scene)
 template <class Work>
 void CarriedImpulses::for_each_kept(const DiscStore& discs, std::size_t band, const Work& work)
 {
-    const auto is_forgotten = [&](std::uint32_t row) { return discs.anchors[row].skin < 0; };
     for_each_disc_blocks(discs.bands[band], [&](auto c, const DiscBlocks& blocks) {
         using Fields = DiscFieldsOf<c.value>;
         const bool rests = &blocks == &discs.bands[band].resting[static_cast<std::size_t>(c.value)];
@@ -37,7 +36,7 @@ void CarriedImpulses::for_each_kept(const DiscStore& discs, std::size_t band, co
                 if (!std::isfinite(impulse.normal) || !std::isfinite(impulse.tangent)) impulse = {};
                 constexpr std::int32_t a_row = offsets_a_row(BodyKind::planar);
                 const auto b = static_cast<std::uint32_t>(blocks.bodies[block].b[lane] / a_row);
-                if (is_forgotten(b)) continue;
+                if (discs.is_forgotten_row(b)) continue;
                 if constexpr (is_wall(c.value)) {
                     const WallTouch& touch = blocks.touches[block_lanes * block + lane];
                     if (touch.segment == UINT32_MAX) continue;
@@ -45,7 +44,7 @@ void CarriedImpulses::for_each_kept(const DiscStore& discs, std::size_t band, co
                     work(b, wall_bit | touch.segment, impulse);
                 } else {
                     const auto a = static_cast<std::uint32_t>(blocks.bodies[block].a[lane] / a_row);
-                    if ((impulse.normal > 0 || impulse.step_normal > 0) && !is_forgotten(a))
+                    if ((impulse.normal > 0 || impulse.step_normal > 0) && !discs.is_forgotten_row(a))
                         work(a, b, impulse);
                 }
             }

@@ -53,7 +53,8 @@ struct DistributedFigures {
 /// Kinematic bodies with walls, such as doors, are on every rank, which all must add and move alike, as they do walls. Their
 /// contacts are on the ranks of the people who touch them.
 ///
-/// What a region cannot have: joints, capsules, half-spaces, tolerances, budgets, the direct method, exact contacts, and discs that reach much further than most others, by size or by speed. Such a step is refused on all ranks.
+/// What a region cannot have: joints, capsules, half-spaces, tolerances, budgets, the direct method, exact contacts, and discs
+/// that reach much further than most others, by size or by speed. Such a step is refused on all ranks.
 ///
 /// Calls that are marked collective must be made by all ranks, in the same order. Between steps each rank may change the
 /// forces, velocities and poses of its own people, as of any scene. MPI must be initialised with MPI_THREAD_SERIALIZED, or
@@ -97,8 +98,9 @@ class DistributedCrowd {
     /// written, and InvalidInput while people are contained.
     void save(const std::string& path);
     /// Collective: reads such a file, written by any number of ranks, into a crowd without people, whose walls are those of the
-    /// crowd that was saved; kinematic bodies are where the host puts them. Throws std::runtime_error on all ranks for a file that cannot be read, is of other walls, is cut
-    /// short or damaged, and InvalidInput for a crowd with people; then nothing is changed.
+    /// crowd that was saved; kinematic bodies are where the host puts them. Throws std::runtime_error on all ranks for a file
+    /// that cannot be read, is of other walls, is cut short or damaged, and InvalidInput for a crowd with people; then nothing
+    /// is changed.
     void load(const std::string& path);
 
     /// Collective: what contacts put on the people of this rank in the last step, in the order of people(); also those with people
