@@ -82,8 +82,10 @@ void SleepPipeline::keep_loads(SceneCore& scene)
 void SleepPipeline::fall_asleep(const Step& step)
 {
     if (step.settings.sleep_speed == 0) return;
-    // Of bodies that this step has contained.
-    if (region != nullptr) region->spread_waking(step.scene);
+    if (region != nullptr) {
+        make_room(step.scene);              // people may have come since the step began
+        region->spread_waking(step.scene);  // of bodies that this step has contained
+    }
     std::int32_t& pause = step.scene.sleep.pause;
     if (pause > 0) --pause;
     bool is_any = is_any_slow_for_long(step);
