@@ -96,9 +96,10 @@ bool DiscPipeline::do_all_rest(const SceneCore& scene) const
 {
     if (region != nullptr && !region->anybody_sleeps()) return false;
     const Array<std::uint32_t>& awake = scene.bodies.rows(BodyKind::planar).awake;
-    const bool do_here = !scene.discs.is_stale && std::all_of(awake.begin(), awake.end(),
-                                                              [](std::uint32_t count) { return count == 0; });
-    return region == nullptr ? do_here : region->is_so_everywhere(do_here);
+    const bool all_rest_here =
+        !scene.discs.is_stale &&
+        std::all_of(awake.begin(), awake.end(), [](std::uint32_t count) { return count == 0; });
+    return region == nullptr ? all_rest_here : region->is_so_everywhere(all_rest_here);
 }
 
 void DiscPipeline::divide(SceneCore& scene)

@@ -61,6 +61,7 @@ class RegionLink {
     virtual void agree(float& reach, float& drift, double& room) = 0;
     /// Whether something is so in all regions.
     virtual bool is_so_everywhere(bool here) = 0;
+    bool is_so_anywhere(bool here) { return !is_so_everywhere(!here); }
     /// Refuses the step in all regions, if any of them counted something.
     virtual void refuse_everywhere(const char* what, std::int64_t count, const char* valid) = 0;
     /// A search of all discs begins: copies are left out of what follows, until people have moved.

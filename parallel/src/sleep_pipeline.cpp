@@ -90,7 +90,7 @@ void SleepPipeline::fall_asleep(const Step& step)
     if (pause > 0) --pause;
     bool is_any = is_any_slow_for_long(step);
     if (pause > 0) return;
-    if (region != nullptr) is_any = !region->is_so_everywhere(!is_any);
+    if (region != nullptr) is_any = region->is_so_anywhere(is_any);
     if (!is_any) return;
     pause = steps_between_searches;
     if (region != nullptr) region->renew_slowness(step.scene);
@@ -138,8 +138,8 @@ void SleepPipeline::tie(const Step& step, BodyRow a, BodyRow b)
     if (a_is_slow || b_is_slow) restless_[islands_.number(a_is_slow ? a : b)] = 1;
 }
 
-/// Of bodies that do not push each other. A sleeper keeps nobody awake: it does not move, and it has not been touched, or it
-/// would have woken.
+/// The same of bodies that are near each other but do not push. A sleeper does not keep the other one
+/// awake: it does not move, and nobody has touched it, or it would have woken.
 void SleepPipeline::tie_near(const Step& step, BodyRow a, BodyRow b)
 {
     const BodyStore& bodies = step.scene.bodies;
@@ -228,8 +228,8 @@ void SleepPipeline::find_islands(const Step& step)
     }
 }
 
-/// Candidates whose island is not restless fall asleep, each island as a ring. In a region each of them is a ring: the region
-/// knows the islands.
+/// Candidates whose island is not restless fall asleep, each island as a ring. In a region of a larger crowd each of them
+/// is a ring of its own, because RegionLink wakes islands by their names.
 void SleepPipeline::put_to_sleep(const Step& step)
 {
     SceneCore& scene = step.scene;

@@ -27,7 +27,7 @@ void SleepPipeline::wake(const Step& step)
     wake_roused(scene);
     wake_beside_moving_bodies(step);
     wake_for_contacts(step);
-    // First of those whom hosts have woken, so that copies of them may touch others; then of the others.
+    // Whom hosts have woken must be awake in all regions before others are looked for whom they may touch.
     if (region != nullptr) region->spread_waking(scene);
     wake_for_discs(step);
     if (region != nullptr) region->spread_waking(scene);

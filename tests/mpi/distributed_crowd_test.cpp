@@ -12,7 +12,6 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <thread>
 
@@ -41,6 +40,23 @@ std::vector<std::uint64_t> hashes_of_one_process(const Walkers& walkers, const S
     return hashes;
 }
 
+/// Steps the crowd, after change(step) each time, and compares it after every `every` steps.
+template <class Change>
+void expect_hashes(DistributedCrowd& crowd, const Walkers& walkers, std::span<const std::uint64_t> expected,
+                   int every, const Change& change)
+{
+    const int steps = static_cast<int>(expected.size()) * every;
+    for (int step = 1; step <= steps; ++step) {
+        change(step);
+        walkers.steer(crowd.scene(), crowd.people());
+        const StepReport report = crowd.step(dt);
+        ASSERT_EQ(report.status, StepStatus::done) << report.error;
+        if (step % every == 0) {
+            ASSERT_EQ(crowd.hash(), expected[static_cast<std::size_t>(step / every - 1)]) << "step " << step;
+        }
+    }
+}
+
 struct Case {
     WalkersOptions walkers{};
     SolverSettings settings{};
@@ -56,14 +72,7 @@ void expect_the_bits_of_one_process(const Case& c)
         hashes_of_one_process(walkers, c.settings, c.steps, every, [](WalkersOnOneScene&, int) {});
     DistributedCrowd crowd(MPI_COMM_WORLD, c.settings, c.options);
     add_all(crowd, walkers);
-    for (int step = 1; step <= c.steps; ++step) {
-        walkers.steer(crowd.scene(), crowd.people());
-        const StepReport report = crowd.step(dt);
-        ASSERT_EQ(report.status, StepStatus::done) << report.error;
-        if (step % every == 0) {
-            ASSERT_EQ(crowd.hash(), expected[static_cast<std::size_t>(step / every - 1)]) << "step " << step;
-        }
-    }
+    expect_hashes(crowd, walkers, expected, every, [](int) {});
     const DistributedFigures figures = crowd.figures();
     EXPECT_EQ(sum(figures.people), c.walkers.people);
     if (ranks() > 1 && c.walkers.people > 1000) {
@@ -177,15 +186,10 @@ TEST(DistributedCrowd, HasThemWhenPeopleComeAndGo)
         });
     DistributedCrowd crowd(MPI_COMM_WORLD);
     add_all(crowd, walkers);
-    for (int step = 1; step <= steps; ++step) {
+    expect_hashes(crowd, walkers, expected, every, [&](int step) {
         change(crowd.scene(), crowd.people(), step,
                [&](const std::vector<std::uint64_t>& gone) { crowd.remove_people(gone); });
-        walkers.steer(crowd.scene(), crowd.people());
-        ASSERT_EQ(crowd.step(dt).status, StepStatus::done);
-        if (step % every == 0) {
-            ASSERT_EQ(crowd.hash(), expected[static_cast<std::size_t>(step / every - 1)]) << "step " << step;
-        }
-    }
+    });
     EXPECT_LT(sum(crowd.figures().people), 2400);
 }
 
@@ -202,14 +206,7 @@ TEST(DistributedCrowd, HasThemBesideADoorThatMoves)
     DistributedCrowd crowd(MPI_COMM_WORLD);
     add_all(crowd, walkers);
     const Door door(crowd.scene(), walkers);
-    for (int step = 1; step <= steps; ++step) {
-        door.move(crowd.scene(), step);
-        walkers.steer(crowd.scene(), crowd.people());
-        ASSERT_EQ(crowd.step(dt).status, StepStatus::done);
-        if (step % every == 0) {
-            ASSERT_EQ(crowd.hash(), expected[static_cast<std::size_t>(step / every - 1)]) << "step " << step;
-        }
-    }
+    expect_hashes(crowd, walkers, expected, every, [&](int step) { door.move(crowd.scene(), step); });
 }
 
 /// Pressures at a border are those of one process, bit for bit, and forces of all contacts add up to what people gained.
@@ -221,16 +218,9 @@ TEST(DistributedCrowd, ReadsTheLoadsOfOneProcess)
     if (rank() == 0) {
         WalkersOnOneScene one(walkers, {}, {});
         for (int step = 0; step < steps; ++step) one.step(dt);
-        std::vector<BodyId> ids;
-        std::vector<float> circumferences;
-        for (const OwnPerson& person : one.people) {
-            ids.push_back(person.body);
-            circumferences.push_back(2 * std::numbers::pi_v<float> * walkers.discs[person.number].radius);
-        }
-        one.scene.read_loads(ids, {}, std::span<BodyLoad>(expected), std::span<const float>(circumferences));
+        expected = one.read_loads();
     }
-    MPI_Bcast(expected.data(), static_cast<int>(sizeof(BodyLoad) * expected.size()), MPI_BYTE, 0,
-              MPI_COMM_WORLD);
+    send_to_all(expected);
     DistributedCrowd crowd(MPI_COMM_WORLD);
     add_all(crowd, walkers);
     for (int step = 0; step < steps; ++step) {
@@ -242,11 +232,7 @@ TEST(DistributedCrowd, ReadsTheLoadsOfOneProcess)
     float most = 0;
     for (std::size_t i = 0; i < loads.size(); ++i) {
         const BodyLoad& load = expected[crowd.people()[i].number];
-        EXPECT_EQ(loads[i].normal_force, load.normal_force);
-        EXPECT_EQ(loads[i].largest_normal_force, load.largest_normal_force);
-        EXPECT_EQ(loads[i].net_force.x, load.net_force.x);
-        EXPECT_EQ(loads[i].net_force.y, load.net_force.y);
-        EXPECT_EQ(loads[i].pressure, load.pressure);
+        expect_same(loads[i], load);
         most = std::max(most, load.pressure);
     }
     MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_FLOAT, MPI_MAX, MPI_COMM_WORLD);

@@ -1,6 +1,7 @@
 // What the tests of crowds on several ranks share.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <mpi.h>
 
 #include <cstdint>
@@ -38,6 +39,21 @@ inline void add_all(DistributedCrowd& crowd, const Walkers& walkers)
         if (static_cast<int>(i * 7919 % 101) % ranks() != rank()) continue;
         crowd.add_people({&walkers.numbers[i], 1}, {&walkers.bodies[i], 1}, {&walkers.discs[i], 1});
     }
+}
+
+/// Every rank gets the loads that rank 0 has.
+inline void send_to_all(std::vector<BodyLoad>& loads)
+{
+    MPI_Bcast(loads.data(), static_cast<int>(sizeof(BodyLoad) * loads.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
+}
+
+inline void expect_same(const BodyLoad& load, const BodyLoad& expected)
+{
+    EXPECT_EQ(load.normal_force, expected.normal_force);
+    EXPECT_EQ(load.largest_normal_force, expected.largest_normal_force);
+    EXPECT_EQ(load.net_force.x, expected.net_force.x);
+    EXPECT_EQ(load.net_force.y, expected.net_force.y);
+    EXPECT_EQ(load.pressure, expected.pressure);
 }
 
 /// A wall across the middle of the hall that goes to and fro and turns: on a kinematic body, which every rank has and moves

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <unordered_set>
@@ -55,12 +54,11 @@ struct Host {
 };
 
 /// The crowd after every step in one process, computed by rank 0 for all.
-std::vector<Snapshot> steps_of_one_process(const Walkers& walkers, const SolverSettings& settings, int steps,
-                                           const Host& host)
+std::vector<Snapshot> steps_of_one_process(const Walkers& walkers, int steps, const Host& host)
 {
     std::vector<Snapshot> all(static_cast<std::size_t>(steps));
     if (rank() == 0) {
-        WalkersOnOneScene one(walkers, settings, {});
+        WalkersOnOneScene one(walkers, sleeping, {});
         for (int step = 1; step <= steps; ++step) {
             for (const std::uint64_t number : host.removed(one.people, step)) one.remove(number);
             walkers.steer(one.scene, one.people);
@@ -87,7 +85,7 @@ struct Seen {
 Seen expect_the_sleep_of_one_process(const Walkers& walkers, int steps, const SolverOptions& options = {},
                                      const Host& host = {})
 {
-    const std::vector<Snapshot> expected = steps_of_one_process(walkers, sleeping, steps, host);
+    const std::vector<Snapshot> expected = steps_of_one_process(walkers, steps, host);
     DistributedCrowd crowd(MPI_COMM_WORLD, sleeping, options);
     add_all(crowd, walkers);
     Seen seen;
@@ -141,7 +139,7 @@ TEST(SleepOnRanks, GoesOnWhenSleepersMoveToOtherRanks)
     }
 }
 
-/// One island over all ranks, which each call of a host on one of them wakes: a wake-up, a speed, a push, a person who is
+/// An island over all ranks, which each call of a host on one of them wakes: a wake-up, a speed, a push, a person who is
 /// put elsewhere, one who is removed, and a wall.
 TEST(SleepOnRanks, EndsOnAllRanksWhenAHostWakesOnePerson)
 {
@@ -202,7 +200,7 @@ TEST(SleepOnRanks, EndsOnAllRanksForWhoIsHit)
 TEST(SleepOnRanks, EndsOnAllRanksForADoorThatMoves)
 {
     const Walkers walkers({.people = 2000, .spacing = 0.42, .walks_one_in = 0});
-    // The last step that this host has seen makes a new scene known by going back.
+    // This host serves one scene after another: where steps begin anew, the scene is another one, and gets its own door.
     std::optional<Door> door;
     int last_step = 0;
     const Host host{.acts = [&](Scene& scene, std::span<const OwnPerson>, int step) {
@@ -240,16 +238,9 @@ TEST(SleepOnRanks, KeepsTheLoadsOfSleepers)
             }
             one.step(dt);
         }
-        std::vector<BodyId> ids;
-        std::vector<float> circumferences;
-        for (const OwnPerson& person : one.people) {
-            ids.push_back(person.body);
-            circumferences.push_back(2 * std::numbers::pi_v<float> * walkers.discs[person.number].radius);
-        }
-        one.scene.read_loads(ids, {}, std::span<BodyLoad>(expected), std::span<const float>(circumferences));
+        expected = one.read_loads();
     }
-    MPI_Bcast(expected.data(), static_cast<int>(sizeof(BodyLoad) * expected.size()), MPI_BYTE, 0,
-              MPI_COMM_WORLD);
+    send_to_all(expected);
     DistributedCrowd crowd(MPI_COMM_WORLD, sleeping);
     add_all(crowd, walkers);
     const auto stand = [&] {
@@ -266,8 +257,7 @@ TEST(SleepOnRanks, KeepsTheLoadsOfSleepers)
             crossed = sum(crowd.figures().crossings);
         }
         stand();
-        const StepReport report = crowd.step(dt);
-        ASSERT_EQ(report.status, StepStatus::done);
+        ASSERT_EQ(crowd.step(dt).status, StepStatus::done);
     }
     const std::vector<BodyLoad> loads = crowd.read_loads();
     std::int64_t bearing_asleep = 0;
@@ -275,11 +265,7 @@ TEST(SleepOnRanks, KeepsTheLoadsOfSleepers)
         const OwnPerson& person = crowd.people()[i];
         if (person.number >= expected.size()) continue;
         const BodyLoad& load = expected[person.number];
-        EXPECT_EQ(loads[i].normal_force, load.normal_force);
-        EXPECT_EQ(loads[i].largest_normal_force, load.largest_normal_force);
-        EXPECT_EQ(loads[i].net_force.x, load.net_force.x);
-        EXPECT_EQ(loads[i].net_force.y, load.net_force.y);
-        EXPECT_EQ(loads[i].pressure, load.pressure);
+        expect_same(loads[i], load);
         if (crowd.scene().is_asleep(person.body) && load.normal_force > 0) ++bearing_asleep;
     }
     EXPECT_GT(sum(bearing_asleep), 1000);
@@ -288,7 +274,7 @@ TEST(SleepOnRanks, KeepsTheLoadsOfSleepers)
     }
 }
 
-/// Somebody whom a force drives beyond the range of floats is contained, and wakes the island.
+/// A force on a sleeper wakes the island, and drives the sleeper beyond the range of floats, to be contained.
 TEST(SleepOnRanks, EndsOnAllRanksWhenSomebodyIsContained)
 {
     Walkers walkers({.people = 1200, .spacing = 0.395, .walks_one_in = 0});

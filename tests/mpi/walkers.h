@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -122,11 +123,24 @@ class WalkersOnOneScene {
         return solve(dt);
     }
     StepReport solve(float dt) { return solver_.step(scene, dt); }
+    /// What all bear, by number.
+    [[nodiscard]] std::vector<BodyLoad> read_loads() const
+    {
+        std::vector<BodyLoad> loads(people.size());
+        std::vector<BodyId> ids;
+        std::vector<float> circumferences;
+        for (const OwnPerson& person : people) {
+            ids.push_back(person.body);
+            circumferences.push_back(2 * std::numbers::pi_v<float> * walkers_.discs[person.number].radius);
+        }
+        scene.read_loads(ids, {}, std::span<BodyLoad>(loads), std::span<const float>(circumferences));
+        return loads;
+    }
+    /// `number` is that of somebody there.
     void remove(std::uint64_t number)
     {
         const auto person = std::find_if(people.begin(), people.end(),
                                          [&](const OwnPerson& p) { return p.number == number; });
-        if (person == people.end()) return;
         scene.remove_body(person->body);
         people.erase(person);
     }

@@ -44,20 +44,23 @@ static_assert(sizeof(CheckpointHead) == 104 && sizeof(ImpulseRecord) == 40);
 static_assert(sizeof(SavedPerson) == 4 * sizeof(PoseReal) + 112);
 
 template <class Record>
-std::uint64_t check_of(std::span<const Record> records)
+std::uint64_t hash_of_record(const Record& record)
+{
+    std::array<std::uint64_t, sizeof(Record) / 8> words;
+    std::memcpy(words.data(), &record, sizeof record);
+    return hash_bytes(0, words.data(), words.size());
+}
+template <class Record>
+std::uint64_t check_of(const std::vector<Record>& records)
 {
     std::uint64_t sum = 0;
-    for (const Record& record : records) {
-        std::array<std::uint64_t, sizeof(Record) / 8> words;
-        std::memcpy(words.data(), &record, sizeof record);
-        sum += hash_bytes(0, words.data(), words.size());
-    }
+    for (const Record& record : records) sum += hash_of_record(record);
     return sum;
 }
 std::uint64_t check_of(CheckpointHead head)
 {
     head.check = 0;
-    return check_of(std::span<const CheckpointHead>(&head, 1));
+    return hash_of_record(head);
 }
 std::uint64_t hash_of_walls(const SceneCore& scene)
 {
@@ -92,7 +95,7 @@ bool is_fit(const PersonRecord& person)
                    person.sleep <= static_cast<std::uint32_t>(Sleep::roused) && person.is_copy == 0;
     for (const float value : state.velocity) is_good = is_good && is_within(value, -1e30, 1e30);
     for (const float value : state.acceleration) is_good = is_good && is_within(value, -1e38, 1e38);
-    for (const float value : person.then) is_good = is_good && is_within(value, -1e38, 1e38);
+    for (const float value : person.sleeper_acceleration) is_good = is_good && is_within(value, -1e38, 1e38);
     return is_good;
 }
 
@@ -143,9 +146,7 @@ void Region::save(const std::string& path)
     for (SavedPerson& person : saved) person.first_impulse += before[1];
 
     CheckpointHead head;
-    std::array<std::uint64_t, 3> sums{
-        own[0], own[1],
-        check_of(std::span<const SavedPerson>(saved)) + check_of(std::span<const ImpulseRecord>(impulses))};
+    std::array<std::uint64_t, 3> sums{own[0], own[1], check_of(saved) + check_of(impulses)};
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_UINT64_T, MPI_SUM, comm_);
     head.people = sums[0];
     head.impulses = sums[1];
@@ -208,8 +209,7 @@ void Region::load(const std::string& path)
     std::vector<ImpulseRecord> impulses(static_cast<std::size_t>(last_impulse - first_impulse));
     file.read(sizeof head + head.people * sizeof(SavedPerson) + first_impulse * sizeof(ImpulseRecord),
               std::span<ImpulseRecord>(impulses));
-    std::uint64_t check =
-        check_of(std::span<const SavedPerson>(saved)) + check_of(std::span<const ImpulseRecord>(impulses));
+    std::uint64_t check = check_of(saved) + check_of(impulses);
     MPI_Allreduce(MPI_IN_PLACE, &check, 1, MPI_UINT64_T, MPI_SUM, comm_);
     file.require(check + check_of(head) == head.check, "damaged: its checksum is wrong");
 

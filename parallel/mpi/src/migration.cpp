@@ -99,9 +99,7 @@ void Region::leave_copies_out(SceneCore& scene)
             scene.bodies.is_alive(body) && !scene.discs.is_forgotten_row(scene.bodies.row_of(body).row());
         outgoing.push_back(is_here ? 0 : 1);
     }
-    MPI_Sendrecv(outgoing.data(), static_cast<int>(outgoing.size()), MPI_BYTE, below_.rank, forgotten_tag,
-                 incoming.data(), static_cast<int>(incoming.size()), MPI_BYTE, above_.rank, forgotten_tag,
-                 comm_, MPI_STATUS_IGNORE);
+    pass(below_, outgoing, above_, incoming, forgotten_tag);
     is_forgotten_.assign(scene.bodies.rows(BodyKind::planar).size(), 0);
     for (std::size_t i = 0; i < incoming.size(); ++i)
         is_forgotten_[scene.bodies.row_of(above_.people[i]).row()] = incoming[i];

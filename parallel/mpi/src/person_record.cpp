@@ -48,7 +48,8 @@ PersonRecord read_person(const SceneCore& scene, std::uint32_t slot)
     person.slow_for = scene.bodies.slow_for[slot];
     person.sleep = static_cast<std::uint32_t>(scene.bodies.sleep[slot]);
     if (scene.bodies.is_asleep(slot))
-        std::copy_n(scene.sleep.sleepers[slot].acceleration.begin(), person.then.size(), person.then.begin());
+        std::copy_n(scene.sleep.sleepers[slot].acceleration.begin(), person.sleeper_acceleration.size(),
+                    person.sleeper_acceleration.begin());
     return person;
 }
 
@@ -64,7 +65,8 @@ void write_person(SceneCore& scene, std::uint32_t slot, const PersonRecord& pers
         scene.bodies.fall_asleep(slot);
         scene.bodies.sleep[slot] = static_cast<Sleep>(person.sleep);
         scene.sleep.sleepers[slot].next = slot;
-        std::copy(person.then.begin(), person.then.end(), scene.sleep.sleepers[slot].acceleration.begin());
+        std::copy(person.sleeper_acceleration.begin(), person.sleeper_acceleration.end(),
+                  scene.sleep.sleepers[slot].acceleration.begin());
     }
     // After that, because a sleeper may have been given a speed for when it wakes.
     write_state(scene, slot, person.state);

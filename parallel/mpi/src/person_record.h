@@ -23,9 +23,9 @@ struct PersonRecord {
     float inverse_mass = 0, inverse_inertia = 0;
     DiscShape shape;
     std::uint64_t user_data = 0;
-    float slow_for = 0;           ///< s: BodyStore::slow_for
-    std::array<float, 3> then{};  ///< Sleeper::acceleration, of who sleeps
-    std::uint32_t sleep = 0;      ///< a Sleep
+    float slow_for = 0;                           ///< s: BodyStore::slow_for
+    std::array<float, 3> sleeper_acceleration{};  ///< Sleeper::acceleration; 0 of who is awake
+    std::uint32_t sleep = 0;                      ///< a Sleep
     std::uint32_t is_copy = 0;
     std::uint64_t island = 0;  ///< of who sleeps: see Region
 };

@@ -39,9 +39,6 @@ void Region::renew_copies(SceneCore& scene)
 {
     has_spoken_ = true;
     const Stopwatch watch(figures.seconds_agreeing);
-    const auto bytes_of = [](const std::vector<PersonState>& states) {
-        return static_cast<int>(states.size() * sizeof(PersonState));
-    };
     // Copies of people who were removed since go where they touch nobody, until everybody searches in this step.
     PersonState removed;
     removed.pose.position.x = static_cast<PoseReal>(1e15);
@@ -51,13 +48,11 @@ void Region::renew_copies(SceneCore& scene)
             outgoing_states_[i] = read_state(scene, below_.people[i].slot);
     }
     incoming_states_.resize(above_.people.size());
-    MPI_Sendrecv(outgoing_states_.data(), bytes_of(outgoing_states_), MPI_BYTE, below_.rank, states_tag,
-                 incoming_states_.data(), bytes_of(incoming_states_), MPI_BYTE, above_.rank, states_tag,
-                 comm_, MPI_STATUS_IGNORE);
+    pass(below_, outgoing_states_, above_, incoming_states_, states_tag);
     for (std::size_t i = 0; i < above_.people.size(); ++i)
         write_state(scene, above_.people[i].slot, incoming_states_[i]);
     if (below_.rank != nobody) ++figures.messages;
-    figures.bytes += bytes_of(outgoing_states_);
+    figures.bytes += static_cast<std::int64_t>(sizeof(PersonState) * outgoing_states_.size());
     // Rows may have been sorted since the last step.
     find_rows(scene, above_);
     find_rows(scene, below_);
@@ -204,9 +199,7 @@ void Region::bear_from_below(const SceneCore& scene, std::span<Borne> borne)
         const BodyId body = above_.people[index];
         outgoing.push_back(scene.bodies.is_alive(body) ? here[body.slot] : Borne{});
     }
-    MPI_Sendrecv(outgoing.data(), static_cast<int>(outgoing.size() * sizeof(Borne)), MPI_BYTE, above_.rank,
-                 loads_tag, incoming.data(), static_cast<int>(incoming.size() * sizeof(Borne)), MPI_BYTE,
-                 below_.rank, loads_tag, comm_, MPI_STATUS_IGNORE);
+    pass(above_, outgoing, below_, incoming, loads_tag);
     for (std::size_t i = 0; i < incoming.size() && below_.rank != nobody; ++i) {
         const BodyId body = below_.people[below_.pushed[i]];
         if (scene.bodies.is_alive(body)) borne[body.slot] = incoming[i];

@@ -130,8 +130,19 @@ class Region final : public RegionLink {
     void remove_those_who_go(SceneCore& scene);
     [[nodiscard]] PersonRecord read(const SceneCore& scene, std::uint32_t slot) const;
     void list_woken(const SceneCore& scene);
-    static bool exchange_parts(const SceneCore& scene, const Border& to, const Border& from,
-                               const BodySets& islands, std::vector<Part>& parts, MPI_Comm comm);
+    bool exchange_parts(const SceneCore& scene, const Border& to, const Border& from, const BodySets& islands,
+                        std::vector<Part>& parts) const;
+    /// The slots of which was_asleep_ knows something are those below.
+    [[nodiscard]] std::uint32_t known_slots(const SceneCore& scene) const;
+    /// Sends records across one border, and takes those that come across the other one, of which the number is known.
+    template <class Record>
+    void pass(const Border& to, const std::vector<Record>& outgoing, const Border& from,
+              std::vector<Record>& incoming, Tag tag) const
+    {
+        MPI_Sendrecv(outgoing.data(), static_cast<int>(sizeof(Record) * outgoing.size()), MPI_BYTE, to.rank,
+                     tag, incoming.data(), static_cast<int>(sizeof(Record) * incoming.size()), MPI_BYTE,
+                     from.rank, tag, comm_, MPI_STATUS_IGNORE);
+    }
     void list_copies_pushed(const SceneCore& scene);
     static void find_rows(const SceneCore& scene, Border& border);
     void send(Border& border, const float* velocities);

@@ -1,5 +1,5 @@
-// See region.h: sleep. An island is named by the smallest number of its people. Every rank knows the islands of its sleepers and
-// of their copies, so that what wakes on one rank wakes on all by its name.
+// See region.h: sleep. An island is named by the smallest number of its people. Every rank knows the islands of those who
+// sleep there, copies included, so that what wakes on one rank wakes on all by its name.
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -24,13 +24,18 @@ std::int64_t Region::people_asleep(const SceneCore& scene) const
                          [&](const BodyId copy) { return scene.bodies.is_asleep(copy.slot); });
 }
 
+std::uint32_t Region::known_slots(const SceneCore& scene) const
+{
+    return std::min(static_cast<std::uint32_t>(was_asleep_.size()), scene.bodies.slot_count());
+}
+
 /// Lists the islands of those who slept and do so no more, and of those who were removed.
 void Region::list_woken(const SceneCore& scene)
 {
     woken_.clear();
     if (scene.bodies.sleepers == sleepers_) return;
-    const auto slots = std::min<std::size_t>(was_asleep_.size(), scene.bodies.slot_count());
-    for (std::uint32_t slot = 1; slot < slots; ++slot) {
+    sleepers_ = scene.bodies.sleepers;
+    for (std::uint32_t slot = 1; slot < known_slots(scene); ++slot) {
         if (was_asleep_[slot] == 0 || scene.bodies.is_asleep(slot)) continue;
         was_asleep_[slot] = 0;
         woken_.push_back(island_of_[slot]);
@@ -56,13 +61,11 @@ void Region::spread_waking(SceneCore& scene)
                    [](const std::array<int, 2>& of) { return of[0]; });
     std::exclusive_scan(counts.begin(), counts.end(), places.begin(), 0);
     woken_everywhere_.resize(static_cast<std::size_t>(places.back() + counts.back()));
-    sleepers_ = scene.bodies.sleepers;
     if (woken_everywhere_.empty()) return;
     MPI_Allgatherv(woken_.data(), own[0], MPI_UINT64_T, woken_everywhere_.data(), counts.data(),
                    places.data(), MPI_UINT64_T, comm_);
     std::sort(woken_everywhere_.begin(), woken_everywhere_.end());
-    const auto slots = std::min<std::size_t>(was_asleep_.size(), scene.bodies.slot_count());
-    for (std::uint32_t slot = 1; slot < slots; ++slot) {
+    for (std::uint32_t slot = 1; slot < known_slots(scene); ++slot) {
         if (was_asleep_[slot] == 0 ||
             !std::binary_search(woken_everywhere_.begin(), woken_everywhere_.end(), island_of_[slot]))
             continue;
@@ -78,9 +81,7 @@ void Region::renew_slowness(SceneCore& scene)
     std::vector<float> outgoing, incoming(above_.people.size());
     for (const BodyId body : below_.people)
         outgoing.push_back(scene.bodies.is_alive(body) ? scene.bodies.slow_for[body.slot] : 0);
-    MPI_Sendrecv(outgoing.data(), static_cast<int>(outgoing.size()), MPI_FLOAT, below_.rank, slowness_tag,
-                 incoming.data(), static_cast<int>(incoming.size()), MPI_FLOAT, above_.rank, slowness_tag,
-                 comm_, MPI_STATUS_IGNORE);
+    pass(below_, outgoing, above_, incoming, slowness_tag);
     for (std::size_t i = 0; i < above_.people.size(); ++i)
         scene.bodies.slow_for[above_.people[i].slot] = incoming[i];
 }
@@ -88,7 +89,7 @@ void Region::renew_slowness(SceneCore& scene)
 /// Tells one neighbour, and hears from the other one, of which islands the people at the borders are, and joins the parts.
 /// Returns whether something was new.
 bool Region::exchange_parts(const SceneCore& scene, const Border& to, const Border& from,
-                            const BodySets& islands, std::vector<Part>& parts, MPI_Comm comm)
+                            const BodySets& islands, std::vector<Part>& parts) const
 {
     const auto part_of = [&](BodyId body) -> Part& {
         return parts[static_cast<std::size_t>(islands.root(scene.bodies.row_of(body)))];
@@ -96,9 +97,7 @@ bool Region::exchange_parts(const SceneCore& scene, const Border& to, const Bord
     std::vector<Part> outgoing, incoming(from.people.size());
     for (const BodyId body : to.people)
         outgoing.push_back(scene.bodies.is_alive(body) ? part_of(body) : Part{});
-    MPI_Sendrecv(outgoing.data(), static_cast<int>(sizeof(Part) * outgoing.size()), MPI_BYTE, to.rank,
-                 islands_tag, incoming.data(), static_cast<int>(sizeof(Part) * incoming.size()), MPI_BYTE,
-                 from.rank, islands_tag, comm, MPI_STATUS_IGNORE);
+    pass(to, outgoing, from, incoming, islands_tag);
     bool is_new = false;
     for (std::size_t i = 0; i < incoming.size(); ++i) {
         if (!scene.bodies.is_alive(from.people[i])) continue;
@@ -127,11 +126,11 @@ void Region::join_islands(const SceneCore& scene, const BodySets& islands, std::
         part.island = std::min(part.island, scene.discs.numbers[body.slot]);
         part.is_restless = restless[root_of(body)];
     });
-    // As often as an island goes to and fro between ranks.
+    // An island may cross borders several times: until no rank hears anything new.
     for (bool is_new = true; is_new;) {
-        const bool from_above = exchange_parts(scene, below_, above_, islands, parts, comm_);
-        const bool from_below = exchange_parts(scene, above_, below_, islands, parts, comm_);
-        is_new = !is_so_everywhere(!from_above && !from_below);
+        const bool from_above = exchange_parts(scene, below_, above_, islands, parts);
+        const bool from_below = exchange_parts(scene, above_, below_, islands, parts);
+        is_new = is_so_anywhere(from_above || from_below);
     }
     for_each_here([&](BodyId body) {
         restless[root_of(body)] = parts[root_of(body)].is_restless != 0 ? 1 : 0;
@@ -141,11 +140,10 @@ void Region::join_islands(const SceneCore& scene, const BodySets& islands, std::
 
 void Region::note_sleepers(const SceneCore& scene)
 {
-    const auto slots = std::min<std::size_t>(was_asleep_.size(), scene.bodies.slot_count());
-    for (std::uint32_t slot = 1; slot < slots; ++slot)
+    for (std::uint32_t slot = 1; slot < known_slots(scene); ++slot)
         was_asleep_[slot] = scene.bodies.is_asleep(slot) ? 1 : 0;
     sleepers_ = scene.bodies.sleepers;
-    anybody_sleeps_ = !is_so_everywhere(sleepers_ == 0);
+    anybody_sleeps_ = is_so_anywhere(sleepers_ > 0);
 }
 
 }  // namespace motley
