@@ -77,6 +77,9 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
             sweeper_.sweep(&ConstraintKernels::warm_start);
             if (plan.replays_warm_starts) layout_.context.replay = Replay::last_substep;
             break;
+        case Operation::lengthen_steps:
+            sweeper_.lengthen_steps_beside_touched_trees();
+            break;
         case Operation::solve_trees:
             sweeper_.solve_touched_trees(layout_.context.step.exact_rate);
             break;

@@ -344,6 +344,11 @@ void Sweeper::begin_touched_trees()
     for_each_touched_tree([](const FigureBlock& block) { begin_tree(block); });
 }
 
+void Sweeper::lengthen_steps_beside_touched_trees()
+{
+    for_each_touched_tree([](const FigureBlock& block) { lengthen_steps(block); });
+}
+
 void Sweeper::solve_touched_trees(float rate)
 {
     for_each_touched_tree([&](const FigureBlock& block) {

@@ -46,9 +46,11 @@ class Sweeper {
     void step_lone_figures(const Plan& plan);
     /// The contacts that they had in this step.
     [[nodiscard]] BatchSet::Count contacts_in_lockstep() const;
-    /// For the trees of figures that touch another moving body: prepare_tree(), begin_tree() and solve_tree() of each.
+    /// For the trees of figures that touch another moving body: prepare_tree(), begin_tree(), lengthen_steps() and
+    /// solve_tree() of each.
     void prepare_touched_trees();
     void begin_touched_trees();
+    void lengthen_steps_beside_touched_trees();
     void solve_touched_trees(float rate);
     /// ExactContacts::begin and solve of every island.
     void begin_islands(ExactContacts& contacts);

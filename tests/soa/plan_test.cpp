@@ -83,6 +83,7 @@ TEST(Plan, OfExactJointsWithAllThatAStepMayNeed)
               "    factor trees (first substep)\n"
               "    begin trees\n"
               "    warm start\n"
+              "    lengthen steps beside trees\n"
               "    solve trees\n"
               "    solve x 3\n"
               "    measure residuals (last substep)\n"

@@ -26,6 +26,7 @@
 #include "contract/type_list.h"
 #include "maths/lane_softness.h"
 #include "maths/limit.h"
+#include "maths/locked_point.h"
 #include "motley/core/constraints/drive_definition.h"
 #include "motley/core/invalid_input.h"
 #include "stores/if_needed.h"
@@ -38,6 +39,7 @@ struct Drive : ConstraintTraits {
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr bool slides = drive_axis == DriveAxis::slide;
     static constexpr bool has_torque = !slides;
+    static constexpr bool turns_about_points = !slides;
     static constexpr bool is_euler = drive_axis == DriveAxis::euler;
     /// Few joints have Euler angles.
     static constexpr bool is_rare = is_euler;
@@ -106,9 +108,9 @@ struct Drive : ConstraintTraits {
     struct SubstepRow {
         Vec3<Real> axis;  ///< x_a or t
         [[no_unique_address]] IfNeeded<slides, Levers<Real>> levers;
-        Real response, effective_mass;            ///< K s and its inverse
-        Real share;                               ///< s
-        Real value;                               ///< C
+        Real response, effective_mass;  ///< K s and its inverse, or by what lengthen_step() replaces it
+        Real share;                     ///< s
+        Real value;                     ///< C
         Real spring_effective_mass, spring_kept;  ///< see SoftRow
         Real start_speed;                         ///< of the rotor when the substep began
     };
@@ -245,6 +247,17 @@ struct Drive : ConstraintTraits {
     static void warm_start(const Row& row, const Substep& substep, const Impulse& impulse, A& a, B& b)
     {
         push(substep, to_bodies(row.in_sweep.armature, impulse), a, b);
+    }
+
+    /// Of the motor and the limit. A spring is soft by its response, and so is a joint with a rotor.
+    template <class Real, class Substep, class A, class B>
+    static void lengthen_step(Substep& substep, const A& a, const Vec3<Real>& arm_a, const B& b,
+                              const Vec3<Real>& arm_b)
+    {
+        const Real& alone = substep.effective_mass;
+        const Real longer = effective_mass_at_point(substep.response, substep.axis, a, arm_a, b, arm_b);
+        const auto has_rotor = substep.share < Real(1);
+        substep.effective_mass = select(alone > Real(0), select(has_rotor, alone, longer), alone);
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>

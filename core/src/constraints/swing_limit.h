@@ -11,6 +11,7 @@
 #include "contract/constraint_type.h"
 #include "contract/type_list.h"
 #include "maths/limit.h"
+#include "maths/locked_point.h"
 #include "motley/core/constraints/swing_limit_definition.h"
 #include "motley/core/invalid_input.h"
 
@@ -20,6 +21,7 @@ struct SwingLimit : ConstraintTraits {
     using Definition = SwingLimitDefinition;
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr bool has_torque = true;
+    static constexpr bool turns_about_points = true;
 
     template <class Real>
     struct Parameters {
@@ -94,6 +96,16 @@ struct SwingLimit : ConstraintTraits {
         push(substep, impulse.limit, a, b);
     }
 
+    template <class Real, class Substep, class A, class B>
+    static void lengthen_step(Substep& substep, const A& a, const Vec3<Real>& arm_a, const B& b,
+                              const Vec3<Real>& arm_b)
+    {
+        const auto usable = substep.effective_mass > Real(0);
+        const Real longer =
+            effective_mass_at_point(response(substep.normal, a, b), substep.normal, a, arm_a, b, arm_b);
+        substep.effective_mass = select(usable, longer, Real(0));
+    }
+
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row&, const Substep& substep, Impulse& impulse, A& a,
                       B& b)
@@ -159,9 +171,16 @@ struct SwingLimit : ConstraintTraits {
         // and pi, where its sine or its cosine alone loses digits.
         substep.room = row.max_angle - Real(2) * arc_tangent2(square_root(dot(difference, difference)),
                                                               square_root(dot(sum, sum)));
-        const Real k = dot(substep.normal, over_inertia(a, substep.normal) + over_inertia(b, substep.normal));
+        const Real k = response(substep.normal, a, b);
         const auto usable = k > Real(rounding_share) * (angular_size(a) + angular_size(b));
         substep.effective_mass = select(usable, inverse_or_zero(k), Real(0));
+    }
+
+    /// K.
+    template <class Real, class A, class B>
+    static Real response(const Vec3<Real>& normal, const A& a, const B& b)
+    {
+        return dot(normal, over_inertia(a, normal) + over_inertia(b, normal));
     }
 
     /// A positive lambda acts against the swing.

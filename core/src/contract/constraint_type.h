@@ -45,6 +45,8 @@
 //     remember<Real>(row, impulse, end) -> Memory                     end.a() and end.b() are the bodies now
 //   for SolverSettings::exact_joints, with equality_count
 //     equality_rows<Real>(row, a, b, rows*)                           J and C, row by row
+//   likewise, each substep, with turns_about_points
+//     lengthen_step<Real>(substep&, a, arm_a, b, arm_b)               where a point is locked: see locked_point.h
 #pragma once
 
 #include <concepts>
@@ -78,6 +80,8 @@ struct ConstraintTraits {
     static constexpr bool pulls_at_arms = false;
     /// Has angular impulses, of which light bodies bear only so many: has torque() and scale(). See torque.h.
     static constexpr bool has_torque = false;
+    /// Has angular rows beside the locks of exact joints: has lengthen_step().
+    static constexpr bool turns_about_points = false;
     /// Is defined by points of the world: has world_points(definition), and start.from_world_points().
     static constexpr bool has_world_points = false;
     /// Rows of J that exact joints may lock.

@@ -58,6 +58,9 @@ struct FigureNode {
     /// Whether the node has a single lock, whose first three rows hold a point on a point along x, y and z, and whose
     /// other rows are purely angular.
     [[nodiscard]] bool hangs_by_point() const { return locks.size() == 1 && locks.front().locks_point; }
+    /// Where the arms of that point are, once the tree is factored: see PointRows::keep.
+    [[nodiscard]] std::int64_t arm_of_child() const { return jacobian; }
+    [[nodiscard]] std::int64_t arm_of_parent() const { return jacobian + std::int64_t{3} * block_lanes; }
     static constexpr int row_floats = 10 * block_lanes;  ///< of an EqualityRow
 };
 
@@ -66,6 +69,13 @@ struct FigureNode {
 struct FigureClosure {
     int joint;  ///< of the shape
     int first_row, rows;
+};
+
+/// A joint that the tree does not solve, between two bodies that it holds together at a point. Where the arms of that point
+/// on the joint's bodies are in FigureBlock::system, once the tree is factored.
+struct JointAtPoint {
+    int joint;  ///< of the shape
+    std::int64_t arm_a, arm_b;
 };
 
 /// What the copies of a figure have in common.
@@ -82,6 +92,7 @@ struct FigureShape {
     Array<BodyKind> bodies;
     Array<Joint> joints;      ///< by colour
     Array<FigureNode> nodes;  ///< children before parents; empty unless locks are solved exactly
+    Array<JointAtPoint> joints_at_points;
     Array<FigureClosure> closures;
     int closure_rows = 0;
     std::int64_t closure_jacobian = 0, closure_factor = 0, closure_target = 0;  ///< like those of a node

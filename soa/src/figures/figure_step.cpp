@@ -125,6 +125,9 @@ class CopiesRunner {
             case Operation::warm_start:
                 sweep(context_, block_, &ConstraintKernels::warm_start_copies);
                 break;
+            case Operation::lengthen_steps:
+                lengthen_steps(block_);
+                break;
             case Operation::solve_trees:
                 if (has_tree_ && has_others_) kernels_.solve(block_, context_.step.exact_rate);
                 break;
@@ -189,6 +192,18 @@ void begin_tree(const FigureBlock& block)
         const std::int64_t floats = impulse_floats(block.joints[i]);
         float* impulses = block.joints[i].streams.impulses + block.joints[i].block * floats;
         std::fill(impulses, impulses + floats, 0.0F);
+    }
+}
+
+void lengthen_steps(const FigureBlock& block)
+{
+    for (const JointAtPoint& joint : block.shape->joints_at_points) {
+        const FigureShape::Joint& of_shape = block.shape->joints[static_cast<std::size_t>(joint.joint)];
+        const FigureBlock::Joint& lanes = block.joints[joint.joint];
+        if (lanes.kernels->lengthen_steps == nullptr) continue;
+        lanes.kernels->lengthen_steps(lanes.streams, lanes.block, block.body(of_shape.a),
+                                      block.body(of_shape.b), block.system + joint.arm_a,
+                                      block.system + joint.arm_b);
     }
 }
 

@@ -19,6 +19,8 @@ void step_figure(const KernelContext& context, const FigureKernels& kernels, con
 void prepare_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block);
 /// Before the first sweep of a substep: the impulses of its locks start from zero.
 void begin_tree(const FigureBlock& block);
+/// After the warm start: lets the joints beside the tree step as far as its locks allow (locked_point.h).
+void lengthen_steps(const FigureBlock& block);
 /// Solves the tree; after each sweep.
 void solve_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
                 float rate);

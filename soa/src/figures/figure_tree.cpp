@@ -34,6 +34,7 @@ class TreeBuilder {
         if (closure_rows_ > most_closure_rows || nodes_.empty()) return false;
         lay_out();
         hand_over();
+        list_joints_at_points();
         return true;
     }
 
@@ -155,6 +156,21 @@ class TreeBuilder {
         shape_.nodes.assign(std::make_move_iterator(nodes_.rbegin()), std::make_move_iterator(nodes_.rend()));
         shape_.closures = std::move(closures_);
         shape_.closure_rows = closure_rows_;
+    }
+    void list_joints_at_points()
+    {
+        for (std::size_t i = 0; i < shape_.joints.size(); ++i) {
+            const FigureShape::Joint& joint = shape_.joints[i];
+            if (joint.in_tree) continue;
+            for (const FigureNode& node : shape_.nodes) {
+                const bool is_reversed = joint.a == node.body;
+                const int child = is_reversed ? joint.a : joint.b, parent = is_reversed ? joint.b : joint.a;
+                if (node.body != child || node.parent != parent || !node.hangs_by_point()) continue;
+                const std::int64_t arm_child = node.arm_of_child(), arm_parent = node.arm_of_parent();
+                shape_.joints_at_points.push_back({static_cast<int>(i), is_reversed ? arm_child : arm_parent,
+                                                   is_reversed ? arm_parent : arm_child});
+            }
+        }
     }
 };
 

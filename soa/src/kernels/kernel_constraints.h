@@ -543,6 +543,20 @@ struct Kernels {
         }
     }
 
+    static void lengthen_steps(const BlockStreams& streams, std::int32_t block, const float* body_a,
+                               const float* body_b, const float* arm_a, const float* arm_b)
+    {
+        const int count = streams.counts[block];
+        for (int lane = 0; lane < count; lane += Lanes_width) {
+            float* const at = streams.substep_rows + static_cast<std::int64_t>(block) * substep_stride + lane;
+            auto substep = load_row<Substep>(at);
+            Type::template lengthen_step<Lanes>(
+                substep, load_row<A>(body_a + lane), load_row<Vec3<Lanes>>(arm_a + lane),
+                load_row<B>(body_b + lane), load_row<Vec3<Lanes>>(arm_b + lane));
+            store_row(substep, at);
+        }
+    }
+
     /// Enters what every substep runs.
     static void enter_swept(ConstraintKernels& kernels)
     {
@@ -563,7 +577,7 @@ struct Kernels {
         kernels.sum_floats = fields_of<Sum>;
     }
 
-    /// Enters what runs at the start and at the end of a step, and before trees of exact joints are factored.
+    /// Enters what runs at the start and at the end of a step, and around the trees of exact joints.
     static void enter_once(ConstraintKernels& kernels)
     {
         kernels.prepare = prepare;
@@ -572,6 +586,7 @@ struct Kernels {
             kernels.equality_rows = equality_rows;
             kernels.equality_count = Type::equality_count;
         }
+        if constexpr (has_copies && Type::turns_about_points) kernels.lengthen_steps = lengthen_steps;
     }
 
     /// Enters what only some settings or definitions need.

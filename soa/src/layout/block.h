@@ -152,6 +152,10 @@ struct ConstraintKernels {
                                 const float* body_b, float* rows);
     CopiesRows equality_rows = nullptr;
     int equality_count = 0;
+    /// After warm_start, where the two bodies are held together at the point with these arms (three fields of sixteen floats):
+    /// see locked_point.h. Null for types without such rows.
+    void (*lengthen_steps)(const BlockStreams&, std::int32_t block, const float* body_a, const float* body_b,
+                           const float* arm_a, const float* arm_b) = nullptr;
 
     int row_floats = 0, substep_floats = 0, impulse_floats = 0, sum_floats = 0;
     int swept_floats = 0;  ///< of row and substep row, those that a sweep reads

@@ -25,6 +25,7 @@ constexpr OperationFacts facts[] = {
     {"factor trees", Stage::warm_start},
     {"begin trees", Stage::warm_start},
     {"warm start", Stage::warm_start},
+    {"lengthen steps beside trees", Stage::warm_start},
     {"solve trees", Stage::warm_start},
     {"solve", Stage::solve},
     {"measure residuals", Stage::solve},
@@ -122,8 +123,11 @@ void make_plan(const SolverSettings& settings, const StepNeeds& needs, Plan& pla
         in_substep({Operation::begin_trees});
     }
     in_substep({Operation::warm_start});
-    // Limits and motors must start from velocities with which the exact joints hold.
-    if (needs.solves_trees) in_substep({Operation::solve_trees});
+    if (needs.solves_trees) {
+        in_substep({Operation::lengthen_steps});
+        // Limits and motors must start from velocities with which the exact joints hold.
+        in_substep({Operation::solve_trees});
+    }
     in_substep({.operation = Operation::solve, .times = settings.iterations});
     if (needs.measures) in_substep({Operation::measure, Substeps::last});
     in_substep({Operation::integrate_positions});

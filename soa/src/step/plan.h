@@ -29,6 +29,7 @@ enum class Operation : std::uint8_t {
     factor_trees,                ///< of exact joints, at the present poses
     begin_trees,                 ///< impulses of exact joints start from zero
     warm_start,                  ///< applies the impulses of the last substep
+    lengthen_steps,              ///< of limits and motors beside exact joints: see locked_point.h
     solve_trees,                 ///< exact joints, once
     solve,                       ///< one sweep over all constraints, and what is solved exactly after it
     measure,                     ///< residuals, with nothing changed
