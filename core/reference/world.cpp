@@ -32,6 +32,12 @@ Eigen::VectorXd bounded(const Eigen::VectorXd& held, const Eigen::VectorXd& free
     return next;
 }
 
+std::size_t contacts_of(const std::vector<Block>& blocks)
+{
+    return static_cast<std::size_t>(std::count_if(
+        blocks.begin(), blocks.end(), [](const Block& b) { return b.kind == Block::Kind::contact; }));
+}
+
 }  // namespace
 
 World::Soft World::softness(double hertz, double damping_ratio, double h)
@@ -111,8 +117,7 @@ void World::find_rows(Joint& joint, double h, const SolverSettings& settings,
 {
     std::vector<Block> blocks = blocks_of(joint);
     joint.impulses.resize(blocks.size());
-    const auto contacts = static_cast<std::size_t>(std::count_if(
-        blocks.begin(), blocks.end(), [](const Block& b) { return b.kind == Block::Kind::contact; }));
+    const std::size_t contacts = contacts_of(blocks);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const double most = h * blocks[i].most;
         BlockRow row{&joint, i, std::move(blocks[i]), {}, {}, {}, {}, {}, {}, {}, most, contacts};
@@ -135,11 +140,10 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
         const Block& block = row.block;
         row.mass = mass_of(joint, block);
         if (block.armature > 0) row.mass(0, 0) += block.armature;
+        row.to_force = to_force_of(block);
         if (block.bounds_torque) {
-            row.to_force = block.jacobian.rightCols<3>().transpose();
             row.response = inverse_mass.block<3, 3>(3, 3) + inverse_mass.block<3, 3>(9, 9);
         } else {
-            row.to_force.setIdentity(block.jacobian.rows(), block.jacobian.rows());
             row.response = block.jacobian * inverse_mass * block.jacobian.transpose();
             if (block.armature > 0) row.response(0, 0) = 1 / row.mass(0, 0);
         }
@@ -234,6 +238,40 @@ void World::solve_block(BlockRow& row, double h, const SolverSettings& settings,
     row.impulse() = wanted;
     double& peak = row.joint->peaks[row.index];
     peak = std::max(peak, wanted(0));
+}
+
+void World::solve_blocks(std::vector<BlockRow>& rows, double h, const SolverSettings& settings, bool relax)
+{
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        solve_block(rows[i], h, settings, relax);
+        // After the last contact of a joint: what its contacts, pressing less, cannot hold any more is taken back.
+        Joint& joint = *rows[i].joint;
+        if (rows[i].index + 1 < joint.impulses.size()) continue;
+        const double push = push_of(joint, rows[i].joint_contacts);
+        for (std::size_t k = i - rows[i].index; k < i; ++k)
+            shorten(joint, rows[k].block, rows[k].index, push);
+    }
+}
+
+/// Shortens the impulses of a block that contacts bound which push with `push`.
+void World::shorten(Joint& joint, const Block& block, std::size_t index, double push)
+{
+    Eigen::VectorXd& held = joint.impulses[index];
+    const double size = (to_force_of(block) * held).norm(), bound = block.most_per_contact * push;
+    if (block.most_per_contact < 0 || size <= bound) return;
+    const Eigen::VectorXd shorter = bound / size * held;
+    apply(joint, block.jacobian, shorter - held);
+    held = shorter;
+}
+/// Likewise the friction of a contact.
+void World::shorten(ContactRow& row)
+{
+    const double size = row.friction.norm(),
+                 bound = static_cast<double>(row.point->contact.friction) * row.impulse;
+    if (size <= bound) return;
+    const Eigen::VectorXd shorter = bound / size * row.friction;
+    apply(row.point->a, row.point->b, row.tangents, shorter - row.friction);
+    row.friction = shorter;
 }
 
 World::Soft World::contact_softness(int a, int b, double h, const SolverSettings& settings) const
@@ -391,13 +429,8 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
     apply(point.a, point.b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
     row.impulse = impulse;
     row.peak = std::max(row.peak, impulse);
-    // Planar bodies lose what the contact, pressing less, cannot hold any more.
-    const double most_friction = mu * impulse;
-    if (is_planar_pair(point.a, point.b) && row.friction.norm() > most_friction) {
-        const Eigen::VectorXd shorter = most_friction * row.friction.normalized();
-        apply(point.a, point.b, row.tangents, shorter - row.friction);
-        row.friction = shorter;
-    }
+    // What the contact, pressing less, cannot hold any more is taken back.
+    shorten(row);
 }
 
 /// Projects the points of a manifold one by one, each taking the displacements by those before it into account; the
@@ -475,7 +508,7 @@ void World::step(double dt, const SolverSettings& asked, const std::vector<Conta
             apply(row.point->a, row.point->b, row.tangents, row.friction);
         }
         for (int i = 0; i < settings.iterations; ++i) {
-            for (BlockRow& row : rows) solve_block(row, h, settings, false);
+            solve_blocks(rows, h, settings, false);
             for (ContactRow& row : contacts) solve_contact(row, h, settings, false);
         }
         for (Body& body : bodies) body.move_on(h, true);
@@ -483,7 +516,7 @@ void World::step(double dt, const SolverSettings& asked, const std::vector<Conta
             for (int i = 0; i < settings.projections; ++i) project(contacts, settings);
         }
         for (int i = 0; soft_step && i < settings.relaxations; ++i) {
-            for (BlockRow& row : rows) solve_block(row, h, settings, true);
+            solve_blocks(rows, h, settings, true);
             for (ContactRow& row : contacts) solve_contact(row, h, settings, true);
         }
         add_up(contacts);
@@ -588,6 +621,9 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSetti
             apply(joint, block.jacobian, Eigen::VectorXd::Constant(1, wanted - held));
             held = wanted;
         }
+        const std::size_t pushing = contacts_of(blocks);
+        if (pushing == 0) continue;
+        for (std::size_t i = 0; i < blocks.size(); ++i) shorten(joint, blocks[i], i, push_of(joint, pushing));
     }
     memory_.clear();
     step_results_.clear();
@@ -603,6 +639,9 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSetti
             apply(a, b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
             row.step.normal += impulse - row.impulse;
             row.impulse = impulse;
+            const Eigen::Vector3d before = row.force();
+            shorten(row);
+            row.step.friction += row.force() - before;
         }
         memory_[row.point->contact.key] = {row.impulse, row.force()};
         step_results_[row.point->contact.key] = row.step;

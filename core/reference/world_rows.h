@@ -5,6 +5,21 @@
 
 namespace motley::reference {
 
+/// The impulses of a joint's contacts, which are the last blocks of it.
+inline double push_of(const Joint& joint, std::size_t contacts)
+{
+    double sum = 0;
+    for (std::size_t i = joint.impulses.size() - contacts; i < joint.impulses.size(); ++i)
+        sum += joint.impulses[i](0);
+    return sum;
+}
+/// Maps the impulses of a block to what is bounded of them.
+inline Eigen::MatrixXd to_force_of(const Block& block)
+{
+    if (block.bounds_torque) return block.jacobian.rightCols<3>().transpose();
+    return Eigen::MatrixXd::Identity(block.jacobian.rows(), block.jacobian.rows());
+}
+
 struct World::BlockRow {
     Joint* joint;
     std::size_t index;  ///< of the block in its joint
@@ -20,10 +35,7 @@ struct World::BlockRow {
     [[nodiscard]] double bound() const
     {
         if (block.most_per_contact < 0) return most;
-        double sum = 0;
-        for (std::size_t i = joint->impulses.size() - joint_contacts; i < joint->impulses.size(); ++i)
-            sum += joint->impulses[i](0);
-        return block.most_per_contact * sum;
+        return block.most_per_contact * push_of(*joint, joint_contacts);
     }
     [[nodiscard]] Eigen::VectorXd& impulse() const { return joint->impulses[index]; }
 };

@@ -240,9 +240,7 @@ struct ContactKind : ConstraintTraits {
     }
 
     /// One sweep over this contact: friction within the bound of the normal impulse so far, then the normal. Where that
-    /// becomes less, planar bodies lose what friction is more than the new bound, so that a contact that opens keeps none.
-    /// Others keep it until the next sweep: if it were shortened, a few of a thousand figures on a floor would not come to
-    /// rest with exact joints at one substep.
+    /// becomes less, what friction is more than the new bound is taken back, so that a contact that opens keeps none.
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void solve(const StepConstants& step, const Row& row, const Substep&, Impulse& impulse, A& a, B& b)
     {
@@ -253,14 +251,7 @@ struct ContactKind : ConstraintTraits {
                                       row.separation + moved<Real>(row, a, b), speed<Real>(row, a, b),
                                       normal_effective_mass<Real>(row, a, b), impulse.normal);
         if constexpr (has_restitution) wanted = minimum(wanted, Real(step.substep) * row.most_force);
-        const Real change = set_normal(wanted, impulse);
-        if constexpr (smooth || !is_planar_pair(A::kind, B::kind)) {
-            push<Real>(row, change, a, b);
-        } else {
-            const Real held = impulse.tangent;
-            impulse.tangent = within(held, row.friction * wanted);
-            push_both<Real>(row, change, impulse.tangent - held, a, b);
-        }
+        change_normal(row, wanted, impulse, a, b);
     }
 
     /// After the substeps: contacts that were hit fast enough leave with restitution times the speed of the impact.
@@ -275,7 +266,7 @@ struct ContactKind : ConstraintTraits {
         const Real wanted = minimum(maximum(free, Real(0)), Real(step.substep) * row.most_force);
         const auto bounces = (whole.restitution > Real(0)) & (impulse.peak > Real(0)) &
                              (whole.approach < Real(-step.restitution_threshold));
-        push<Real>(row, set_normal(select(bounces, wanted, impulse.normal), impulse), a, b);
+        change_normal(row, select(bounces, wanted, impulse.normal), impulse, a, b);
     }
 
     /// A position solve: moves the bodies along J^T until `projection_rate` of the penetration is gone.
@@ -377,14 +368,20 @@ struct ContactKind : ConstraintTraits {
         }
     }
 
-    /// Notes a new normal impulse, and returns the change.
-    template <class Real, class Impulse>
-    static Real set_normal(const Real& wanted, Impulse& impulse)
+    /// Makes the normal impulse `wanted`, and shortens the friction to what that can hold.
+    template <class Real, class Row, class Impulse, class A, class B>
+    static void change_normal(const Row& row, const Real& wanted, Impulse& impulse, A& a, B& b)
     {
         const Real change = wanted - impulse.normal;
         impulse.normal = wanted;
         if constexpr (has_restitution) impulse.peak = maximum(impulse.peak, wanted);
-        return change;
+        if constexpr (smooth) {
+            push<Real>(row, change, a, b);
+        } else {
+            const auto held = impulse.tangent;
+            impulse.tangent = within(held, row.friction * wanted);
+            push_both<Real>(row, change, impulse.tangent - held, a, b);
+        }
     }
     /// Along the normal and the tangents.
     template <class Real, class Row, class Tangent, class A, class B>
@@ -409,6 +406,11 @@ struct ContactKind : ConstraintTraits {
     static Real within(const Real& tangent, const Real& bound)
     {
         return maximum(minimum(tangent, bound), -bound);
+    }
+    template <class Real>
+    static Vec2<Real> within(const Vec2<Real>& tangent, const Real& bound)
+    {
+        return scale_within(tangent, bound) * tangent;
     }
 
     /// The components of a vector along the tangents.

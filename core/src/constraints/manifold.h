@@ -209,6 +209,7 @@ struct Manifold : ConstraintTraits {
             impulse.normal[i] = wanted;
             impulse.peak[i] = maximum(impulse.peak[i], wanted);
         }
+        shorten_friction<Real>(row, impulse, a, b);
     }
 
     /// After the substeps: points that were hit fast enough leave with restitution times the speed of the impact. A
@@ -234,6 +235,7 @@ struct Manifold : ConstraintTraits {
             push_point(row, point, wanted - held, a, b);
             impulse.normal[point] = wanted;
         }
+        shorten_friction<Real>(row, impulse, a, b);
     }
 
     /// Moves the bodies until `projection_rate` of every point's penetration is gone: the points one by one, each
@@ -387,7 +389,7 @@ struct Manifold : ConstraintTraits {
     template <class Real, class Row, class Impulse, class A, class B>
     static void solve_friction(const Row& row, Impulse& impulse, A& a, B& b)
     {
-        const Real push = (impulse.normal[0] + impulse.normal[1]) + (impulse.normal[2] + impulse.normal[3]);
+        const Real push = push_of<Real>(impulse);
         const Vec3<Real>&n = row.normal, &t = row.tangent, t2 = cross(n, t);
         const Vec3<Real> slip = (linear_of(b) + cross(angular_of(b), row.arm_b)) -
                                 (linear_of(a) + cross(angular_of(a), row.arm_a));
@@ -411,6 +413,28 @@ struct Manifold : ConstraintTraits {
                   row.rolling_stride, row.rolling_radius * push);
         push_turn(row, Real(0), rolling - impulse.rolling, a, b);
         impulse.rolling = rolling;
+    }
+
+    /// Takes back what friction, torsion and rolling are more than the points, pressing less now, can hold.
+    template <class Real, class Row, class Impulse, class A, class B>
+    static void shorten_friction(const Row& row, Impulse& impulse, A& a, B& b)
+    {
+        const Real push = push_of<Real>(impulse), torsional_bound = row.torsional_bound * push;
+        const Vec2<Real> friction = scale_within(impulse.friction, row.friction * push) * impulse.friction,
+                         rolling = scale_within(impulse.rolling, row.rolling_radius * push) * impulse.rolling;
+        const Real torsion = maximum(minimum(impulse.torsion, torsional_bound), -torsional_bound);
+        push_friction(row, friction - impulse.friction, a, b);
+        push_turn(row, torsion - impulse.torsion, rolling - impulse.rolling, a, b);
+        impulse.friction = friction;
+        impulse.torsion = torsion;
+        impulse.rolling = rolling;
+    }
+
+    /// The normal impulses of all points.
+    template <class Real, class Impulse>
+    static Real push_of(const Impulse& impulse)
+    {
+        return (impulse.normal[0] + impulse.normal[1]) + (impulse.normal[2] + impulse.normal[3]);
     }
 };
 
