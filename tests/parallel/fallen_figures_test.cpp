@@ -271,7 +271,7 @@ TEST(FallenFigures, AllComeToRestWithinTheirLimits)
         }
         const double most = *std::max_element(energies.begin(), energies.end());
         EXPECT_LT(most, 1e-3) << "J, seed " << seed;
-        const float beyond = fallen.scene.errors().joint_angle_max;
+        const double beyond = fallen.scene.errors().joint_angle_max;
         EXPECT_LT(beyond, 0.05) << "rad, seed " << seed;
         std::printf("most energy %.2g J, most beyond a limit %.2g rad\n", most, beyond);
     }
