@@ -253,7 +253,8 @@ void World::solve_blocks(std::vector<BlockRow>& rows, double h, const SolverSett
     }
 }
 
-/// Shortens the impulses of a block that contacts bound which push with `push`.
+/// Shortens the impulses of a block to what the joint's contacts, which push with `push` N s together, can hold. Does nothing to
+/// blocks that contacts do not bound.
 void World::shorten(Joint& joint, const Block& block, std::size_t index, double push)
 {
     Eigen::VectorXd& held = joint.impulses[index];
@@ -263,7 +264,7 @@ void World::shorten(Joint& joint, const Block& block, std::size_t index, double 
     apply(joint, block.jacobian, shorter - held);
     held = shorter;
 }
-/// Likewise the friction of a contact.
+/// Shortens the friction of a contact to what its normal impulse can hold.
 void World::shorten(ContactRow& row)
 {
     const double size = row.friction.norm(),
@@ -621,9 +622,8 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSetti
             apply(joint, block.jacobian, Eigen::VectorXd::Constant(1, wanted - held));
             held = wanted;
         }
-        const std::size_t pushing = contacts_of(blocks);
-        if (pushing == 0) continue;
-        for (std::size_t i = 0; i < blocks.size(); ++i) shorten(joint, blocks[i], i, push_of(joint, pushing));
+        const double push = push_of(joint, contacts_of(blocks));
+        for (std::size_t i = 0; i < blocks.size(); ++i) shorten(joint, blocks[i], i, push);
     }
     memory_.clear();
     step_results_.clear();

@@ -254,10 +254,11 @@ TEST(FallenFigures, AllComeToRestWithinTheirLimits)
     exact.exact_joints = true;
     exact.substeps = 1;
     for (const std::uint64_t seed : {1, 2}) {
-        FallenFigures fallen({.copies = 1000, .seed = seed});
+        constexpr int copies = 1000;
+        FallenFigures fallen({.copies = copies, .seed = seed});
         Solver solver(exact, {.threads = 2});
         constexpr int fall = 640, at_rest = 60;
-        std::vector<double> energies(1000);  // J, mean over the last second
+        std::vector<double> energies(copies);  // J, mean over the last second
         for (int step = 0; step < fall + at_rest; ++step) {
             const StepReport report = solver.step(fallen.scene, frame_time, fallen.contacts());
             ASSERT_EQ(report.status, StepStatus::done) << report.error;

@@ -71,6 +71,24 @@ TEST(FrictionCone, HoldsForWhatListedContactsReport)
     }
 }
 
+/// The host's narrow phase: puts the points of a manifold between the floor at y = 0 and the lowest corners of a cube of 1 m.
+void touch_with_lowest_corners(const BodyState& cube, ManifoldDefinition& floor)
+{
+    std::vector<Vec3<double>> corners;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const auto half = [&](unsigned bit) { return (corner & bit) != 0 ? 0.5 : -0.5; };
+        corners.push_back({half(1), half(2), half(4)});
+    }
+    std::sort(corners.begin(), corners.end(), [&](const Vec3<double>& x, const Vec3<double>& y) {
+        return rotate(cube.orientation, x).y < rotate(cube.orientation, y).y;
+    });
+    for (int i = 0; i < floor.point_count; ++i) {
+        const Vec3<double>& corner = corners[static_cast<std::size_t>(i)];
+        const Vec3<double> at = cube.position + rotate(cube.orientation, corner);
+        floor.points[i] = {convert<float>(Vec3<double>{at.x, 0, at.z}), convert<float>(corner)};
+    }
+}
+
 /// A box that slides, spins and tips on a floor while a force lifts it off again and again, on the corners that are nearest to the
 /// floor. With one point the friction's moments are bounded too.
 TEST(FrictionCone, HoldsForWhatAManifoldReports)
@@ -94,20 +112,7 @@ TEST(FrictionCone, HoldsForWhatAManifoldReports)
             Solver solver(settings);
             int opened = 0, pressed = 0;
             for (int step = 0; step < 300; ++step) {
-                const BodyState state = scene.state(box);
-                std::vector<Vec3<double>> corners;
-                for (unsigned corner = 0; corner < 8; ++corner) {
-                    const auto half = [&](unsigned bit) { return (corner & bit) != 0 ? 0.5 : -0.5; };
-                    corners.push_back({half(1), half(2), half(4)});
-                }
-                std::sort(corners.begin(), corners.end(), [&](const Vec3<double>& x, const Vec3<double>& y) {
-                    return rotate(state.orientation, x).y < rotate(state.orientation, y).y;
-                });
-                for (int i = 0; i < points; ++i) {
-                    const Vec3<double> at = state.position + rotate(state.orientation, corners[i]);
-                    floor.points[i] = {convert<float>(Vec3<double>{at.x, 0, at.z}),
-                                       convert<float>(corners[i])};
-                }
+                touch_with_lowest_corners(scene.state(box), floor);
                 scene.set_joint(joint, floor);
                 scene.set_force(box, {0, 70 * std::sin(0.3F * static_cast<float>(step)), 0}, {});
                 ASSERT_EQ(solver.step(scene, frame_time).status, StepStatus::done);

@@ -108,9 +108,9 @@ struct Drive : ConstraintTraits {
     struct SubstepRow {
         Vec3<Real> axis;  ///< x_a or t
         [[no_unique_address]] IfNeeded<slides, Levers<Real>> levers;
-        Real response, effective_mass;  ///< K s and its inverse, or by what lengthen_step() replaces it
-        Real share;                     ///< s
-        Real value;                     ///< C
+        Real response, effective_mass;            ///< K s; its inverse, or more: see lengthen_step()
+        Real share;                               ///< s
+        Real value;                               ///< C
         Real spring_effective_mass, spring_kept;  ///< see SoftRow
         Real start_speed;                         ///< of the rotor when the substep began
     };
@@ -249,13 +249,14 @@ struct Drive : ConstraintTraits {
         push(substep, to_bodies(row.in_sweep.armature, impulse), a, b);
     }
 
-    /// Of the motor and the limit. A spring is soft by its response, and so is a joint with a rotor.
+    /// Of the motor and the limit. Not of the spring, whose softness is that of the two bodies alone, nor of a drive with a
+    /// rotor, which shares impulses with these two.
     template <class Real, class Substep, class A, class B>
     static void lengthen_step(Substep& substep, const A& a, const Vec3<Real>& arm_a, const B& b,
                               const Vec3<Real>& arm_b)
     {
         const Real& alone = substep.effective_mass;
-        const Real longer = effective_mass_at_point(substep.response, substep.axis, a, arm_a, b, arm_b);
+        const Real longer = effective_mass_at_point(substep.axis, a, arm_a, b, arm_b);
         const auto has_rotor = substep.share < Real(1);
         substep.effective_mass = select(alone > Real(0), select(has_rotor, alone, longer), alone);
     }

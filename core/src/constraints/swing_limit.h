@@ -101,8 +101,7 @@ struct SwingLimit : ConstraintTraits {
                               const Vec3<Real>& arm_b)
     {
         const auto usable = substep.effective_mass > Real(0);
-        const Real longer =
-            effective_mass_at_point(response(substep.normal, a, b), substep.normal, a, arm_a, b, arm_b);
+        const Real longer = effective_mass_at_point(substep.normal, a, arm_a, b, arm_b);
         substep.effective_mass = select(usable, longer, Real(0));
     }
 
@@ -171,16 +170,9 @@ struct SwingLimit : ConstraintTraits {
         // and pi, where its sine or its cosine alone loses digits.
         substep.room = row.max_angle - Real(2) * arc_tangent2(square_root(dot(difference, difference)),
                                                               square_root(dot(sum, sum)));
-        const Real k = response(substep.normal, a, b);
+        const Real k = dot(substep.normal, over_inertia(a, substep.normal) + over_inertia(b, substep.normal));
         const auto usable = k > Real(rounding_share) * (angular_size(a) + angular_size(b));
         substep.effective_mass = select(usable, inverse_or_zero(k), Real(0));
-    }
-
-    /// K.
-    template <class Real, class A, class B>
-    static Real response(const Vec3<Real>& normal, const A& a, const B& b)
-    {
-        return dot(normal, over_inertia(a, normal) + over_inertia(b, normal));
     }
 
     /// A positive lambda acts against the swing.

@@ -1,16 +1,17 @@
 // How far a limit or a motor may step where exact joints hold a point of its two bodies.
 //
-// A sweep knows the response K = J M^-1 J^T of the two bodies alone, with which a step of lambda = -K^-1 J v ends at J v = 0.
-// Exact joints are solved after it and move the bodies back: a forearm that an elbow's limit has turned about its centre must
-// turn about the elbow, and of the step only a twentieth may be left. The limit would then need many sweeps, give way by
-// many times what its softness says, and can keep a figure moving for ever. With a step of up to 1.8 times the length
-// a sweep still never gains energy (successive over-relaxation converges for factors below 2: C. Cryer, The Solution of a
-// Quadratic Programming Problem Using Systematic Overrelaxation, 1971), and it is never longer than
+// A sweep knows the response K = J M^-1 J^T of the two bodies alone: after a step of lambda = -K^-1 J v, J v = 0. Then the exact
+// joints are solved, which leaves only part of it. An elbow's limit, for example, turns the forearm about its centre, and the
+// elbow then makes it turn about the elbow, where its moment of inertia is larger: a small part of the step is left. Such a
+// limit needs many sweeps, gives way by many times what its softness says, and may keep a figure moving for ever.
+//
+// So the step is longer, by a factor of up to 1.8: below 2 it never gains energy (successive over-relaxation; C. Cryer, The
+// Solution of a Quadratic Programming Problem Using Systematic Overrelaxation, 1971). It is never longer than
 //
 //   1 / (K - u . K_p^-1 u)
 //
-// which would end at J v = 0 if the two bodies were alone and held together at the point. K_p is the response of the point
-// and u its speed after a unit impulse along the row.
+// times -J v, after which J v = 0 if the two bodies are held together at the point and touch nothing else. K_p is the response
+// of the point, and u how fast it would come apart after a unit impulse along the row.
 #pragma once
 
 #include "maths/lane_body.h"
@@ -21,13 +22,15 @@ namespace motley {
 /// The most by which a step is longer than that of the two bodies alone.
 constexpr float longest_step = 1.8F;
 
-/// The effective mass of an angular row with the axis n on b, -n on a, and the response K of the two bodies alone; r: arms of
-/// the point.
+/// The inverse of the response, kg m2, with which an angular row steps whose axis is n on b and -n on a. The arms are those of
+/// the point, m. 0 where neither body turns.
 template <class Real, class A, class B>
-Real effective_mass_at_point(const Real& k, const Vec3<Real>& n, const A& a, const Vec3<Real>& arm_a,
-                             const B& b, const Vec3<Real>& arm_b)
+Real effective_mass_at_point(const Vec3<Real>& n, const A& a, const Vec3<Real>& arm_a, const B& b,
+                             const Vec3<Real>& arm_b)
 {
-    const Vec3<Real> u = cross(over_inertia(b, n), arm_b) + cross(over_inertia(a, n), arm_a);
+    const Vec3<Real> turn_a = over_inertia(a, n), turn_b = over_inertia(b, n);
+    const Real k = dot(n, turn_a + turn_b);
+    const Vec3<Real> u = cross(turn_b, arm_b) + cross(turn_a, arm_a);
     const Sym3<Real> k_p = inverse_point_mass(a, arm_a) + inverse_point_mass(b, arm_b);
     return inverse_or_zero(maximum(k - dot(u, inverse(k_p) * u), Real(1 / longest_step) * k));
 }

@@ -71,10 +71,10 @@ struct FigureClosure {
     int first_row, rows;
 };
 
-/// A joint that the tree does not solve, between two bodies that it holds together at a point. Where the arms of that point
-/// on the joint's bodies are in FigureBlock::system, once the tree is factored.
+/// A joint that the tree does not solve, between two bodies that the tree holds together at a point.
 struct JointAtPoint {
     int joint;  ///< of the shape
+    /// Where the point's lever arms on the joint's bodies begin in FigureBlock::system, once the tree is factored.
     std::int64_t arm_a, arm_b;
 };
 

@@ -159,16 +159,16 @@ class TreeBuilder {
     }
     void list_joints_at_points()
     {
-        for (std::size_t i = 0; i < shape_.joints.size(); ++i) {
-            const FigureShape::Joint& joint = shape_.joints[i];
-            if (joint.in_tree) continue;
-            for (const FigureNode& node : shape_.nodes) {
-                const bool is_reversed = joint.a == node.body;
-                const int child = is_reversed ? joint.a : joint.b, parent = is_reversed ? joint.b : joint.a;
-                if (node.body != child || node.parent != parent || !node.hangs_by_point()) continue;
-                const std::int64_t arm_child = node.arm_of_child(), arm_parent = node.arm_of_parent();
-                shape_.joints_at_points.push_back({static_cast<int>(i), is_reversed ? arm_child : arm_parent,
-                                                   is_reversed ? arm_parent : arm_child});
+        for (const FigureNode& node : shape_.nodes) {
+            if (!node.hangs_by_point()) continue;
+            for (std::size_t i = 0; i < shape_.joints.size(); ++i) {
+                const FigureShape::Joint& joint = shape_.joints[i];
+                if (joint.in_tree) continue;
+                const int index = static_cast<int>(i);
+                if (joint.a == node.parent && joint.b == node.body)
+                    shape_.joints_at_points.push_back({index, node.arm_of_parent(), node.arm_of_child()});
+                if (joint.a == node.body && joint.b == node.parent)
+                    shape_.joints_at_points.push_back({index, node.arm_of_child(), node.arm_of_parent()});
             }
         }
     }
