@@ -1,22 +1,11 @@
 // The constraints of each joint, written from the formulas in the header of its type; they share no code with it.
 #include "motley/reference/joint_models.h"
 
+#include "as_eigen.h"
+
 namespace motley::reference {
 namespace {
 
-Eigen::Vector3d eigen(const Vec3<float>& v)
-{
-    return {v.x, v.y, v.z};
-}
-Eigen::Vector3d eigen(const Vec3<double>& v)
-{
-    return {v.x, v.y, v.z};
-}
-Frame eigen(const JointFrame& f)
-{
-    return {eigen(f.position),
-            Eigen::Quaterniond(f.rotation.w, f.rotation.x, f.rotation.y, f.rotation.z).normalized()};
-}
 Eigen::VectorXd scalar(double value)
 {
     return Eigen::VectorXd::Constant(1, value);

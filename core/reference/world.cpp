@@ -4,15 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "as_eigen.h"
 #include "world_rows.h"
 
 namespace motley::reference {
 namespace {
-
-Eigen::Vector3d eigen(const Vec3<float>& v)
-{
-    return {v.x, v.y, v.z};
-}
 
 /// A bounded impulse after a step that would lead to `free`. Where that is too long, the step has the same stride in
 /// every direction of the force and is then shortened: it converges only where the force points against the speed that

@@ -2,12 +2,13 @@
 #include "mjcf_joints.h"
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace motley::mjcf {
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 
 float not_negative(const Element& element, const char* name)
 {

@@ -2,11 +2,12 @@
 #include "mjcf_solids.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace motley::mjcf {
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 /// Attributes of geoms that only look or belong to MuJoCo's solver.
 constexpr std::initializer_list<const char*> passed_over = {
     "group", "material", "rgba", "condim", "solref", "solimp", "solmix", "margin", "gap", "priority"};

@@ -44,6 +44,13 @@ struct IslandContact {
     std::int32_t rows, block, lane;
     BodyRow body_a, body_b;
     std::int32_t a = -1, b = -1;  ///< their numbers in the island; -1: a body that does not move
+
+    /// Of its first row; those of the other rows follow at a distance of block_lanes.
+    [[nodiscard]] float* impulses() const
+    {
+        const std::int64_t floats = std::int64_t{chunk->kernels->impulse_floats} * block_lanes;
+        return chunk->streams.impulses + floats * block + lane;
+    }
 };
 
 /// `size`: degrees of freedom of a body, 3 for planar bodies or particles alone, else 6.

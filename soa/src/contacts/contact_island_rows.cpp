@@ -65,11 +65,6 @@ ContactDirections directions_of(const IslandContact& place)
     return place.read(place.chunk->streams.rows, static_cast<std::size_t>(place.block),
                       static_cast<std::size_t>(place.lane));
 }
-float* impulses_of(const IslandContact& place)
-{
-    const std::int64_t floats = std::int64_t{place.chunk->kernels->impulse_floats} * block_lanes;
-    return place.chunk->streams.impulses + floats * place.block + place.lane;
-}
 
 /// The lower triangle of L L^T = the inverse inertia; axes that cannot turn give columns of zeros.
 void root_of(const float* inertia, double* l)
@@ -168,7 +163,7 @@ void ContactIsland<size>::begin()
             if (contact.a >= 0) read_direction<size>(place.body_a.kind(), d.n, d.lever_a, -1, row.of_a);
             if (contact.b >= 0) read_direction<size>(place.body_b.kind(), d.n, d.lever_b, 1, row.of_b);
             impulses_[as_index(contact.first_row + k)] =
-                static_cast<double>(impulses_of(place)[k * block_lanes]);
+                static_cast<double>(place.impulses()[k * block_lanes]);
         }
         if (contact.a < 0 || contact.b < 0) (carrier++)->directions = all;
     }
@@ -293,7 +288,7 @@ double ContactIsland<size>::load_speeds(const KernelContext& context, bool relax
 template <int size>
 void ContactIsland<size>::take_back(std::size_t i)
 {
-    const float* impulses = impulses_of(places_[i]);
+    const float* impulses = places_[i].impulses();
     Row* rows = rows_of(contacts_[i]);
     for (int k = 0; k < contacts_[i].rows; ++k) {
         rows[k].lambda = static_cast<double>(impulses[k * block_lanes]);
@@ -306,7 +301,7 @@ void ContactIsland<size>::store(const KernelContext& context)
 {
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const IslandContact& place = places_[i];
-        float* impulses = impulses_of(place);
+        float* impulses = place.impulses();
         const Contact& contact = contacts_[i];
         for (int k = 0; k < contact.rows; ++k) {
             const auto r = as_index(contact.first_row + k);

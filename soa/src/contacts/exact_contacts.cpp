@@ -39,11 +39,6 @@ IslandContact placed(const SweepChunk& chunk, std::int32_t block, std::int32_t l
     contact.rows = chunk.kernels->impulse_floats;
     return contact;
 }
-float* impulses_of(const IslandContact& contact)
-{
-    const std::int64_t floats = std::int64_t{contact.chunk->kernels->impulse_floats} * block_lanes;
-    return contact.chunk->streams.impulses + floats * contact.block + contact.lane;
-}
 
 /// A contact of the list, or of a capsule.
 IslandContact listed(const SweepChunk& chunk, std::int32_t block, std::int32_t lane)
@@ -52,7 +47,7 @@ IslandContact listed(const SweepChunk& chunk, std::int32_t block, std::int32_t l
     contact.read = reader_of_contacts(chunk.type, chunk.kind_a, chunk.kind_b);
     if (static_cast<Touch>(chunk.type) == Touch::bouncing) {
         --contact.rows;  // the last float is the peak
-        contact.peak = impulses_of(contact) + std::int64_t{contact.rows} * block_lanes;
+        contact.peak = contact.impulses() + std::int64_t{contact.rows} * block_lanes;
     }
     return contact;
 }
@@ -77,12 +72,12 @@ double reach_of(const IslandContact& contact)
 }
 
 /// m: discs that are farther apart are taken to touch within a step only as far as their speeds bring them.
-constexpr double near = 0.01;
+constexpr double near_disc = 0.01;
 
 /// Whether two discs may touch within dt seconds, or pushed each other in the last step. Bands list many that do neither.
 bool may_touch(const BodyStore& bodies, const IslandContact& contact, double dt)
 {
-    if (*impulses_of(contact) > 0) return true;
+    if (*contact.impulses() > 0) return true;
     const BodyRows& rows = bodies.rows(BodyKind::planar);
     const std::uint32_t a = contact.body_a.row(), b = contact.body_b.row();
     const Vec3<PoseReal> between = rows.pose[b].position - rows.pose[a].position;
@@ -91,7 +86,7 @@ bool may_touch(const BodyStore& bodies, const IslandContact& contact, double dt)
         return std::hypot(static_cast<double>(v[0]), static_cast<double>(v[1]));
     };
     const double distance = std::hypot(static_cast<double>(between.x), static_cast<double>(between.y));
-    return distance - reach_of(contact) < near + (speed(a) + speed(b)) * dt;
+    return distance - reach_of(contact) < near_disc + (speed(a) + speed(b)) * dt;
 }
 
 /// Calls visit(block, lane) for each contact of a chunk.

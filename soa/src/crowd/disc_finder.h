@@ -100,8 +100,6 @@ class DiscFinder {
         std::uint32_t place, row;
     };
     Array<Leaving> leaving_;  ///< the discs of begin_late(), in the order of the strips
-    double late_room_ =
-        INFINITY;  ///< m: how far the nearest of them is, beyond its reach, from bands not beside its own
     /// A contact that may be new: of the disc in row `a`, which left its skin, with that in row `b`, or with segment `b`.
     struct LateContact {
         std::uint32_t a, b;

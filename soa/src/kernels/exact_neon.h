@@ -2,6 +2,7 @@
 // twice, also for 64-bit ARM, which has instructions for them: the last bit differs from every other machine's, and
 // the estimate of 1 / sqrt(0) raises a division by zero. Included before lanes.h, whose templates these overloads
 // take precedence over.
+#pragma once
 
 [[gnu::always_inline]] inline xsimd::batch<float, Arch> quotient(const xsimd::batch<float, Arch>& x,
                                                                  const xsimd::batch<float, Arch>& y)

@@ -1,6 +1,7 @@
 // Loads bodies into lanes and stores them. Included inside an anonymous namespace, after Lanes. The build inlines
 // everything here: a call that is not inlined would pass sixteen-lane vectors through memory. Fields of a loaded body
 // that a kernel does not use are never fetched: the compiler drops loads without a reader.
+#pragma once
 
 template <BodyKind kind>
 using Body = LaneBody<Lanes, kind>;

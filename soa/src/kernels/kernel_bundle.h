@@ -2,6 +2,7 @@
 // are in memory, and loads and stores tables, poses and bodies. Nothing here depends on the type of the constraint.
 // Functions that run outside the sweeps, or rarely within them, are not inlined, so that all types share one copy.
 // Included inside an anonymous namespace, after kernel_bodies.h.
+#pragma once
 
 /// Where the velocities of one side (body a or b) are stored: in the rows of the bodies, or in a row that nothing
 /// reads. A joint's kernel for rigid bodies also serves fixed ones, whose rows have the same shape and no inverse

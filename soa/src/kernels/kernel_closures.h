@@ -4,6 +4,7 @@
 // With the tree's locks held, a unit impulse along row j changes J v of row i by K_ij (J: Jacobian, v: velocities).
 // Loops are often redundant (a flat four-bar closes by five rows and needs two): rows whose pivot is only rounding
 // get no impulse, because the rows before them already enforce them.
+#pragma once
 
 /// A row depends on those before it if its pivot is below this share of J M^-1 J^T of its two bodies alone (M: mass
 /// matrix).

@@ -2,6 +2,7 @@
 // namespace, after kernel_bodies.h. Operations on poses are written as loops over lanes, which the compiler turns
 // into as many doubles at once as the instruction set has. The bits are those of BodyStore::commit, which handles the
 // rows that are refused here.
+#pragma once
 
 /// Whether `count` consecutive floats are all finite.
 inline bool all_finite(const float* values, int count)

@@ -1,6 +1,7 @@
 // The kernels of a constraint type and pair of body kinds, over blocks: gather, maths, scatter, written once
 // for every type, every pair and every instruction set. Included inside an anonymous namespace, after
 // kernel_bundle.h.
+#pragma once
 
 // ---- the kernels -------------------------------------------------------------------------------------------
 

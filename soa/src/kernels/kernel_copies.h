@@ -1,5 +1,6 @@
 // The bodies of a block of copies: loads them into lanes, stores them, and integrates them there. Included inside an
 // anonymous namespace, after kernel_bodies.h.
+#pragma once
 
 using Mover = Body<BodyKind::rigid>;
 

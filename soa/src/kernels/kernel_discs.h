@@ -1,5 +1,6 @@
 // What contacts of discs, in blocks that are kept from step to step, do in their own way: the start of a step, and sweeps.
 // Included inside an anonymous namespace, after kernel_constraints.h.
+#pragma once
 
 /// Rows of pairs from the poses of their discs; the impulses to start from; and sums of zero.
 template <class Type>

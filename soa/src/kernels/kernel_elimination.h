@@ -4,6 +4,7 @@
 // of a node of the tree are in registers, and their number is a constant; those of closures are in memory. What is done about a
 // pivot that rounding has spoilt is the caller's business. (Rows of one joint are factored by maths/small_system.h, which
 // takes its products in another order: its bits are others.)
+#pragma once
 
 /// The index of an entry of a triangle that is stored row by row.
 constexpr int in_triangle(int row, int column)

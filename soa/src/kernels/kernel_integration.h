@@ -1,4 +1,5 @@
 // The integration of bodies, one row per lane. Included inside an anonymous namespace, after kernel_bodies.h.
+#pragma once
 
 // ---- v += h a ----------------------------------------------------------------------------------------
 

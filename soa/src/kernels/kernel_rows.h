@@ -1,4 +1,5 @@
 // Loads rows into lanes and stores them. Included inside an anonymous namespace, after Lanes.
+#pragma once
 
 inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float));
 

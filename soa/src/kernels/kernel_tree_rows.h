@@ -5,6 +5,7 @@
 // rows (a ball-socket, a hinge or a fixed joint: nearly every figure) keeps only its lever arms and computes without
 // the rest, which takes a third of the memory and half of the work. Sums are in the order of the whole rows, so the
 // bits are the same.
+#pragma once
 
 using Row6 = Lanes[6];
 

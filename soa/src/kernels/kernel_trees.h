@@ -12,6 +12,7 @@
 // effective mass: the articulated inertia of R. Featherstone (Rigid Body Dynamics Algorithms, 2008, chapter 7).
 // Masses are only ever added, so nothing cancels whatever their ratio. If all bodies were eliminated first, the
 // system of the locks would consist of terms 1/m + 1/m' - ..., which cancel.
+#pragma once
 
 /// Factors K in place. Its pivots are known to be at least `least`, so one that rounding has made smaller is raised
 /// to that. For a row without a pivot, 1 / D is 0.

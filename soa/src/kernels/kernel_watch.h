@@ -1,5 +1,6 @@
 // Measures what a sweep changes of the bodies of a block: see watched_sweep.h. Included inside an anonymous
 // namespace, after kernel_integration.h.
+#pragma once
 
 /// Copies the bodies into fields of sixteen consecutive floats.
 template <BodyKind kind>

@@ -1,4 +1,5 @@
 // The kernels of constraint types for every pair of body kinds. Included inside an anonymous namespace, after Lanes.
+#pragma once
 
 #include "kernels/kernel_rows.h"
 

@@ -1,5 +1,6 @@
 // NEON: four lanes.
 // Included inside an anonymous namespace, once by each file of kernels: see constraint_kernels.cpp.
+#pragma once
 
 using Arch = xsimd::neon64;
 #include "kernels/exact_neon.h"

@@ -1,5 +1,6 @@
 // Loads and stores quads in eight lanes: two 4 x 4 transposes side by side. The upper half of each register is
 // loaded by an insertion from memory, which does not need the shuffle port that bounds these kernels.
+#pragma once
 
 [[gnu::always_inline]] inline void turn(__m256& r0, __m256& r1, __m256& r2, __m256& r3)
 {

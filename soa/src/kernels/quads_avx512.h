@@ -1,4 +1,5 @@
 // Loads and stores quads in sixteen lanes: four 4 x 4 transposes side by side; see quads_avx.h for the insertions.
+#pragma once
 
 [[gnu::always_inline]] inline void turn(__m512& r0, __m512& r1, __m512& r2, __m512& r3)
 {

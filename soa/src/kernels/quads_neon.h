@@ -1,4 +1,5 @@
 // Loads and stores quads in four lanes with NEON; see quads_sse.h.
+#pragma once
 
 [[gnu::always_inline]] inline void turn(float32x4_t& r0, float32x4_t& r1, float32x4_t& r2, float32x4_t& r3)
 {

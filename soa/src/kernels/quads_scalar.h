@@ -1,4 +1,5 @@
 // Loads and stores quads in one lane. See quads_sse.h for what a quad is.
+#pragma once
 
 [[gnu::always_inline]] inline float load_lanes(const float* address)
 {

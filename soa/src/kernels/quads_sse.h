@@ -2,6 +2,7 @@
 // rows + stride * index[lane] for each lane and transposes them, so that out[i] holds float i of every lane. `turn`
 // is a 4 x 4 transpose; wider lanes do the same in each 128-bit part (quads_avx.h, quads_avx512.h). `store_quads`
 // writes the first `count` lanes back.
+#pragma once
 
 [[gnu::always_inline]] inline void turn(__m128& r0, __m128& r1, __m128& r2, __m128& r3)
 {

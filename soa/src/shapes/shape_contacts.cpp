@@ -26,7 +26,7 @@ constexpr std::uint32_t capsule_of(std::uint64_t key)
 }
 
 /// What touches: a body, where its centre of mass is, its surface and the axis at whose distance that surface is.
-struct Side {
+struct TouchingBody {
     BodyId body;
     Vec3<double> centre;
     const PlacedCapsule* shape;
@@ -45,7 +45,7 @@ Vec3<double> centre_of(const SceneCore& scene, BodyId body)
     return convert<double>(scene.bodies.rows(where.kind()).pose[where.row()].position);
 }
 
-Side side_of(const SceneCore& scene, const ShapePairs& pairs, std::uint32_t index)
+TouchingBody side_of(const SceneCore& scene, const ShapePairs& pairs, std::uint32_t index)
 {
     const Capsule& capsule = scene.shapes.capsules[index];
     return {capsule.body, centre_of(scene, capsule.body), &pairs.capsule(index), capsule.surface,
@@ -72,8 +72,8 @@ Vec3<double> direction_across(const Axis& a, const Axis& b, const Vec3<double>& 
     return (dot(across, a_to_b) < 0 ? -1 / length : 1 / length) * across;
 }
 
-Contact contact_at(const Side& a, const Side& b, const Vec3<double>& point, const Vec3<double>& normal,
-                   double separation)
+Contact contact_at(const TouchingBody& a, const TouchingBody& b, const Vec3<double>& point,
+                   const Vec3<double>& normal, double separation)
 {
     Contact contact;
     contact.body_a = a.body;
@@ -89,7 +89,7 @@ Contact contact_at(const Side& a, const Side& b, const Vec3<double>& point, cons
 
 /// A contact at places of two axes. Seen from above, it is as high as what can be pushed at any height: the body that is
 /// not planar.
-Contact contact_between(const Side& a, const Side& b, const std::array<Axis, 2>& axes,
+Contact contact_between(const TouchingBody& a, const TouchingBody& b, const std::array<Axis, 2>& axes,
                         const AxisPlaces& places, const Vec3<double>& normal, double separation)
 {
     const PlacedCapsule &of_a = *a.shape, &of_b = *b.shape;
@@ -106,7 +106,7 @@ double margin_of(const PlacedCapsule& a, const PlacedCapsule& b)
 }
 
 /// Lists the contacts of two capsules that may touch within the step. `key` is that of the first one.
-void list_capsules(const Side& a, const Side& b, std::uint64_t key, Array<Contact>& contacts)
+void list_capsules(const TouchingBody& a, const TouchingBody& b, std::uint64_t key, Array<Contact>& contacts)
 {
     const PlacedCapsule &of_a = *a.shape, &of_b = *b.shape;
     const bool is_flat = of_a.is_flat || of_b.is_flat;
@@ -159,7 +159,7 @@ WallPlaces places_at_wall(const Axis& wall, const Axis& capsule)
 
 /// Lists the contacts of a capsule with a wall that it may touch within the step. Beside the wall it is held on the left
 /// (side 1), on the right (-1), or where it is (0), however far it has been pressed beyond.
-void list_at_wall(const Side& a, const Side& b, double side, double margin, std::uint64_t key,
+void list_at_wall(const TouchingBody& a, const TouchingBody& b, double side, double margin, std::uint64_t key,
                   Array<Contact>& contacts)
 {
     const Axis &wall = a.shape->axis, axis = flattened(b.shape->axis);
@@ -182,8 +182,8 @@ void list_at_wall(const Side& a, const Side& b, double side, double margin, std:
 }
 
 /// Lists the contacts of a capsule with a half-space: one at each end of its axis.
-void list_half_space(const Side& a, const PlacedHalfSpace& half_space, const Side& b, std::uint64_t key,
-                     Array<Contact>& contacts)
+void list_half_space(const TouchingBody& a, const PlacedHalfSpace& half_space, const TouchingBody& b,
+                     std::uint64_t key, Array<Contact>& contacts)
 {
     const PlacedCapsule& capsule = *b.shape;
     const int ends = dot(capsule.axis.along, capsule.axis.along) > 0 ? 2 : 1;
@@ -322,13 +322,13 @@ void ShapeContacts::list(const SceneCore& scene, const ShapePairs& pairs, std::i
 void ShapeContacts::list_half_spaces(const SceneCore& scene, const ShapePairs& pairs, std::uint32_t capsule,
                                      Array<Contact>& contacts) const
 {
-    const Side b = side_of(scene, pairs, capsule);
+    const TouchingBody b = side_of(scene, pairs, capsule);
     if (!b.shape->can_move || b.shape->is_flat) return;
     for (std::size_t i = 0; i < half_spaces_.size(); ++i) {
         const HalfSpace& half_space = scene.shapes.half_spaces[i];
         if (!do_meet(half_space.surface, b.surface)) continue;
-        const Side a{half_space.body, half_spaces_[i].centre, nullptr, half_space.surface,
-                     is_static(scene, half_space.body)};
+        const TouchingBody a{half_space.body, half_spaces_[i].centre, nullptr, half_space.surface,
+                             is_static(scene, half_space.body)};
         list_half_space(a, half_spaces_[i], b,
                         key_of(Partner::half_space, slot_of(scene, capsule), half_space.slot, 0), contacts);
     }
@@ -354,12 +354,12 @@ void ShapeContacts::list_wall(const SceneCore& scene, const ShapePairs& pairs, c
     wall.axis = {{from.x, from.y, 0}, {to.x - from.x, to.y - from.y, 0}};
     wall.goes = pairs.walls_go();
     wall.is_flat = true;
-    const Side a{segment.body,
-                 centre_of(scene, segment.body),
-                 &wall,
-                 {segment.friction, 0, segment.category, segment.mask},
-                 is_static(scene, segment.body)};
-    const Side b = side_of(scene, pairs, pair.capsule);
+    const TouchingBody a{segment.body,
+                         centre_of(scene, segment.body),
+                         &wall,
+                         {segment.friction, 0, segment.category, segment.mask},
+                         is_static(scene, segment.body)};
+    const TouchingBody b = side_of(scene, pairs, pair.capsule);
     const std::uint64_t key = key_of(Partner::wall, slot_of(scene, pair.capsule), pair.partner, 0);
     const Hold hold = hold_of(scene, pairs, pair, wall.axis);
     // Whatever is near may be thrown against the wall, and is remembered on its side.
@@ -373,7 +373,7 @@ void ShapeContacts::list_disc(const SceneCore& scene, const ShapePairs& pairs, c
     const BodyId body = scene.bodies.id_of_slot(pair.partner);
     const DiscShape& shape = *scene.discs.shape_of(pair.partner);
     const PlacedCapsule disc = placed_disc(scene, scene.bodies.row_of(body).row(), shape, dt_);
-    const Side a{body, disc.axis.from, &disc, {shape.friction, 0, shape.category, shape.mask}};
+    const TouchingBody a{body, disc.axis.from, &disc, {shape.friction, 0, shape.category, shape.mask}};
     list_capsules(a, side_of(scene, pairs, pair.capsule),
                   key_of(Partner::disc, slot_of(scene, pair.capsule), pair.partner, 0), contacts);
 }

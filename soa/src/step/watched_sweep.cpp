@@ -9,9 +9,10 @@ namespace motley {
 namespace {
 
 /// The bodies of one side (a or b) of a block, as they were before a sweep.
-class Side {
+class KeptBodies {
   public:
-    Side(const KernelContext& context, const KernelTable& kernels, BodyKind kind, const std::int32_t* offsets)
+    KeptBodies(const KernelContext& context, const KernelTable& kernels, BodyKind kind,
+               const std::int32_t* offsets)
         : arrays_(context.bodies[static_cast<int>(kind)]),
           kernels_(kernels.bodies[static_cast<int>(kind)]),
           offsets_(offsets)
@@ -34,7 +35,7 @@ class Side {
     alignas(64) float kept_[most_body_floats * block_lanes];
 };
 
-void note_residuals(const Side& a, const Side& b, const BlockStreams& streams, std::int32_t block)
+void note_residuals(const KeptBodies& a, const KeptBodies& b, const BlockStreams& streams, std::int32_t block)
 {
     constexpr int residual_floats = sizeof(LaneResidual<float>) / sizeof(float);
     float* residual = streams.residuals + std::int64_t{block} * residual_floats * block_lanes;
@@ -52,8 +53,8 @@ void watched_sweep(const KernelContext& context, const KernelTable& kernels, con
                    ConstraintKernels::Sweep sweep, int impulse_floats, std::int32_t begin, std::int32_t end)
 {
     for (std::int32_t block = begin; block < end; ++block) {
-        Side a(context, kernels, streams.kind_a, streams.bodies[block].a);
-        Side b(context, kernels, streams.kind_b, streams.bodies[block].b);
+        KeptBodies a(context, kernels, streams.kind_a, streams.bodies[block].a);
+        KeptBodies b(context, kernels, streams.kind_b, streams.bodies[block].b);
         const int floats = impulse_floats * block_lanes;
         float* const impulses = streams.impulses + std::int64_t{block} * floats;
         float kept[most_impulse_floats * block_lanes];
