@@ -53,6 +53,7 @@ std::vector<SolverSettings> ways()
 /// Balls of every model that fall, roll, slide and are hit by a wall that turns.
 TEST(FrictionCone, HoldsForWhatListedContactsReport)
 {
+    const int steps = testing::long_run(240);
     for (const SolverSettings& settings : ways()) {
         for (const float restitution : {0.0F, 0.6F}) {
             SCOPED_TRACE(settings.substeps);
@@ -60,13 +61,15 @@ TEST(FrictionCone, HoldsForWhatListedContactsReport)
             mixed.restitution = restitution;
             Solver solver(settings);
             std::size_t found = 0;
-            for (int step = 0; step < 240; ++step) {
+            for (int step = 0; step < steps; ++step) {
                 const std::vector<Contact>& contacts = mixed.contacts();
                 ASSERT_EQ(solver.step(mixed.scene, frame_time, contacts).status, StepStatus::done);
                 expect_cones(mixed.scene, contacts, mixed.friction);
                 found += contacts.size();
             }
-            EXPECT_GT(found, 5000U);
+            if (!testing::is_sanitized) {
+                EXPECT_GT(found, 5000U);
+            }
         }
     }
 }
