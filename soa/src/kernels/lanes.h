@@ -4,7 +4,7 @@
 //
 // Included once by each file of kernels (see constraint_kernels.cpp), inside an anonymous namespace: every template
 // over these lanes then has internal linkage, so code compiled for a wide instruction set cannot be picked by the
-// linker for another. No include guard and no includes: the including file sets Arch first.
+// linker for another. No includes: the including file sets Arch first.
 #pragma once
 
 // Both must round to nearest. Where xsimd does not, overloads replace them (exact_neon.h).
