@@ -1,8 +1,10 @@
-"""Builds the module motley._motley by CMake, and takes the version from CMakeLists.txt."""
+"""Builds the module motley._motley by CMake, which also gets the options in the variable CMAKE_ARGS, and takes the version from
+CMakeLists.txt."""
 
 import os
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 
@@ -18,7 +20,7 @@ class BuildByCMake(build_ext):
         build = root / "build/python"
         subprocess.run(["cmake", "-S", root, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                         "-DMOTLEY_BUILD_TESTS=OFF", "-DMOTLEY_BUILD_BENCH=OFF", "-DMOTLEY_PYTHON=ON", "-DBUILD_SHARED_LIBS=OFF",
-                        f"-DPython_EXECUTABLE={sys.executable}"], check=True)
+                        f"-DPython_EXECUTABLE={sys.executable}", *shlex.split(os.environ.get("CMAKE_ARGS", ""))], check=True)
         subprocess.run(["cmake", "--build", build, "--target", "motley_python"], check=True)
         target.parent.mkdir(parents=True, exist_ok=True)
         self.copy_file(str(build / "parallel/python/motley" / target.name), str(target))

@@ -209,7 +209,7 @@ TEST(Mjcf, HumanoidsFallAndLie)
         read_mjcf(humanoid(), {.leave_out = {"contact", "tendon", "actuator", "keyframe"}});
     Scene scene;
     for (const HalfSpaceDefinition& floor : model.floors) scene.add_half_space(floor);
-    const int people = testing::is_sanitized ? 4 : 20;
+    const int people = testing::repeats(20);
     std::vector<Placing> placings(static_cast<std::size_t>(people));
     for (std::size_t i = 0; i < placings.size(); ++i) {
         placings[i].position = {3.0 * static_cast<double>(i), 0, 0.3};
@@ -244,10 +244,10 @@ TEST(Mjcf, AHeapOfHumanoidsIsNotThrownApartByTheDefault)
     const MjcfModel model =
         read_mjcf(humanoid(), {.leave_out = {"contact", "tendon", "actuator", "keyframe"}});
     const std::span<const BodyDefinition> definitions = model.figures[0].figure.bodies();
-    for (int heap = 0; heap < (testing::is_sanitized ? 1 : 3); ++heap) {
+    for (int heap = 0; heap < testing::repeats(3); ++heap) {
         Scene scene;
         for (const HalfSpaceDefinition& floor : model.floors) scene.add_half_space(floor);
-        std::vector<Placing> placings(24);
+        std::vector<Placing> placings(testing::is_sanitized ? 4 : 24);
         for (std::size_t i = 0; i < placings.size(); ++i) {
             const double place = static_cast<double>(i) + 100 * heap;
             placings[i].position = {0.5 * std::sin(7 * place), 0.5 * std::cos(11 * place),

@@ -39,6 +39,7 @@ SixDofDefinition euler_joint(Scene& scene, BodyId body)
 TEST(EulerDrive, SpringsRestWhereATorqueDoesNoWorkOnAnyOfTheAngles)
 {
     for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
+        if (testing::is_sanitized && method != Method::soft_step) continue;
         Scene scene;
         const BodyId body = scene.add_body(box({0, 0, 0}));
         SixDofDefinition joint = euler_joint(scene, body);
@@ -69,6 +70,7 @@ TEST(EulerDrive, LimitsHoldEachAngleAndBearItsShareOfTheTorque)
     const Eigen::Vector3d lower(-0.5, -0.3, -1), upper(0.4, 0.6, 0.8);
     for (const Eigen::Vector3d& push : {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(-1, 1, -1),
                                         Eigen::Vector3d(1, -1, 0.3), Eigen::Vector3d(-0.2, 1, 1)}) {
+        if (testing::is_sanitized && push.x() != 1) continue;
         Scene scene;
         const BodyId body = scene.add_body(box({0, 0, 0}));
         SixDofDefinition joint = euler_joint(scene, body);

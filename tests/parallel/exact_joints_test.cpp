@@ -347,7 +347,7 @@ TEST(ExactJoints, ASwingingChainKeepsItsEnergy)
     const double before = energy(), fall = 9.81 * 11 * 2.75;
     Solver solver(exact_settings(16));
     double most = -1e9, least = 1e9;
-    for (int step = 0; step < 600; ++step) {
+    for (int step = 0; step < testing::long_run(600); ++step) {
         solver.step(scene, frame_time);
         most = std::max(most, energy() - before);
         least = std::min(least, energy() - before);

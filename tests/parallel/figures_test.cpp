@@ -123,7 +123,7 @@ TEST(Figures, EveryInstructionSetAndThreadCountHasTheSameBits)
             add_puppets(scene, 48 + 11);
             Solver solver(settings, options);
             std::vector<std::uint64_t> hashes;
-            for (int step = 0; step < 60; ++step) {
+            for (int step = 0; step < testing::long_run(60); ++step) {
                 solver.step(scene, frame_time);
                 hashes.push_back(scene.state_hash());
             }
@@ -317,7 +317,7 @@ TEST(Figures, CopiesWithJointsOfSixDegreesOfFreedomHaveTheBitsOfOrdinarySweeps)
         }
         Scene ordinary = lockstep;
         Solver solver(settings), reference(testing::swept(settings));
-        for (int step = 0; step < 120; ++step) {
+        for (int step = 0; step < testing::long_run(120); ++step) {
             const StepReport report = solver.step(lockstep, frame_time);
             ASSERT_EQ(report.joints_in_lockstep, static_cast<std::int64_t>(figure.joint_count() * copies))
                 << report.error;

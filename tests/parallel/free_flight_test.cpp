@@ -46,10 +46,10 @@ Solver solver_of(const Case& of, bool exact_joints = false)
     return Solver(settings);
 }
 
-/// Steps for about two seconds. Returns the exact time.
+/// Steps for about two seconds, or a tenth of it under a sanitizer. Returns the exact time.
 double fly(Scene& scene, Solver solver, float dt)
 {
-    const auto steps = static_cast<int>(2 / dt + 0.5F);
+    const int steps = testing::long_run(static_cast<int>(2 / dt + 0.5F));
     for (int i = 0; i < steps; ++i) EXPECT_EQ(solver.step(scene, dt).status, StepStatus::done);
     return steps * static_cast<double>(dt);
 }

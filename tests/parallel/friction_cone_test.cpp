@@ -156,7 +156,7 @@ TEST(FrictionCone, HoldsForWhatDiscsReport)
         scene.add_wall({.points = room, .closed = true, .friction = 0.4F});
         Solver solver(settings);
         std::size_t contacts = 0;
-        for (int step = 0; step < 120; ++step) {
+        for (int step = 0; step < testing::long_run(120); ++step) {
             ASSERT_EQ(solver.step(scene, frame_time).status, StepStatus::done);
             double most = 0, largest = 0;
             for (const DiscContact& contact : scene.disc_contacts()) {

@@ -257,7 +257,7 @@ TYPED_TEST(EveryJoint, KeepsMomentaAndNeverAddsEnergyInFreeFlight)
     using Cases = testing::JointCases<TypeParam>;
     constexpr bool keeps_arms_through_a_step = std::is_same_v<TypeParam, ManifoldDefinition>;
     int regular_cases = 0;
-    for (int seed = 1; seed <= 5; ++seed) {
+    for (int seed = 1; seed <= testing::repeats(5); ++seed) {
         testing::Random random(static_cast<std::uint64_t>(seed));
         Twin pair;
         pair.add(body_of(2, random));
@@ -287,7 +287,7 @@ TYPED_TEST(EveryJoint, KeepsMomentaAndNeverAddsEnergyInFreeFlight)
             }
         }
     }
-    EXPECT_GE(regular_cases, 5) << "else nothing was tested";
+    EXPECT_GE(regular_cases, testing::repeats(5)) << "else nothing was tested";
 }
 
 TEST(AgainstReference, ContactsAgreeForEveryPairAndMethod)

@@ -156,7 +156,7 @@ TEST(ShapeContacts, FollowTeleports)
     ShapeCrowd crowd;
     Solver solver(earth);
     testing::Random random;
-    for (int step = 0; step < 60; ++step) {
+    for (int step = 0; step < testing::long_run(60); ++step) {
         const BodyId moved =
             crowd.rigid[static_cast<std::size_t>(random.below(static_cast<int>(crowd.rigid.size())))];
         const Vec3<double> to =

@@ -64,6 +64,7 @@ TEST(SpringStiffness, SpringsInSeriesThroughALightBodyAddUp)
     // converge slowly through a body that is far lighter than those that its springs hold; the direct method does not
     // sweep.
     for (const float light : {1e-6F, 1e-3F, 1.0F}) {
+        if (testing::is_sanitized && light != 1e-3F) continue;
         Scene scene;
         const BodyId between = scene.add_body(box({0, 0, 0}, light)), wheel = scene.add_body(box({0, 0, 0}));
         const ConstraintId first =
@@ -250,7 +251,7 @@ TEST(Armature, BesideALightLinkGivesNoEnergy)
             settings.exact_joints = exact;
             Solver solver(settings);
             double most = 0;
-            for (int step = 0; step < 1200; ++step) {
+            for (int step = 0; step < testing::long_run(1200); ++step) {
                 ASSERT_EQ(solver.step(scene, frame_time).status, StepStatus::done);
                 most = std::max(most, scene.errors().kinetic_energy);
             }

@@ -67,6 +67,7 @@ TEST(Tension, ChainsGainNoEnergyUnderAnyLoad)
     for (const Way& way : default_ways()) {
         for (const ChainStart start : {ChainStart::hanging, ChainStart::level}) {
             for (const double load : {1.0, 30.0, 300.0, 1e3, 1e4, 1e5, 1e6}) {
+                if (testing::is_sanitized && load != 1e3) continue;
                 Scene scene;
                 std::vector<LoadedChain> chains{LoadedChain(scene)};
                 chains[0].hang(start, load);

@@ -6,6 +6,7 @@
 
 #include "fallen_figures.h"
 #include "joint_scene.h"
+#include "rig.h"
 
 namespace motley {
 namespace {
@@ -171,7 +172,7 @@ std::uint64_t hash_with_rounding(int rounding, const Way& way, const SolverOptio
 {
     MixedScene mixed;
     Solver solver(way.settings, options);
-    for (int step = 0; step < 60; ++step) {
+    for (int step = 0; step < testing::long_run(60); ++step) {
         const std::vector<Contact> contacts = mixed.contacts();
         std::fesetround(rounding);
         solver.step(mixed.scene, dt, contacts);
