@@ -18,10 +18,16 @@ inline constexpr bool is_sanitized = true;
 inline constexpr bool is_sanitized = false;
 #endif
 
-/// The number of steps of a long run. Sanitizers get a tenth of it: later steps access the same memory as earlier ones.
+/// The number of steps of a long run, of which sanitizers get only `sanitized`: later steps access the same memory as earlier
+/// ones.
+constexpr int long_run(int steps, int sanitized)
+{
+    return is_sanitized ? sanitized : steps;
+}
+/// The same, where a tenth of the steps is enough for a sanitizer.
 constexpr int long_run(int steps)
 {
-    return is_sanitized ? steps / 10 : steps;
+    return long_run(steps, steps / 10);
 }
 /// The number of repeats with other random numbers, loads or copies, of which sanitizers get one for the same reason.
 constexpr int repeats(int count)

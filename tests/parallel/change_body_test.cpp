@@ -266,8 +266,6 @@ struct Bodies {
     }
 };
 
-constexpr int steps_of_each = testing::is_sanitized ? 5 : 20;
-
 TEST(ChangeBody, GivesTheBitsOfABodyThatWasAddedWithThisModel)
 {
     for (const SolverSettings& settings : testing::every_way()) {
@@ -278,7 +276,7 @@ TEST(ChangeBody, GivesTheBitsOfABodyThatWasAddedWithThisModel)
                 Bodies born(to, to), changed(from, to);
                 ASSERT_EQ(changed.scene.state_hash(), born.scene.state_hash());
                 Solver solver(settings), other(settings);
-                for (int step = 0; step < steps_of_each; ++step) {
+                for (int step = 0; step < testing::long_run(20, 5); ++step) {
                     ASSERT_EQ(solver.step(born.scene, dt, born.contacts).status, StepStatus::done);
                     ASSERT_EQ(other.step(changed.scene, dt, changed.contacts).status, StepStatus::done);
                     ASSERT_EQ(changed.scene.state_hash(), born.scene.state_hash()) << "step " << step;
@@ -295,14 +293,15 @@ TEST(ChangeBody, LeavesNothingOfTheOldModelInASolverThatKnowsTheScene)
             Bodies bodies(to == BodyModel::rigid ? BodyModel::planar : BodyModel::rigid,
                           to == BodyModel::rigid ? BodyModel::planar : BodyModel::rigid);
             Solver solver(settings);
-            for (int step = 0; step < steps_of_each; ++step) solver.step(bodies.scene, dt, bodies.contacts);
+            for (int step = 0; step < testing::long_run(20, 5); ++step)
+                solver.step(bodies.scene, dt, bodies.contacts);
             // Every third one, so that all pairs of old and new models meet.
             for (std::size_t i = 0; i < bodies.bodies.size(); i += 3)
                 bodies.scene.change_body(bodies.bodies[i], {to, round_body});
             Scene anew = load_scene(save_scene(bodies.scene));
             ASSERT_EQ(bodies.scene.state_hash(), anew.state_hash());
             Solver other(settings);
-            for (int step = 0; step < steps_of_each; ++step) {
+            for (int step = 0; step < testing::long_run(20, 5); ++step) {
                 ASSERT_EQ(solver.step(bodies.scene, dt, bodies.contacts).status, StepStatus::done);
                 ASSERT_EQ(other.step(anew, dt, bodies.contacts).status, StepStatus::done);
                 ASSERT_EQ(bodies.scene.state_hash(), anew.state_hash()) << "step " << step;

@@ -36,7 +36,7 @@ TEST(DirectTension, ChainsHoldAnyLoadAndGainNoEnergy)
             Solver solver(direct({0, static_cast<float>(-g), 0}));
             const double before = chain.energy(), height = chain.height();
             double separation = 0, gain = -height;
-            for (int step = 0; step < (testing::is_sanitized ? 12 : 600); ++step) {
+            for (int step = 0; step < testing::long_run(600, 12); ++step) {
                 const StepReport report = solver.step(scene, frame_time);
                 ASSERT_EQ(report.status, StepStatus::done);
                 ASSERT_EQ(report.direct_unsolved, 0) << load << " kg, step " << step;

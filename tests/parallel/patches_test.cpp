@@ -39,7 +39,7 @@ std::vector<std::uint64_t> run(const SolverSettings& settings, const SolverOptio
     add_others(crowd);
     Solver solver(settings, options);
     std::vector<std::uint64_t> hashes;
-    const int steps = testing::is_sanitized ? 2 : 4;
+    const int steps = testing::long_run(4, 2);
     for (int step = 0; step < steps; ++step) {
         // In the last step some people no longer touch anybody.
         if (step == steps - 1) crowd.pairs.resize(Patches::from_contacts + 1000);

@@ -12,7 +12,7 @@ namespace {
 using testing::MixedScene;
 
 constexpr int golden_steps = 300;
-constexpr int steps_of_each = testing::is_sanitized ? 10 : golden_steps;
+constexpr int steps_of_each = testing::long_run(golden_steps, 10);
 constexpr float dt = 1.0F / 60;
 
 struct Way {

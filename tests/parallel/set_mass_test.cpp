@@ -90,8 +90,6 @@ struct Bodies {
     }
 };
 
-constexpr int steps_of_each = testing::is_sanitized ? 5 : 30;
-
 TEST(SetMass, GivesTheBitsOfABodyThatWasAddedWithThisMass)
 {
     for (const SolverSettings& settings : testing::every_way()) {
@@ -104,7 +102,7 @@ TEST(SetMass, GivesTheBitsOfABodyThatWasAddedWithThisMass)
                 bodies->scene.set_force(bodies->bodies[i], {1, 2, 0}, {0, 0, 0.5F});
         }
         Solver solver(settings), other(settings);
-        for (int step = 0; step < steps_of_each; ++step) {
+        for (int step = 0; step < testing::long_run(30, 5); ++step) {
             ASSERT_EQ(solver.step(born.scene, dt, born.contacts).status, StepStatus::done);
             ASSERT_EQ(other.step(changed.scene, dt, changed.contacts).status, StepStatus::done);
             ASSERT_EQ(changed.scene.state_hash(), born.scene.state_hash()) << "step " << step;
@@ -117,11 +115,12 @@ TEST(SetMass, LeavesNothingOfTheOldMassInASolverThatKnowsTheScene)
     for (const SolverSettings& settings : testing::every_way()) {
         Bodies bodies(false);
         Solver solver(settings);
-        for (int step = 0; step < steps_of_each; ++step) solver.step(bodies.scene, dt, bodies.contacts);
+        for (int step = 0; step < testing::long_run(20, 5); ++step)
+            solver.step(bodies.scene, dt, bodies.contacts);
         bodies.set_masses(true);
         Scene anew = load_scene(save_scene(bodies.scene));
         Solver other(settings);
-        for (int step = 0; step < steps_of_each; ++step) {
+        for (int step = 0; step < testing::long_run(20, 5); ++step) {
             ASSERT_EQ(solver.step(bodies.scene, dt, bodies.contacts).status, StepStatus::done);
             ASSERT_EQ(other.step(anew, dt, bodies.contacts).status, StepStatus::done);
             ASSERT_EQ(bodies.scene.state_hash(), anew.state_hash()) << "step " << step;
