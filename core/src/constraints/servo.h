@@ -296,7 +296,7 @@ struct AngularServo : ConstraintTraits {
         const auto held_back = dot(torque, torque) > in_sweep.max_impulse * in_sweep.max_impulse;
         Vec3<Real> left =
             in_sweep.soft.mass_scale * substep.least_effective_mass * (speed + substep.spin_bias);
-        if constexpr (A::kind != BodyKind::rigid && B::kind != BodyKind::rigid) left.x = left.y = Real(0);
+        if (stays_in_plane(a) && stays_in_plane(b)) left.x = left.y = Real(0);
         left = left + in_sweep.soft.impulse_scale * (substep.stride * torque_of(substep, impulse.turn));
         const Vec3<Real> next = select(held_back, impulse.turn - lambda_of(substep, left), free);
         const Vec3<Real> wanted = scale_within(torque_of(substep, next), in_sweep.max_impulse) * next;

@@ -77,6 +77,13 @@ Sym3<Real> angular_response(const LaneBody<Real, BodyKind::fixed>&)
     return {none, none, none, none, none, none};
 }
 
+/// Whether nothing can turn the body out of the plane z = 0: of its kind, not of its state.
+template <class Real, BodyKind kind>
+constexpr bool stays_in_plane(const LaneBody<Real, kind>&)
+{
+    return kind != BodyKind::rigid;
+}
+
 /// The magnitude of M^-1. A row whose J M^-1 J^T is below `rounding_share` of it is one that the bodies cannot follow:
 /// for example a row perpendicular to the plane of planar bodies, where only rounding is left.
 template <class Real, BodyKind kind>

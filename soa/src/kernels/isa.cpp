@@ -127,6 +127,13 @@ constexpr Isa rare_lanes_of(Isa isa)
     }
 }
 
+/// The instruction set that runs what begins and ends a step: its time is that of reaching scattered memory, and with AVX-512 it
+/// would be a thirtieth of the library for a fiftieth of a step.
+constexpr Isa once_lanes_of(Isa isa)
+{
+    return isa == Isa::avx512 ? Isa::avx2 : isa;
+}
+
 /// The instruction set that solves contacts of discs. Two halves of a block in lanes of AVX2 overlap where one whole
 /// block waits for itself: 0.8 times the time of AVX-512 on Zen 5.
 constexpr Isa disc_lanes_of(Isa isa)
@@ -141,7 +148,7 @@ void enter_constraints(KernelTable& table, TypeList<Lists...>)
     const auto enter = [&]<class Types>(Types) {
         if constexpr (is_built<Types>(BuiltLists{})) {
             enter_constraint_kernels<isa, KernelShare::swept, Types>(next);
-            enter_constraint_kernels<isa, KernelShare::once, Types>(next);
+            enter_constraint_kernels<once_lanes_of(isa), KernelShare::once, Types>(next);
             enter_constraint_kernels<rare_lanes_of(isa), KernelShare::unusual, Types>(next);
             enter_constraint_kernels<rare_lanes_of(isa), KernelShare::rare, Types>(next);
         }
@@ -157,6 +164,7 @@ const KernelTable& table_of()
     static const KernelTable table = [] {
         KernelTable entered;
         if constexpr (isa != Isa::scalar) entered = table_of<Isa::scalar>();
+        entered.width = isa_width(isa);
         enter_constraints<isa>(entered, ConstraintLists{});
         enter_body_kernels<isa>(entered.bodies, entered.figures);
 #ifndef MOTLEY_WITHOUT_PLANAR

@@ -11,6 +11,16 @@ using PoseQuad [[gnu::vector_size(4 * sizeof(PoseReal)), gnu::aligned(sizeof(Pos
     PoseReal;
 using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
 
+/// The row of a body from its offset.
+inline std::int32_t row_of(const BodyArrays& arrays, std::int32_t offset)
+{
+    constexpr std::int32_t in_plane = offsets_a_row(BodyKind::planar),
+                           in_space = offsets_a_row(BodyKind::rigid);
+    static_assert(in_plane == offsets_a_row(BodyKind::particle) &&
+                  in_space == offsets_a_row(BodyKind::fixed));
+    return arrays.kind <= BodyKind::planar ? offset / in_plane : offset / in_space;
+}
+
 /// The same pointer, of which the compiler does not know that it has read from it before: it then reads offsets again
 /// rather than keep sixteen of them, for which there are no registers.
 [[gnu::always_inline]] inline const std::int32_t* read_again(const std::int32_t* offsets)
@@ -73,6 +83,15 @@ using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
     return {{v[0], v[1], v[2]}, {w[0], w[1], w[2]}, {d[0], d[1], d[2]}, {q[0], q[1], q[2], q[3]}};
 }
 
+/// Not inlined, as all that depends on the kind while a kernel runs: few constraints are of such pairs.
+[[gnu::noinline]] inline Body<any_kind> load_body(const BodyArrays& arrays, const std::int32_t* offsets,
+                                                  Body<any_kind>*)
+{
+    return with_kind<false>(arrays.kind, [&](auto kind) {
+        return as_any(load_body(arrays, offsets, static_cast<Body<kind()>*>(nullptr)));
+    });
+}
+
 [[gnu::always_inline]] inline void store_velocity(float* rows, const std::int32_t* offsets,
                                                   const Body<BodyKind::particle>& body, int count)
 {
@@ -97,6 +116,11 @@ using FloatQuad [[gnu::vector_size(4 * sizeof(float)), gnu::may_alias]] = float;
 [[gnu::always_inline]] inline void store_velocity(float*, const std::int32_t*, const Body<BodyKind::fixed>&,
                                                   int)
 {
+}
+[[gnu::noinline]] inline void store_velocity(float* rows, const std::int32_t* offsets,
+                                             const Body<any_kind>& any, int count)
+{
+    look_at<false>(any, [&](const auto& body) { store_velocity(rows, offsets, body, count); });
 }
 template <class Body>
 [[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* offsets,
@@ -176,20 +200,6 @@ template <BodyKind kind>
     store_row(body.inverse_inertia, lanes + CopyBody::inverse_inertia * block_lanes);
     store_row(body.inverse_inertia, lanes + CopyBody::start_inertia * block_lanes);
 }
-/// Prefetches the rows of a whole block, with or without displacements. Fixed bodies are few and stay in cache.
-template <BodyKind kind, bool delta>
-[[gnu::always_inline]] inline void prefetch_bodies(const BodyArrays& arrays, const std::int32_t* offsets)
-{
-    if constexpr (kind != BodyKind::fixed) {
-        for (int lane = 0; lane < block_lanes; ++lane) {
-            const std::int64_t first = std::int64_t{offset_floats} * offsets[lane];
-            __builtin_prefetch(arrays.velocity + first);
-            if constexpr (delta) __builtin_prefetch(arrays.delta + first);
-            if constexpr (kind == BodyKind::rigid) __builtin_prefetch(arrays.world_inverse_inertia + first);
-        }
-    }
-}
-
 /// The acceleration of a body by forces and gravity, m/s2; 0 for a body that cannot move.
 template <BodyKind kind>
 Vec3<Lanes> free_acceleration(const StepConstants& step, const BodyArrays& arrays,

@@ -59,8 +59,14 @@ struct Kernels {
                                                        const BlockStreams& streams, std::int64_t block,
                                                        const Work& work)
     {
+        for_each_bundle(context, streams, block, streams.counts[block], work);
+    }
+    template <class Work>
+    [[gnu::always_inline]] static void for_each_bundle(const KernelContext& context,
+                                                       const BlockStreams& streams, std::int64_t block,
+                                                       int count, const Work& work)
+    {
         const BlockBodies& bodies = streams.bodies[block];
-        const int count = streams.counts[block];
         const BodyArrays& arrays_a = context.bodies[static_cast<int>(streams.kind_a)];
         const BodyArrays& arrays_b = context.bodies[static_cast<int>(streams.kind_b)];
         Nowhere nowhere;
@@ -86,8 +92,7 @@ struct Kernels {
         [[nodiscard]] const StepConstants& step() const { return context.step; }
         [[nodiscard]] JointPose<Lanes, kind_a, kind_b> pose() const
         {
-            return {between_bodies<kind_a, kind_b>(bundle.arrays_a, bundle.offsets_a, bundle.arrays_b,
-                                                   bundle.offsets_b),
+            return {between_bodies(bundle.arrays_a, bundle.offsets_a, bundle.arrays_b, bundle.offsets_b),
                     load_orientation<kind_a>(bundle.arrays_a, bundle.offsets_a),
                     load_orientation<kind_b>(bundle.arrays_b, bundle.offsets_b)};
         }
@@ -96,10 +101,10 @@ struct Kernels {
             const auto points = [&](int lane) -> const WorldPoints& {
                 return data.world_points[bundle.constraint[lane]];
             };
-            return {from_points<kind_a>(bundle.arrays_a, bundle.offsets_a,
-                                        [&](int lane) -> const Vec3<double>& { return points(lane).a; }),
-                    from_points<kind_b>(bundle.arrays_b, bundle.offsets_b,
-                                        [&](int lane) -> const Vec3<double>& { return points(lane).b; })};
+            return {from_points(bundle.arrays_a, bundle.offsets_a,
+                                [&](int lane) -> const Vec3<double>& { return points(lane).a; }),
+                    from_points(bundle.arrays_b, bundle.offsets_b,
+                                [&](int lane) -> const Vec3<double>& { return points(lane).b; })};
         }
         [[nodiscard]] Vec3<Lanes> acceleration(const A& a, const B& b) const
         {
@@ -137,7 +142,9 @@ struct Kernels {
     {
         static_assert(ConstraintType<Type, Start, End, Lanes, kind_a, kind_b>, "see constraint_type.h");
         for (std::int32_t block = begin; block < end; ++block) {
-            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+            // Padding too, as far as a sweep reads it.
+            const int count = (streams.counts[block] + context.width - 1) & -context.width;
+            for_each_bundle(context, streams, block, count, [&](const Bundle& bundle) {
                 const auto parameters =
                     gather_struct<Parameters>(data.parameters, data.parameter_stride, bundle.constraint);
                 std::int32_t entry[Lanes_width];
@@ -229,28 +236,34 @@ struct Kernels {
                            std::int32_t end)
     {
         for (std::int32_t block = begin; block < end; ++block) {
-            prefetch<sees_delta_once>(context, streams, block, end);
-            for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
-                bound_warm_start(context, bundle, [&] {
-                    return std::pair{bundle.load_a(), bundle.load_b()};
+            prefetch(sees_delta_once, context, streams, block, end);
+            if constexpr (has_copies && !Type::is_contact) {
+                // In place of a second copy of the maths, which is the largest of a joint.
+                BlockCopies bodies;
+                load_block<isa_here>(context, streams, block, bodies);
+                warm_start_copies(context, streams, block, bodies.a, bodies.b);
+                store_block_velocities<isa_here>(context, streams, block, bodies);
+            } else {
+                for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+                    bound_warm_start(context, bundle, [&] {
+                        return std::pair{bundle.load_a(), bundle.load_b()};
+                    });
+                    A a = bundle.load_a();
+                    B b = bundle.load_b();
+                    begin_substep(bundle, a, b);
+                    bundle.store_velocities(a, b);
                 });
-                A a = bundle.load_a();
-                B b = bundle.load_b();
-                begin_substep(bundle, a, b);
-                bundle.store_velocities(a, b);
-            });
+            }
         }
     }
 
     /// Prefetches the bodies of the next block, if bodies exceed the core's cache.
-    template <bool delta>
-    [[gnu::always_inline]] static void prefetch(const KernelContext& context, const BlockStreams& streams,
-                                                std::int32_t block, std::int32_t end)
+    [[gnu::always_inline]] static void prefetch(bool with_delta, const KernelContext& context,
+                                                const BlockStreams& streams, std::int32_t block,
+                                                std::int32_t end)
     {
-        if (!context.bodies_are_far || block + 1 >= end) return;
-        prefetch_bodies_of<kind_a, kind_b, delta>(context.bodies[static_cast<int>(streams.kind_a)],
-                                                  context.bodies[static_cast<int>(streams.kind_b)],
-                                                  streams.bodies[block + 1]);
+        if (context.bodies_are_far && block + 1 < end)
+            prefetch_bodies(context, streams, block + 1, with_delta);
     }
 
     static void solve(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
@@ -303,7 +316,7 @@ struct Kernels {
     {
         renew_responses(context, streams, begin, end);
         for (std::int32_t block = begin; block < end; ++block) {
-            prefetch<!sees_delta_once>(context, streams, block, end);
+            prefetch(!sees_delta_once, context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
@@ -322,7 +335,7 @@ struct Kernels {
     {
         renew_responses(context, streams, begin, end);
         for (std::int32_t block = begin; block < end; ++block) {
-            prefetch<true>(context, streams, block, end);
+            prefetch(true, context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
@@ -339,7 +352,7 @@ struct Kernels {
     {
         renew_responses(context, streams, begin, end);
         for (std::int32_t block = begin; block < end; ++block) {
-            prefetch<true>(context, streams, block, end);
+            prefetch(true, context, streams, block, end);
             for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
                 A a = bundle.load_a();
                 B b = bundle.load_b();
@@ -451,8 +464,8 @@ struct Kernels {
         });
     }
 
-    static void warm_start_copies(const KernelContext& context, const BlockStreams& streams,
-                                  std::int32_t block, float* body_a, float* body_b)
+    [[gnu::noinline]] static void warm_start_copies(const KernelContext& context, const BlockStreams& streams,
+                                                    std::int32_t block, float* body_a, float* body_b)
     {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
             bound_warm_start(context, bundle, [&] {
@@ -566,6 +579,11 @@ struct Kernels {
             kernels.warm_start_copies = warm_start_copies;
             kernels.solve_copies = solve_copies;
             kernels.relax_copies = relax_copies;
+            if constexpr (Type::equality_count > 0) {
+                kernels.equality_rows = equality_rows;
+                kernels.equality_count = Type::equality_count;
+            }
+            if constexpr (Type::turns_about_points) kernels.lengthen_steps = lengthen_steps;
         }
         kernels.warm_start = warm_start;
         kernels.solve = solve;
@@ -578,16 +596,11 @@ struct Kernels {
         kernels.sum_floats = fields_of<Sum>;
     }
 
-    /// Enters what runs at the start and at the end of a step, and around the trees of exact joints.
+    /// Enters what runs at the start and at the end of a step.
     static void enter_once(ConstraintKernels& kernels)
     {
         kernels.prepare = prepare;
         kernels.store = store;
-        if constexpr (has_copies && Type::equality_count > 0) {
-            kernels.equality_rows = equality_rows;
-            kernels.equality_count = Type::equality_count;
-        }
-        if constexpr (has_copies && Type::turns_about_points) kernels.lengthen_steps = lengthen_steps;
     }
 
     /// Enters what only some settings or definitions need.

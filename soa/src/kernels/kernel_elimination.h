@@ -47,20 +47,6 @@ struct StoredColumn {
     void set(int row, const Lanes& value) const { store_lanes(value, entries + row * block_lanes); }
 };
 
-template <int n>
-using Constant = std::integral_constant<int, n>;
-
-/// Calls work(i) for i from 0 to count - 1: unrolled for a Constant, in a loop for an int.
-template <class Count, class Work>
-[[gnu::always_inline]] inline void repeat(Count count, const Work& work)
-{
-    if constexpr (std::is_same_v<Count, int>) {
-        for (int i = 0; i < count; ++i) work(i);
-    } else {
-        unrolled<Count::value>(work);
-    }
-}
-
 /// Factors K of n rows in place. inverse_of(i, pivot) returns 1 / D of row i, or 0 for a row without a pivot.
 template <class Count, class Entries, class Inverse>
 [[gnu::always_inline]] inline void factor_in_place(Count n, Entries& k, const Inverse& inverse_of)
@@ -82,9 +68,9 @@ template <class Count, class Entries, class Inverse>
 }
 
 /// K^-1 x in place, n rows; entries of x before `first` are 0. keep(i, value) returns what entry i becomes.
-template <int first = 0, class Count, class Entries, class Vector, class Keep>
+template <class Count, class Entries, class Vector, class Keep>
 [[gnu::always_inline]] inline void solve_in_place(Count n, const Entries& f, const Vector& x,
-                                                  const Keep& keep)
+                                                  const Keep& keep, int first = 0)
 {
     repeat(n, [&](auto i) {
         Lanes value = x.get(i);
@@ -100,8 +86,10 @@ template <int first = 0, class Count, class Entries, class Vector, class Keep>
         x.set(i, keep(i, value));
     });
 }
-template <int first = 0, int n>
-[[gnu::always_inline]] inline void solve_in_place(const Triangle<n>& f, Lanes (&x)[n])
+template <class Count, int n>
+[[gnu::always_inline]] inline void solve_in_place(Count rows, const Triangle<n>& f, Lanes (&x)[n],
+                                                  int first = 0)
 {
-    solve_in_place<first>(Constant<n>{}, f, Column<n>{x}, [](int, const Lanes& value) { return value; });
+    solve_in_place(
+        rows, f, Column<n>{x}, [](int, const Lanes& value) { return value; }, first);
 }

@@ -86,22 +86,15 @@ struct RowIndex {
     }
 };
 
-/// Calls work(RowIndex) for all rows from `begin` to `end` - 1, a bundle at a time.
-template <BodyKind kind, class Work>
-[[gnu::always_inline]] inline void for_each_rows(std::int32_t begin, std::int32_t end, const Work& work)
+/// Calls work(RowIndex) for all rows from `begin` to `end` - 1, a bundle at a time, and rest(RowIndex) for the last bundle if it is
+/// not whole: what `work` inlines, `rest` had better call.
+template <BodyKind kind, class Work, class Rest>
+[[gnu::always_inline]] inline void for_each_rows(std::int32_t begin, std::int32_t end, const Work& work,
+                                                 const Rest& rest)
 {
     std::int32_t first = begin;
     for (; end - first >= Lanes_width; first += Lanes_width) work(RowIndex<kind>(first));
-    if (first < end) work(RowIndex<kind>(first, end - first));
-}
-/// The same for listed rows.
-template <BodyKind kind, class Work>
-[[gnu::always_inline]] inline void for_each_rows(const BodyRow* rows, std::int32_t count, const Work& work)
-{
-    std::int32_t first = 0;
-    for (; count - first >= Lanes_width; first += Lanes_width)
-        work(RowIndex<kind>(rows + first, Lanes_width));
-    if (first < count) work(RowIndex<kind>(rows + first, count - first));
+    if (first < end) rest(RowIndex<kind>(first, end - first));
 }
 
 /// Applies forces, gravity and damping and, where Replay says so, the velocity change by constraints in the last substep.
@@ -158,26 +151,36 @@ Lanes start_along(const KernelContext& context, const BodyArrays& arrays, const 
 }
 
 template <BodyKind kind, bool begins>
-void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
+[[gnu::always_inline]] inline void speed_up(const KernelContext& context, const RowIndex<kind>& index)
 {
     const BodyArrays& arrays = context.bodies[static_cast<int>(kind)];
-    for_each_rows<kind>(begin, end, [&](const RowIndex<kind>& index) {
-        Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
-        alignas(64) float start[Lanes_width];
-        if constexpr (begins) store_lanes(start_along<kind>(context, arrays, index), start);
-        change_velocity(context, arrays, index, body);
-        store_velocity(arrays, index.offsets, body, index.count);
-        if constexpr (begins) {
-            // Stored last, because the compiler must assume that this store changes what change_velocity() loads. A
-            // whole bundle is one store.
-            float* to = arrays.start_along + index.offsets[0] / offsets_a_row(kind);
-            if (index.count == Lanes_width) {
-                for (int lane = 0; lane < Lanes_width; ++lane) to[lane] = start[lane];
-            } else {
-                for (int lane = 0; lane < index.count; ++lane) to[lane] = start[lane];
-            }
+    Body<kind> body = load_body(arrays, index.offsets, static_cast<Body<kind>*>(nullptr));
+    alignas(64) float start[Lanes_width];
+    if constexpr (begins) store_lanes(start_along<kind>(context, arrays, index), start);
+    change_velocity(context, arrays, index, body);
+    store_velocity(arrays, index.offsets, body, index.count);
+    if constexpr (begins) {
+        // Stored last, because the compiler must assume that this store changes what change_velocity() loads. A
+        // whole bundle is one store.
+        float* to = arrays.start_along + index.offsets[0] / offsets_a_row(kind);
+        if (index.count == Lanes_width) {
+            for (int lane = 0; lane < Lanes_width; ++lane) to[lane] = start[lane];
+        } else {
+            for (int lane = 0; lane < index.count; ++lane) to[lane] = start[lane];
         }
-    });
+    }
+}
+template <BodyKind kind, bool begins>
+[[gnu::noinline]] void speed_up_some(const KernelContext& context, const RowIndex<kind>& index)
+{
+    speed_up<kind, begins>(context, index);
+}
+template <BodyKind kind, bool begins>
+void integrate_velocities(const KernelContext& context, std::int32_t begin, std::int32_t end)
+{
+    for_each_rows<kind>(
+        begin, end, [&](const RowIndex<kind>& index) { speed_up<kind, begins>(context, index); },
+        [&](const RowIndex<kind>& index) { speed_up_some<kind, begins>(context, index); });
 }
 
 // ---- x += h v ----------------------------------------------------------------------------------------
@@ -333,15 +336,23 @@ template <BodyKind kind, bool runs_on>
 }
 
 template <BodyKind kind, bool runs_on>
+[[gnu::noinline]] void move_some_on(const KernelContext& context, const RowIndex<kind>& index)
+{
+    move_on<kind, runs_on>(context, index);
+}
+
+template <BodyKind kind, bool runs_on>
 void integrate_positions(const KernelContext& context, std::int32_t begin, std::int32_t end)
 {
-    for_each_rows<kind>(begin, end,
-                        [&](const RowIndex<kind>& index) { move_on<kind, runs_on>(context, index); });
+    for_each_rows<kind>(
+        begin, end, [&](const RowIndex<kind>& index) { move_on<kind, runs_on>(context, index); },
+        [&](const RowIndex<kind>& index) { move_some_on<kind, runs_on>(context, index); });
 }
 
 template <BodyKind kind>
 void integrate_listed(const KernelContext& context, const BodyRow* rows, std::int32_t count)
 {
-    for_each_rows<kind>(rows, count,
-                        [&](const RowIndex<kind>& index) { move_on<kind, false>(context, index); });
+    for (std::int32_t first = 0; first < count; first += Lanes_width)
+        move_some_on<kind, false>(
+            context, RowIndex<kind>(rows + first, count - first < Lanes_width ? count - first : Lanes_width));
 }

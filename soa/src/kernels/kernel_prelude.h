@@ -12,6 +12,8 @@
 
 #include "figures/figure.h"
 #include "kernels/kernel_entries.h"
+#include "kernels/prefetch.h"
+#include "maths/any_body.h"
 #include "maths/equality_row.h"
 #include "maths/lane_body.h"
 #include "maths/lane_residual.h"

@@ -10,6 +10,7 @@ inline constexpr int class_count = constraint_type_count * body_kind_count * bod
 
 /// Kernels of constraints by class_of, of bodies by kind, of figures and of discs.
 struct KernelTable {
+    int width = 1;  ///< lanes of the kernels that sweep
     ConstraintKernels constraints[class_count];
     BodyKernels bodies[body_kind_count];
     FigureKernels figures;

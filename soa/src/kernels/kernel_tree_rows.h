@@ -20,6 +20,27 @@ template <int count, class Work>
     }
     (std::make_integer_sequence<int, count>{});
 }
+template <int n>
+using Constant = std::integral_constant<int, n>;
+constexpr int one_more(int n)
+{
+    return n + 1;
+}
+template <int n>
+constexpr Constant<n + 1> one_more(Constant<n>)
+{
+    return {};
+}
+/// Calls work(i) for i from 0 to count - 1: unrolled for a Constant, in a loop for an int.
+template <class Count, class Work>
+[[gnu::always_inline]] inline void repeat(Count count, const Work& work)
+{
+    if constexpr (std::is_same_v<Count, int>) {
+        for (int i = 0; i < count; ++i) work(i);
+    } else {
+        unrolled<Count::value>(work);
+    }
+}
 template <int count>
 void load_array(const float* from, Lanes (&to)[count])
 {
@@ -56,61 +77,63 @@ inline void add_row(const Vec3<Lanes>& linear, const Vec3<Lanes>& lever, const L
     sum.turn = sum.turn + turns * lever;
 }
 
-/// Locks of any kind: J on the child body, J on the parent body, and C. Rows are indexed by integral constants.
-template <int rows>
+/// Locks of any kind: J on the child body, J on the parent body, and C. Few nodes have such rows, so their number is not a
+/// constant: one loop serves all.
 struct AnyRows {
-    static constexpr int count = rows;
-    Row6 child[rows], parent[rows];
-    Lanes error[rows];
+    static constexpr int most = 6;
+    int rows;
+    Row6 child[most], parent[most];
+    Lanes error[most];
+    [[nodiscard]] int count() const { return rows; }
 
     /// of() reads EqualityRows, kept() what keep() has stored in their place.
-    static AnyRows of(const float* from)
+    static AnyRows of(const float* from, int rows)
     {
         AnyRows out;
-        unrolled<rows>([&](auto i) {
+        out.rows = rows;
+        for (int i = 0; i < rows; ++i) {
             const auto row = load_row<EqualityRow<Lanes>>(from + i * FigureNode::row_floats);
             put(row.linear, row.lever_b, out.child[i]);
             put(-row.linear, -row.lever_a, out.parent[i]);
             out.error[i] = row.error;
-        });
+        }
         return out;
     }
-    static AnyRows kept(const float* from) { return of(from); }
+    static AnyRows kept(const float* from, int rows) { return of(from, rows); }
     void keep(float* to) const
     {
-        unrolled<rows>(
-            [&](auto i) { store_lanes(error[i], to + i * FigureNode::row_floats + 9 * block_lanes); });
+        for (int i = 0; i < rows; ++i)
+            store_lanes(error[i], to + i * FigureNode::row_floats + 9 * block_lanes);
     }
     /// Entries of J on the child before first_entry(row) are 0. If reaches_parent(row, entry) is false, that entry of
     /// J on the parent is 0 in this row and in those before it.
     static constexpr int first_entry(int) { return 0; }
     static constexpr bool reaches_parent(int, int) { return true; }
 
-    void child_row(auto i, Row6& out) const
+    void child_row(int i, Row6& out) const
     {
-        unrolled<6>([&](auto c) { out[c] = child[i][c]; });
+        for (int c = 0; c < 6; ++c) out[c] = child[i][c];
     }
-    void parent_row(auto i, Row6& out) const
+    void parent_row(int i, Row6& out) const
     {
-        unrolled<6>([&](auto c) { out[c] = parent[i][c]; });
+        for (int c = 0; c < 6; ++c) out[c] = parent[i][c];
     }
-    Lanes along_child(auto i, const Row6& x) const { return dot6(child[i], x); }
-    Lanes along_parent(auto i, const Row6& x) const { return dot6(parent[i], x); }
+    [[nodiscard]] Lanes along_child(int i, const Row6& x) const { return dot6(child[i], x); }
+    [[nodiscard]] Lanes along_parent(int i, const Row6& x) const { return dot6(parent[i], x); }
     /// x += J^T y of the parent body.
-    void push_parent(const Lanes (&y)[rows], Row6& x) const
+    void push_parent(const Lanes* y, Row6& x) const
     {
-        unrolled<rows>([&](auto i) { unrolled<6>([&](auto c) { x[c] = x[c] + y[i] * parent[i][c]; }); });
+        for (int i = 0; i < rows; ++i)
+            for (int c = 0; c < 6; ++c) x[c] = x[c] + y[i] * parent[i][c];
     }
     /// The wrench of the impulses lambda of rows [first, last) on the child body, at the point where they act.
-    [[nodiscard]] Wrench<Lanes> wrench(const Lanes (&lambda)[rows], int first, int last) const
+    [[nodiscard]] Wrench<Lanes> wrench(const Lanes* lambda, int first, int last) const
     {
         const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
         Wrench<Lanes> sum{none, none};
-        unrolled<rows>([&](auto i) {
-            if (i() < first || i() >= last) return;
+        for (int i = first; i < last; ++i)
             add_row({child[i][0], child[i][1], child[i][2]}, {child[i][3], child[i][4], child[i][5]},
                     lambda[i], sum);
-        });
         return sum;
     }
 };
@@ -118,13 +141,14 @@ struct AnyRows {
 /// Three rows that hold a point on a point along x, y and z, and purely angular rows.
 template <int rows>
 struct PointRows {
-    static constexpr int count = rows;
+    static constexpr int most = rows;
     static constexpr int turns = rows - 3;
+    static constexpr auto count() { return Constant<rows>{}; }
     Vec3<Lanes> arm_child, arm_parent;
     Lanes error[rows];
     Vec3<Lanes> turn[turns > 0 ? turns : 1];  ///< angular rows: J on the child, and -J on the parent
 
-    static PointRows of(const float* from)
+    static PointRows of(const float* from, int)
     {
         PointRows out;
         unrolled<rows>([&](auto i) {
@@ -139,7 +163,7 @@ struct PointRows {
         });
         return out;
     }
-    static PointRows kept(const float* from)
+    static PointRows kept(const float* from, int)
     {
         PointRows out;
         out.arm_child = load_row<Vec3<Lanes>>(from);
@@ -170,7 +194,7 @@ struct PointRows {
     }
     Lanes along_child(auto i, const Row6& x) const { return along(i, arm_child, x); }
     Lanes along_parent(auto i, const Row6& x) const { return -along(i, arm_parent, x); }
-    void push_parent(const Lanes (&y)[rows], Row6& x) const
+    void push_parent(const Lanes* y, Row6& x) const
     {
         const Vec3<Lanes>& r = arm_parent;
         x[0] = x[0] - y[0];
@@ -186,7 +210,7 @@ struct PointRows {
         });
     }
     /// The wrench of the node's only lock.
-    [[nodiscard]] Wrench<Lanes> wrench(const Lanes (&lambda)[rows], int, int) const
+    [[nodiscard]] Wrench<Lanes> wrench(const Lanes* lambda, int, int) const
     {
         Wrench<Lanes> sum{{lambda[0], lambda[1], lambda[2]}, {Lanes(0), Lanes(0), Lanes(0)}};
         unrolled<turns>([&](auto i) { sum.turn = sum.turn + lambda[3 + i] * turn[i]; });

@@ -16,10 +16,10 @@
 
 /// Factors K in place. Its pivots are known to be at least `least`, so one that rounding has made smaller is raised
 /// to that. For a row without a pivot, 1 / D is 0.
-template <int n>
-void factor_in_place(Triangle<n>& k, const Lanes (&least)[n])
+template <class Count, int n>
+void factor_in_place(Count rows, Triangle<n>& k, const Lanes (&least)[n])
 {
-    factor_in_place(Constant<n>{}, k,
+    factor_in_place(rows, k,
                     [&](int i, const Lanes& pivot) { return inverse_or_zero(maximum(pivot, least[i])); });
 }
 
@@ -30,10 +30,22 @@ inline void turn_round(float* row)
     store_row(EqualityRow<Lanes>{r.linear, r.lever_b, r.lever_a, -r.error}, row);
 }
 
-template <int n>
-Triangle<n> load_factor(const float* from)
+/// The first `rows` rows of a triangle, from and to memory.
+template <class Count, int n>
+void store_factor(Count rows, const Triangle<n>& from, float* to)
 {
-    return load_row<Triangle<n>>(from);
+    repeat(rows, [&](auto i) {
+        repeat(one_more(i),
+               [&](auto j) { store_lanes(from.at(i, j), to + in_triangle(i, j) * block_lanes); });
+    });
+}
+template <class Count, int n>
+void load_factor(Count rows, const float* from, Triangle<n>& to)
+{
+    repeat(rows, [&](auto i) {
+        repeat(one_more(i),
+               [&](auto j) { to.at(i, j) = load_lanes(from + in_triangle(i, j) * block_lanes); });
+    });
 }
 
 /// M of a body. One that does not move gets 1 kg here, and factor_mass() clears its pivots.
@@ -63,7 +75,7 @@ inline void pivots_of(const Mover& body, const Triangle<6>& mass, Row6& pivots)
 /// Factors M', whose pivots are at least those of the body's own M.
 inline void factor_mass(const Mover& body, const Row6& pivots_alone, Triangle<6>& mass)
 {
-    factor_in_place(mass, pivots_alone);
+    factor_in_place(Constant<6>{}, mass, pivots_alone);
     const auto moves = body.inverse_mass > Lanes(0);
     unrolled<6>([&](auto i) { mass.at(i, i) = select(moves, mass.at(i, i), Lanes(0)); });
 }
@@ -82,7 +94,7 @@ template <class Rows>
 Lanes reach_of(const Rows& j)
 {
     Lanes squares(0);
-    unrolled<Rows::count>([&](auto i) {
+    repeat(j.count(), [&](auto i) {
         Row6 child, parent;
         j.child_row(i, child);
         j.parent_row(i, parent);
@@ -97,45 +109,44 @@ template <class Rows>
 void factor_locks(const Mover& body, const FigureNode& node, float* system, float* parent_mass,
                   const Triangle<6>& mass)
 {
-    constexpr int rows = Rows::count;
-    Rows j = Rows::of(system + node.jacobian);
+    Rows j = Rows::of(system + node.jacobian, node.rows);
+    const auto rows = j.count();
     const Lanes most = Lanes(tree_turn) * reach_of(j);
-    unrolled<rows>([&](auto i) { j.error[i] = maximum(minimum(j.error[i], most), -most); });
+    repeat(rows, [&](auto i) { j.error[i] = maximum(minimum(j.error[i], most), -most); });
     j.keep(system + node.jacobian);
-    Triangle<rows> k;
-    Lanes least[rows];
-    unrolled<rows>([&](auto i) {
+    Triangle<Rows::most> k;
+    Lanes least[Rows::most];
+    repeat(rows, [&](auto i) {
         Row6 row, response;
         j.child_row(i, row);
         j.child_row(i, response);
-        solve_in_place<Rows::first_entry(i)>(mass, response);
+        solve_in_place(Constant<6>{}, mass, response, Rows::first_entry(i));
         store_array(response, system + node.response + i * 6 * block_lanes);
-        unrolled<i + 1>([&](auto m) { k.at(i, m) = j.along_child(m, response); });
+        repeat(one_more(i), [&](auto m) { k.at(i, m) = j.along_child(m, response); });
         const Vec3<Lanes> linear{row[0], row[1], row[2]};
         const Vec3<Lanes> lever{row[3], row[4], row[5]};
         least[i] = Lanes(tree_rounding) *
                    (body.inverse_mass * dot(linear, linear) + dot(lever, body.inverse_inertia * lever));
     });
-    factor_in_place(k, least);
-    store_row(k, system + node.factor);
+    factor_in_place(rows, k, least);
+    store_factor(rows, k, system + node.factor);
     if (parent_mass == nullptr) return;
     // J_p^T K^-1 J_p = B^T D^-1 B with K = L D L^T and B = L^-1 J_p.
     auto sum = load_row<Triangle<6>>(parent_mass);
-    Row6 b[rows];
-    unrolled<rows>([&](auto i) {
+    Row6 b[Rows::most];
+    repeat(rows, [&](auto i) {
         j.parent_row(i, b[i]);
         unrolled<6>([&](auto c) {
-            unrolled<i>([&](auto m) {
-                if constexpr (Rows::reaches_parent(m, c)) b[i][c] = b[i][c] - k.at(i, m) * b[m][c];
+            repeat(i, [&](auto m) {
+                if (Rows::reaches_parent(m, c)) b[i][c] = b[i][c] - k.at(i, m) * b[m][c];
             });
         });
         unrolled<6>([&](auto c) {
-            if constexpr (Rows::reaches_parent(i, c)) {
-                const Lanes scaled = k.at(i, i) * b[i][c];
-                unrolled<c + 1>([&](auto d) {
-                    if constexpr (Rows::reaches_parent(i, d)) sum.at(c, d) = sum.at(c, d) + scaled * b[i][d];
-                });
-            }
+            if (!Rows::reaches_parent(i, c)) return;
+            const Lanes scaled = k.at(i, i) * b[i][c];
+            unrolled<c + 1>([&](auto d) {
+                if (Rows::reaches_parent(i, d)) sum.at(c, d) = sum.at(c, d) + scaled * b[i][d];
+            });
         });
     });
     store_row(sum, parent_mass);
@@ -150,8 +161,8 @@ template <class Rows>
 void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, float* parent_force,
               const Row6& change, const Lanes& rate, TreeSweep sweep, int lane)
 {
-    constexpr int rows = Rows::count;
-    const Rows j = Rows::kept(system + node.jacobian);
+    const Rows j = Rows::kept(system + node.jacobian, node.rows);
+    const auto rows = j.count();
     const Mover body = load_row<Mover>(figure.body(node.body) + lane);
     Row6 child, parent;
     put(body.linear, body.angular, child);
@@ -161,13 +172,15 @@ void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, 
     } else {
         unrolled<6>([&](auto c) { parent[c] = Lanes(0); });
     }
-    Lanes y[rows];
-    unrolled<rows>([&](auto i) {
+    Lanes y[Rows::most];
+    repeat(rows, [&](auto i) {
         y[i] = -((j.along_child(i, child) + j.along_parent(i, parent)) + rate * j.error[i]);
         y[i] = y[i] - j.along_child(i, change);
     });
-    solve_in_place(load_factor<rows>(system + node.factor), y);
-    store_array(y, system + node.target);
+    Triangle<Rows::most> factor;
+    load_factor(rows, system + node.factor, factor);
+    solve_in_place(rows, factor, y);
+    repeat(rows, [&](auto i) { store_lanes(y[i], system + node.target + i * block_lanes); });
     if (parent_force == nullptr) return;
     Row6 force;
     load_array(parent_force, force);
@@ -197,19 +210,21 @@ template <class Rows>
 void reach_down(const FigureBlock& figure, const FigureNode& node, float* system, const float* parent_change,
                 Row6& change, TreeSweep sweep, int lane)
 {
-    constexpr int rows = Rows::count;
-    Lanes lambda[rows];
-    load_array(system + node.target, lambda);
-    const Rows j = Rows::kept(system + node.jacobian);
+    const Rows j = Rows::kept(system + node.jacobian, node.rows);
+    const auto rows = j.count();
+    Lanes lambda[Rows::most];
+    repeat(rows, [&](auto i) { lambda[i] = load_lanes(system + node.target + i * block_lanes); });
     if (parent_change != nullptr) {
         Row6 above;
         load_array(parent_change, above);
-        Lanes lacking[rows];
-        unrolled<rows>([&](auto i) { lacking[i] = j.along_parent(i, above); });
-        solve_in_place(load_factor<rows>(system + node.factor), lacking);
-        unrolled<rows>([&](auto i) { lambda[i] = lambda[i] - lacking[i]; });
+        Lanes lacking[Rows::most];
+        repeat(rows, [&](auto i) { lacking[i] = j.along_parent(i, above); });
+        Triangle<Rows::most> factor;
+        load_factor(rows, system + node.factor, factor);
+        solve_in_place(rows, factor, lacking);
+        repeat(rows, [&](auto i) { lambda[i] = lambda[i] - lacking[i]; });
     }
-    unrolled<rows>([&](auto i) {
+    repeat(rows, [&](auto i) {
         Row6 response;
         load_array(system + node.response + i * 6 * block_lanes, response);
         unrolled<6>([&](auto c) { change[c] = change[c] + lambda[i] * response[c]; });
@@ -228,21 +243,23 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
     }
 }
 
-/// Calls work with a null pointer whose type is the form of the node's rows: PointRows or AnyRows.
+/// Calls work with a null pointer whose type is the form of the node's rows: PointRows or AnyRows. Not for a body that hangs by
+/// nothing.
 template <class Work>
 void with_rows(const FigureNode& node, const Work& work)
 {
-    unrolled<6>([&](auto i) {
-        constexpr int rows = i + 1;
-        if (rows != node.rows) return;
-        if constexpr (rows >= 3) {
-            if (node.hangs_by_point()) {
-                work(static_cast<PointRows<rows>*>(nullptr));
-                return;
-            }
-        }
-        work(static_cast<AnyRows<rows>*>(nullptr));
-    });
+    if (node.rows == 0) return;
+    if (!node.hangs_by_point()) return work(static_cast<AnyRows*>(nullptr));
+    switch (node.rows) {
+        case 3:
+            return work(static_cast<PointRows<3>*>(nullptr));
+        case 4:
+            return work(static_cast<PointRows<4>*>(nullptr));
+        case 5:
+            return work(static_cast<PointRows<5>*>(nullptr));
+        default:
+            return work(static_cast<PointRows<6>*>(nullptr));
+    }
 }
 
 /// Between light bodies under heavy load a taut joint is a stiff spring against rotation. A substep that takes the
@@ -324,7 +341,7 @@ inline void factor_tree(const FigureBlock& figure, int lane)
 }
 
 /// Changes the velocities of all bodies such that J v + rate C = 0 for the locks of the tree.
-inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, int lane)
+[[gnu::noinline]] inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, int lane)
 {
     const Array<FigureNode>& nodes = figure.shape->nodes;
     float* system = figure.system + lane;
@@ -343,7 +360,7 @@ inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, i
     for (const FigureNode& node : nodes) {
         Row6 change;
         load_array(system + node.force, change);
-        solve_in_place(load_factor<6>(system + node.mass_factor), change);
+        solve_in_place(Constant<6>{}, load_row<Triangle<6>>(system + node.mass_factor), change);
         store_array(change, system + node.change);
         float* parent_force = parent_of(node, &FigureNode::force);
         with_rows(node, [&]<class Rows>(Rows*) {

@@ -59,13 +59,15 @@ constexpr bool is_left_to_scalar()
     return Lanes_width > 1 && is_mixed(a, b) && !Type::is_contact;
 }
 
-/// The kind as which a kernel computes a body: a joint that does not need to know which of its bodies are fixed takes
-/// a fixed body for a rigid one without inverse mass.
+/// The kind as which a kernel computes a body. One kernel serves all unusual pairs of a joint. A joint that does not need to
+/// know which of its bodies are fixed takes a fixed body for a rigid one without inverse mass.
 template <class Type, BodyKind kind, BodyKind partner>
 constexpr BodyKind computed_as()
 {
-    constexpr bool joins_rigid = kind == BodyKind::fixed && partner == BodyKind::rigid;
-    return joins_rigid && !Type::is_contact && !Type::has_restitution ? BodyKind::rigid : kind;
+    if (Type::is_contact || Type::has_restitution) return kind;
+    if (is_mixed(kind, partner) || (Type::needs_bodies_that_turn && is_planar_pair(kind, partner)))
+        return any_kind;
+    return kind == BodyKind::fixed && partner == BodyKind::rigid ? BodyKind::rigid : kind;
 }
 
 template <KernelShare share, class Type, BodyKind a, BodyKind b>

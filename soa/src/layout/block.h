@@ -66,6 +66,7 @@ inline constexpr std::uint32_t start_rows_bit = 1U << 31;
 
 /// Rows of one kind as the kernels see them.
 struct BodyArrays {
+    BodyKind kind{};
     float* velocity = nullptr;
     float* delta = nullptr;
     float* unpushed = nullptr;
@@ -110,6 +111,7 @@ struct KernelContext {
     /// Contacts of discs need not be measured by `solve`: `prepare` has measured them, and after it every `relax`.
     bool discs_are_measured = false;
     bool bodies_are_far = false;  ///< they exceed a core's cache: sweeps prefetch those of the next block
+    int width = 1;                ///< lanes of the kernels that sweep; those that prepare may be narrower
     BodyArrays bodies[body_kind_count];
     float largest_response = 0;  ///< 1/(kg m2): see BodyStore
     /// Set by prepare where a joint pulls harder than a substep can follow: then `stiffen` must be run. See

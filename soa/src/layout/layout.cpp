@@ -353,6 +353,7 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
 {
     context.step = step;
     context.relaxing = relaxing(step);
+    context.width = kernels_.width;
     std::int64_t swept = 0;
     for (int kind = 0; kind < body_kind_count; ++kind) {
         BodyRows& rows = scene.bodies.rows(static_cast<BodyKind>(kind));
@@ -360,6 +361,7 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
         const bool decays = scene.bodies.damped > 0 && static_cast<BodyKind>(kind) != BodyKind::fixed &&
                             find_decay(scene.bodies, static_cast<BodyKind>(kind), step.substep);
         context.bodies[kind] = {
+            static_cast<BodyKind>(kind),
             rows.velocity.data(),
             rows.delta.data(),
             rows.unpushed.data(),
