@@ -1,4 +1,4 @@
-# What a scene requires: the joints and body models that kernels are compiled for. Sets
+# What a scene requires: the joints and body models that kernels are compiled for, and whether Method::direct is. Sets
 #   motley_constraint_headers   the headers in core/src/constraints whose kernels are compiled, contact.h always
 #   motley_built_definitions    what the sources are told of it
 set(folder ${CMAKE_CURRENT_LIST_DIR}/../core/src/constraints)
@@ -64,6 +64,9 @@ foreach(model IN LISTS all_models)
         list(APPEND motley_built_definitions ${definition})
     endif()
 endforeach()
+if(NOT MOTLEY_DIRECT)
+    list(APPEND motley_built_definitions MOTLEY_WITHOUT_DIRECT)
+endif()
 # All locks of a figure at once are of rigid bodies and joints.
 set(motley_builds_trees ON)
 if(NOT joints OR NOT rigid IN_LIST models)

@@ -10,6 +10,16 @@
 
 namespace motley {
 
+namespace {
+
+#ifdef MOTLEY_WITHOUT_DIRECT
+constexpr bool direct_is_built = false;
+#else
+constexpr bool direct_is_built = true;
+#endif
+
+}  // namespace
+
 void PlanRunner::run(const Plan& plan, const Plan& figure_plan, const Step& step, StepClock& clock)
 {
     layout_.context.replay = plan.replays_warm_starts ? Replay::next_time : Replay::nothing;
@@ -53,13 +63,15 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
         case Operation::step_figures:
             sweeper_.step_lone_figures(figure_plan);
             break;
-        case Operation::solve_directly: {
-            const reference::DirectResult result =
-                reference::step_directly(step.scene, step.dt, step.settings, step.contacts);
-            step.report.direct_violation = result.violation;
-            step.report.direct_unsolved = result.unsolved;
+        case Operation::solve_directly:
+            // Without it settings that ask for it are refused.
+            if constexpr (direct_is_built) {
+                const reference::DirectResult result =
+                    reference::step_directly(step.scene, step.dt, step.settings, step.contacts);
+                step.report.direct_violation = result.violation;
+                step.report.direct_unsolved = result.unsolved;
+            }
             break;
-        }
         case Operation::add_up_impulses:
             sweeper_.add_up();
             break;

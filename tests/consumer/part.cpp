@@ -1,5 +1,5 @@
-// A host of a library that was built in part, with MOTLEY_JOINTS=ball_socket, MOTLEY_MODELS=planar;rigid and MOTLEY_TBB=OFF.
-// Everything else is refused by name, and there is one thread.
+// A host of a library that was built in part, with MOTLEY_JOINTS=ball_socket, MOTLEY_MODELS=planar;rigid,
+// MOTLEY_DIRECT=OFF and MOTLEY_TBB=OFF. Everything else is refused by name, and there is one thread.
 #include <motley/motley.h>
 
 #include <cstdio>
@@ -37,6 +37,10 @@ int main()
     const bool refuses_model =
         refuses([&] { scene.add_body(person); },
                 "BodyDefinition.model is particle; expected one that is built, MOTLEY_MODELS: planar, rigid");
+    const bool refuses_method = refuses(
+        [] { motley::Solver({.method = motley::Method::direct}); },
+        "SolverSettings.method is direct; expected one that is built, MOTLEY_DIRECT=OFF: soft_step or "
+        "sequential_impulse");
 
     // Two people who overlap by 1 cm are pushed apart by equal amounts.
     motley::Contact touch;
@@ -52,5 +56,5 @@ int main()
     const double left = scene.state(a).position.x, right = scene.state(b).position.x;
     const bool apart = report.status == motley::StepStatus::done && left < 0 && right > 0.39 &&
                        left + right > 0.39 - 1e-6 && left + right < 0.39 + 1e-6;
-    return refuses_joint && refuses_model && apart && solver.threads() == 1 ? 0 : 1;
+    return refuses_joint && refuses_model && refuses_method && apart && solver.threads() == 1 ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-// Checks joints and models against those that were built; .cmake/built.cmake defines the macros.
+// Checks joints, models and methods against those that were built; .cmake/built.cmake defines the macros.
 #include "contract/built.h"
 
 #include <algorithm>
@@ -68,6 +68,16 @@ void check_model_is_built(const char* field, BodyModel model)
         refuse(field, "rigid", "one that is built, MOTLEY_MODELS: " MOTLEY_BUILT_MODELS);
 #endif
     static_cast<void>(field), static_cast<void>(model);
+}
+
+void check_method_is_built(Method method)
+{
+#ifdef MOTLEY_WITHOUT_DIRECT
+    if (method == Method::direct)
+        refuse("SolverSettings.method", "direct",
+               "one that is built, MOTLEY_DIRECT=OFF: soft_step or sequential_impulse");
+#endif
+    static_cast<void>(method);
 }
 
 }  // namespace motley

@@ -1,8 +1,9 @@
-// Which joints and body models the library was built with: MOTLEY_JOINTS and MOTLEY_MODELS of the build. What is not
-// built has no kernels, and is refused when it is added.
+// Which joints, body models and methods the library was built with: MOTLEY_JOINTS, MOTLEY_MODELS and MOTLEY_DIRECT of the
+// build. What is not built has no code, and is refused when it is added or asked for.
 #pragma once
 
 #include "motley/core/body.h"
+#include "motley/core/settings.h"
 
 namespace motley {
 
@@ -10,5 +11,7 @@ namespace motley {
 void check_joint_is_built(int type);
 /// Refuses a model of dynamic bodies that is not built; `field` is where the host named it.
 void check_model_is_built(const char* field, BodyModel model);
+/// Refuses a method that is not built.
+void check_method_is_built(Method method);
 
 }  // namespace motley

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contract/built.h"
 #include "motley/core/invalid_input.h"
 #include "motley/core/settings.h"
 
@@ -23,6 +24,7 @@ void SolverSettings::validate() const
         refuse("SolverSettings.method", static_cast<double>(method),
                "soft_step, sequential_impulse or direct");
     }
+    check_method_is_built(method);
     if (bad_contacts < BadContacts::refuse || bad_contacts > BadContacts::skip)
         refuse("SolverSettings.bad_contacts", static_cast<double>(bad_contacts), "refuse or skip");
     if (drift_correction < DriftCorrection::by_method || drift_correction > DriftCorrection::projection) {

@@ -19,7 +19,8 @@ enum class Method {
     /// island, on one thread: for small scenes, and as the reference for the other methods. Constraints are rigid, with
     /// `drift_correction`; `iterations`, `relaxations`, `warm_start` and the softness of contacts and joints are
     /// ignored (springs keep theirs). Allocates. For a thousand rows a step takes milliseconds while they rest or
-    /// nearly so, and 0.1 s to 1 s while most of them begin or stop to slide.
+    /// nearly so, and 0.1 s to 1 s while most of them begin or stop to slide. Refused by a library built with
+    /// MOTLEY_DIRECT=OFF.
     direct,
 };
 
