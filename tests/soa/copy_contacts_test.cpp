@@ -37,7 +37,7 @@ struct Copies {
     }
 };
 
-/// Contacts of any type with one of six fixed bodies, on either side; those of a body differ in colour. Left-out ones
+/// Contacts of any type with one of six fixed bodies; those of a body differ in colour. Left-out ones
 /// and those of other figures are among the placements, but not listed.
 std::vector<std::uint32_t> random_contacts(Random& random, const Copies& copies, Array<Placement>& placements)
 {
@@ -50,9 +50,8 @@ std::vector<std::uint32_t> random_contacts(Random& random, const Copies& copies,
         contact.constraint = i;
         contact.type = static_cast<std::uint8_t>(random.below(contact_type_count));
         contact.colour = static_cast<std::uint8_t>(colour);
-        contact.a = BodyRow(BodyKind::fixed, 1 + static_cast<std::uint32_t>(random.below(6)));
-        contact.b = Copies::row(place);
-        if (random.below(2) == 0) std::swap(contact.a, contact.b);
+        contact.a = Copies::row(place);
+        contact.b = BodyRow(BodyKind::fixed, 1 + static_cast<std::uint32_t>(random.below(6)));
         if (taken.insert({place, colour}).second) listed.push_back(static_cast<std::uint32_t>(i));
         placements.push_back(contact);
     }
@@ -70,12 +69,12 @@ TEST(CopyContacts, EachIsInTheLaneOfItsCopyOnce)
         sorted.make_room(listed.size(), copies.shape.bodies.size());
         sorted.sort(copies.block, listed, placements, copies.places);
         std::set<std::int32_t> seen;
-        std::set<std::tuple<int, int, int, bool>> kinds;
+        std::set<std::tuple<int, int, int>> kinds;
         int colour = 0;
         for (const CopyContacts::Slot& slot : sorted.slots()) {
             EXPECT_GE(slot.colour, colour) << "by colour";
             colour = slot.colour;
-            EXPECT_TRUE(kinds.insert({slot.body, slot.colour, slot.type, slot.fixed_is_a}).second)
+            EXPECT_TRUE(kinds.insert({slot.body, slot.colour, slot.type}).second)
                 << "no more blocks than needed";
             EXPECT_EQ(*sorted.count(slot), copies.block.count);
             ASSERT_LT(slot.fixed, sorted.fixed_count());
@@ -93,12 +92,10 @@ TEST(CopyContacts, EachIsInTheLaneOfItsCopyOnce)
                 any = true;
                 EXPECT_TRUE(seen.insert(constraint).second);
                 EXPECT_EQ(contact.colour, slot.colour);
-                EXPECT_EQ(contact.a.kind() == BodyKind::fixed, slot.fixed_is_a);
                 EXPECT_EQ(a, offset_of(contact.a));
                 EXPECT_EQ(b, offset_of(contact.b));
-                EXPECT_EQ(slot.fixed_is_a ? b : a,
-                          copies.offsets[static_cast<std::size_t>(slot.body * block_lanes + lane)]);
-                EXPECT_EQ(slot.fixed_is_a ? a : b, sorted.fixed_offsets()[slot.fixed * block_lanes + lane]);
+                EXPECT_EQ(a, copies.offsets[static_cast<std::size_t>(slot.body * block_lanes + lane)]);
+                EXPECT_EQ(b, sorted.fixed_offsets()[slot.fixed * block_lanes + lane]);
             }
             EXPECT_TRUE(any);
         }
@@ -113,8 +110,8 @@ TEST(CopyContacts, AllOnOneFloorShareItsLanes)
     std::vector<std::uint32_t> listed;
     for (int place = 0; place < 11 * block_lanes; place += 3) {
         Placement contact;
-        contact.a = BodyRow(BodyKind::fixed, 1);
-        contact.b = Copies::row(place);
+        contact.a = Copies::row(place);
+        contact.b = BodyRow(BodyKind::fixed, 1);
         contact.constraint = static_cast<std::int32_t>(placements.size());
         contact.colour = 0;
         listed.push_back(static_cast<std::uint32_t>(placements.size()));

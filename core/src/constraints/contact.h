@@ -147,6 +147,23 @@ struct ContactKind : ConstraintTraits {
         return {-n.y, n.x};
     }
 
+    /// What the host says of a contact, with bodies a and b exchanged where `order` is -1 and not 1.
+    template <class Real>
+    static void put_in_order(const Real& order, ContactParameters<Real>& contact)
+    {
+        const auto stays = order > Real(0);
+        const Vec3<Real> arm_a = contact.arm_a;
+        contact.normal = order * contact.normal;
+        contact.arm_a = select(stays, arm_a, contact.arm_b);
+        contact.arm_b = select(stays, contact.arm_b, arm_a);
+    }
+    /// Likewise what is kept from step to step: the normal impulse is the same.
+    template <class Real>
+    static void put_in_order(const Real& order, ContactMemory<Real>& memory)
+    {
+        memory.friction = order * memory.friction;
+    }
+
     template <class Start, class Real, class A, class B>
     static auto prepare(const Start& start, const ContactParameters<Real>& contact,
                         const ContactMemory<Real>& memory, const A& a, const B& b,

@@ -7,14 +7,6 @@
 #include "stores/growth.h"
 
 namespace motley {
-namespace {
-
-bool is_fixed(BodyRow body)
-{
-    return body.kind() == BodyKind::fixed;
-}
-
-}  // namespace
 
 void CopyContacts::make_room(std::size_t contacts, std::size_t bodies)
 {
@@ -35,7 +27,7 @@ void CopyContacts::sort(const FigureBlock& block, std::span<const std::uint32_t>
     std::fill_n(last_slot_.begin(), block.shape->bodies.size(), none);
     for (const std::uint32_t i : contacts) {
         const Placement& contact = placements[i];
-        const std::int32_t place = places[(is_fixed(contact.a) ? contact.b : contact.a).row()];
+        const std::int32_t place = places[contact.a.row()];
         const std::int32_t lane = place % block_lanes;
         const std::size_t slot = at(slot_of(contact, place / block_lanes, block.count));
         bodies_[slot].a[lane] = offset_of(contact.a);
@@ -57,13 +49,10 @@ CopyContacts::Slot& CopyContacts::slot_of(const Placement& contact, int body, in
     int& last = last_slot_[static_cast<std::size_t>(body)];
     for (int i = last; i != none; i = slots_[static_cast<std::size_t>(i)].next) {
         Slot& slot = slots_[static_cast<std::size_t>(i)];
-        if (slot.colour == contact.colour && slot.type == contact.type &&
-            slot.fixed_is_a == is_fixed(contact.a))
-            return slot;
+        if (slot.colour == contact.colour && slot.type == contact.type) return slot;
     }
     const auto lanes = static_cast<int>(slots_.size());
-    slots_.push_back(
-        {contact.type, contact.colour, is_fixed(contact.a), body, none, lanes, std::exchange(last, lanes)});
+    slots_.push_back({contact.type, contact.colour, body, none, lanes, std::exchange(last, lanes)});
     const std::size_t i = at(slots_.back());
     bodies_[i] = {};
     std::fill_n(who_[i].lane, block_lanes, contact.constraint);
@@ -75,8 +64,7 @@ CopyContacts::Slot& CopyContacts::slot_of(const Placement& contact, int body, in
 /// Gives a slot the first fixed bodies that are its own, or not yet anybody's, in every lane in which it has a contact.
 void CopyContacts::share_fixed_body(Slot& slot)
 {
-    const BlockBodies& bodies = bodies_[at(slot)];
-    const std::int32_t* const wanted = slot.fixed_is_a ? bodies.a : bodies.b;
+    const std::int32_t* const wanted = bodies_[at(slot)].b;
     const float* const present = this->present(slot);
     const auto of_entry = [&](int entry) {
         return &fixed_offsets_[static_cast<std::size_t>(entry * block_lanes)];

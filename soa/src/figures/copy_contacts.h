@@ -24,9 +24,8 @@ class CopyContacts {
     /// A block of contacts.
     struct Slot {
         std::uint8_t type, colour;
-        bool fixed_is_a;
-        int body;   ///< of the figure
-        int fixed;  ///< the other one: see fixed_offsets()
+        int body;   ///< of the figure: body a
+        int fixed;  ///< body b: see fixed_offsets()
         int lanes;  ///< its index in the arrays below
         int next;   ///< another slot of the body, or none
     };

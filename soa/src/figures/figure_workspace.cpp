@@ -97,17 +97,15 @@ FigureBlock FigureWorkspace::take_in(const Figures& figures, std::size_t which, 
     if (contacts.empty()) return here;
     std::size_t count = 0;
     for (const CopyContacts::Slot& slot : sorted_.slots()) {
-        const BodyKind kind_a = slot.fixed_is_a ? BodyKind::fixed : BodyKind::rigid;
-        const BodyKind kind_b = slot.fixed_is_a ? BodyKind::rigid : BodyKind::fixed;
-        const ConstraintKernels& kernels =
-            tables.kernels[static_cast<std::size_t>(class_of(slot.type, kind_a, kind_b))];
+        const int constraint_class = class_of(slot.type, BodyKind::rigid, BodyKind::fixed);
+        const ConstraintKernels& kernels = tables.kernels[static_cast<std::size_t>(constraint_class)];
         const float* const present = sorted_.present(slot);
         contacts_taken_.add_blocks(kernels, 1, std::count(present, present + block_lanes, 1.0F));
         const int fixed = static_cast<int>(bodies) + slot.fixed;
         contacts_[count++] = {{&kernels,
                                take_lanes(kernels,
-                                          {.kind_a = kind_a,
-                                           .kind_b = kind_b,
+                                          {.kind_a = BodyKind::rigid,
+                                           .kind_b = BodyKind::fixed,
                                            .bodies = sorted_.bodies(slot),
                                            .counts = sorted_.count(slot),
                                            .constraints = sorted_.constraints(slot),
@@ -116,8 +114,8 @@ FigureBlock FigureWorkspace::take_in(const Figures& figures, std::size_t which, 
                                0},
                               slot.type,
                               slot.colour,
-                              slot.fixed_is_a ? fixed : slot.body,
-                              slot.fixed_is_a ? slot.body : fixed};
+                              slot.body,
+                              fixed};
     }
     here.contacts = {contacts_.data(), count};
     return here;

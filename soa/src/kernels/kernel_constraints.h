@@ -83,6 +83,17 @@ struct Kernels {
         }
     }
 
+    /// Contacts of bodies of different kinds are computed in the order of the kinds, which need not be the host's.
+    static constexpr bool may_be_exchanged = Type::is_contact && kind_a != kind_b;
+    /// -1 in lanes whose body a is body b of the host, else 1.
+    static Lanes order_of(const ConstraintData& data, const Bundle& bundle)
+    {
+        alignas(64) float order[Lanes_width];
+        for (int lane = 0; lane < Lanes_width; ++lane)
+            order[lane] = data.exchanged[bundle.constraint[lane]] != 0 ? -1.0F : 1.0F;
+        return load_lanes(order);
+    }
+
     /// What a type may ask when a step begins: see StepStart.
     struct Start {
         const KernelContext& context;
@@ -125,6 +136,7 @@ struct Kernels {
                 fields[3][lane] = own.most_force;
             }
             surface.velocity = {load_lanes(fields[0]), load_lanes(fields[1]), load_lanes(fields[2])};
+            if constexpr (may_be_exchanged) surface.velocity = order_of(data, bundle) * surface.velocity;
             surface.most_force = load_lanes(fields[3]);
             return surface;
         }
@@ -145,14 +157,19 @@ struct Kernels {
             // Padding too, as far as a sweep reads it.
             const int count = (streams.counts[block] + context.width - 1) & -context.width;
             for_each_bundle(context, streams, block, count, [&](const Bundle& bundle) {
-                const auto parameters =
+                auto parameters =
                     gather_struct<Parameters>(data.parameters, data.parameter_stride, bundle.constraint);
                 std::int32_t entry[Lanes_width];
                 for (int lane = 0; lane < Lanes_width; ++lane) {
                     const std::int32_t c = bundle.constraint[lane];
                     entry[lane] = data.memory_index ? data.memory_index[c] : c;
                 }
-                const auto memory = gather_struct<Memory>(data.memory_in, data.memory_stride, entry);
+                auto memory = gather_struct<Memory>(data.memory_in, data.memory_stride, entry);
+                if constexpr (may_be_exchanged) {
+                    const Lanes order = order_of(data, bundle);
+                    Type::put_in_order(order, parameters);
+                    Type::put_in_order(order, memory);
+                }
                 const A a = bundle.load_a();
                 const B b = bundle.load_b();
                 const Start start{context, data, bundle};
@@ -403,18 +420,20 @@ struct Kernels {
                 const auto row = load_row<Row>(bundle.row);
                 const auto impulse = load_row<Impulse>(bundle.impulse);
                 const End bodies{bundle};
-                Memory memory = Type::template remember<Lanes>(row, impulse, bodies);
+                const Memory memory = Type::template remember<Lanes>(row, impulse, bodies);
                 if constexpr (Type::is_contact) {
                     const float* present = streams.present == nullptr
                                                ? nullptr
                                                : streams.present + block * block_lanes + bundle.lane;
-                    const auto put = [&](float* table, std::int64_t stride) {
-                        scatter_finite(memory, table, stride, bundle.constraint, bundle.count, present);
+                    const auto put = [&](Memory kept, float* table, std::int64_t stride) {
+                        if constexpr (may_be_exchanged) Type::put_in_order(order_of(data, bundle), kept);
+                        scatter_finite(kept, table, stride, bundle.constraint, bundle.count, present);
                     };
-                    put(data.memory_out, data.memory_stride);
-                    if (bundle.sum != nullptr)
-                        memory = Type::template remember<Lanes>(row, load_row<Sum>(bundle.sum), bodies);
-                    put(data.step_out, data.step_stride);
+                    put(memory, data.memory_out, data.memory_stride);
+                    put(bundle.sum == nullptr
+                            ? memory
+                            : Type::template remember<Lanes>(row, load_row<Sum>(bundle.sum), bodies),
+                        data.step_out, data.step_stride);
                 } else {
                     scatter_finite(memory, data.memory_out, data.memory_stride, bundle.constraint,
                                    bundle.count);
@@ -427,9 +446,8 @@ struct Kernels {
 
     // ---- the same for blocks of copies ----
     static constexpr bool has_copies =
-        Type::is_contact ? (kind_a == BodyKind::rigid && kind_b == BodyKind::fixed) ||
-                               (kind_a == BodyKind::fixed && kind_b == BodyKind::rigid)
-                         : !Type::has_restitution && kind_a == BodyKind::rigid && kind_b == BodyKind::rigid;
+        kind_a == BodyKind::rigid &&
+        (Type::is_contact ? kind_b == BodyKind::fixed : !Type::has_restitution && kind_b == BodyKind::rigid);
 
     /// Stores the velocity of a body; of a contact only in lanes that have one.
     template <BodyKind kind>

@@ -3,40 +3,48 @@
 
 inline constexpr int Lanes_width = static_cast<int>(sizeof(Lanes) / sizeof(float));
 
+template <class... Numbers>
+void unused(const Numbers&...)
+{
+}
+
 template <class Row>
 inline constexpr int fields_of = std::is_empty_v<Row> ? 0 : static_cast<int>(sizeof(Row) / sizeof(Lanes));
 
-/// A row consists of Reals only, stored field by field: field i of the lanes from l on is at stream[16 i + l]. In kernels for
-/// speed each field is a load or a store of its own, so that it may stay in a register; in those for size it is a loop.
+/// A row consists of Reals only, stored field by field: field i of the lanes from l on is at stream[16 i + l]. Each field is a
+/// load of its own, so that those without a reader are dropped. So is each store in kernels for speed, where fields are in
+/// registers; in those for size it is a loop.
 inline constexpr bool is_for_speed =
     KernelShare::MOTLEY_SHARE == KernelShare::swept || KernelShare::MOTLEY_SHARE == KernelShare::unusual;
 
-template <int count, class Work>
-[[gnu::always_inline]] inline void for_each_field(const Work& work)
+template <class Row, int... field>
+void load_fields(Row& row, const float* stream, std::integer_sequence<int, field...>)
 {
-    if constexpr (is_for_speed) {
-        [&]<int... field>(std::integer_sequence<int, field...>)
-        {
-            (work(field), ...);
-        }
-        (std::make_integer_sequence<int, count>{});
-    } else {
-        for (int field = 0; field < count; ++field) work(field);
-    }
+    Lanes* fields = reinterpret_cast<Lanes*>(&row);
+    ((fields[field] = load_lanes(stream + block_lanes * field)), ...);
+    unused(fields, stream);
+}
+template <class Row, int... field>
+void store_fields(const Row& row, float* stream, std::integer_sequence<int, field...>)
+{
+    const Lanes* fields = reinterpret_cast<const Lanes*>(&row);
+    (store_lanes(fields[field], stream + block_lanes * field), ...);
+    unused(fields, stream);
 }
 template <class Row>
 Row load_row(const float* stream)
 {
     Row row;
-    Lanes* fields = reinterpret_cast<Lanes*>(&row);
-    for_each_field<fields_of<Row>>(
-        [&](int field) { fields[field] = load_lanes(stream + block_lanes * field); });
+    load_fields(row, stream, std::make_integer_sequence<int, fields_of<Row>>{});
     return row;
 }
 template <class Row>
 void store_row(const Row& row, float* stream)
 {
-    const Lanes* fields = reinterpret_cast<const Lanes*>(&row);
-    for_each_field<fields_of<Row>>(
-        [&](int field) { store_lanes(fields[field], stream + block_lanes * field); });
+    if constexpr (is_for_speed) {
+        store_fields(row, stream, std::make_integer_sequence<int, fields_of<Row>>{});
+    } else {
+        const Lanes* fields = reinterpret_cast<const Lanes*>(&row);
+        for (int i = 0; i < fields_of<Row>; ++i) store_lanes(fields[i], stream + block_lanes * i);
+    }
 }

@@ -29,14 +29,15 @@ constexpr bool is_built(BodyKind kind)
     }
 }
 
-/// Whether the scene accepts such a pair. It refuses two bodies that cannot move, which need no constraint, and a
-/// particle where the type locks axes, which a particle does not have.
+/// Whether blocks of such a pair occur. A scene refuses two bodies that cannot move, which need no constraint, and a particle
+/// where the type locks axes, which a particle does not have. Contacts are put in order: see ContactIntake.
 template <class Type, BodyKind a, BodyKind b>
 constexpr bool occurs()
 {
     constexpr bool moves = a != BodyKind::fixed || b != BodyKind::fixed;
     constexpr bool has_particle = a == BodyKind::particle || b == BodyKind::particle;
-    return is_built(a) && is_built(b) && moves && !(has_particle && Type::needs_bodies_that_turn);
+    const bool in_order = !Type::is_contact || a <= b;
+    return is_built(a) && is_built(b) && moves && in_order && !(has_particle && Type::needs_bodies_that_turn);
 }
 /// Two moving bodies of different kinds.
 constexpr bool is_mixed(BodyKind a, BodyKind b)

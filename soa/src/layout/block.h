@@ -55,6 +55,7 @@ struct ConstraintData {
         nullptr;  ///< by constraint, the sum over all substeps: a Wrench for joints, for contacts as in memory_out
     std::int64_t step_stride = 0;               ///< floats
     const WorldPoints* world_points = nullptr;  ///< by constraint; null for types without
+    const std::uint8_t* exchanged = nullptr;    ///< by contact: see ContactIntake; null for joints
     /// Of contacts from `first_surface` on; those before it, or all if it is null, have the default surface.
     const ContactSurface<float>* surfaces = nullptr;
     std::int32_t first_surface = 0;

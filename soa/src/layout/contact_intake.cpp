@@ -66,6 +66,7 @@ bool is_planar(BodyRow a, BodyRow b)
 void ContactIntake::begin(SceneCore& scene, std::size_t count)
 {
     grow_to(placements, count);
+    grow_to(exchanged, count);
     grow_to(memory_index, count);
     count_ = count;
     patches.begin(scene.bodies, count);
@@ -84,14 +85,17 @@ void ContactIntake::mark_bad(std::size_t index)
 }
 
 /// Fills in the rows of the bodies and the type. Returns whether the contact is good.
-bool ContactIntake::place(const BodyStore& bodies, std::size_t index, const Contact& contact,
-                          Placement& placement) const
+bool ContactIntake::place(const BodyStore& bodies, std::size_t index, const Contact& contact)
 {
     if (!bodies.is_alive(contact.body_a) || !bodies.is_alive(contact.body_b)) return false;
     const BodyRow a = bodies.row_of(contact.body_a), b = bodies.row_of(contact.body_b);
+    // Kernels are compiled for one order of two kinds.
+    const bool in_order = a.kind() <= b.kind();
+    exchanged[index] = in_order ? 0 : 1;
     // Field by field: copying a struct that was just made would wait for its stores.
-    placement.a = a;
-    placement.b = b;
+    Placement& placement = placements[index];
+    placement.a = in_order ? a : b;
+    placement.b = in_order ? b : a;
     placement.in_patch = placement.in_figure = false;
     const bool has_own_surface =
         !surfaces.empty() && index >= first_surface() && !is_default(surfaces[index - first_surface()]);
@@ -129,7 +133,7 @@ void ContactIntake::check_and_match(SceneCore& scene, std::span<const Contact> c
             scene.bodies.prefetch(contacts[i + ahead].body_b);
         }
         placements[i].constraint = static_cast<std::int32_t>(i);
-        placements[i].is_bad = !place(scene.bodies, i, contact, placements[i]);
+        placements[i].is_bad = !place(scene.bodies, i, contact);
         if (placements[i].is_bad) {
             mark_bad(i);
             // If it is skipped, it gets fixed bodies, and keeps its place in the list and its key.

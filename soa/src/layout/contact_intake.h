@@ -43,7 +43,10 @@ class ContactIntake {
     /// What the surfaces of the last contacts of the list do; those before them, or all, have the default. Set before
     /// begin().
     std::span<const ContactSurface<float>> surfaces;
-    AlignedVector<Placement> placements;  ///< with the colour of the step before, or no_colour
+    /// With the colour of the step before, or no_colour. Body a is of the kind that comes first in BodyKind.
+    AlignedVector<Placement> placements;
+    /// 1 where body a of the placement is body b of the host, and the other way round, else 0.
+    Array<std::uint8_t> exchanged;
     Patches patches;
     Array<std::int32_t> memory_index;  ///< entry in the last list's impulses; 0, the zero entry, when new
 
@@ -55,8 +58,7 @@ class ContactIntake {
     std::atomic<bool> bounces_{false};
 
     void mark_bad(std::size_t index);
-    bool place(const BodyStore& bodies, std::size_t index, const Contact& contact,
-               Placement& placement) const;
+    bool place(const BodyStore& bodies, std::size_t index, const Contact& contact);
     void remember(ContactCache& cache, std::uint32_t i, std::uint32_t before);
 };
 

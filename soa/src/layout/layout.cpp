@@ -324,6 +324,7 @@ void Layout::point_at_data(SceneCore& scene, std::span<const Contact> list)
         contact.parameters = &list[0].normal.x;
         contact.parameter_stride = sizeof(Contact) / sizeof(float);
         contact.memory_in = &scene.contacts.current().impulses[0].normal;
+        contact.exchanged = intake.exchanged.data();
         contact.memory_index = intake.memory_index.data();
         contact.memory_out = &scene.contacts.staged().impulses[1].normal;
         contact.memory_stride = sizeof(ContactImpulse) / sizeof(float);
