@@ -199,7 +199,7 @@ struct Manifold : ConstraintTraits {
     static void solve(const StepConstants& step, const Row& row, const Substep&, Impulse& impulse, A& a, B& b)
     {
         solve_friction<Real>(row, impulse, a, b);
-        constexpr bool on_fixed = A::kind == BodyKind::fixed || B::kind == BodyKind::fixed;
+        const bool on_fixed = is_fixed(a) || is_fixed(b);
         const Softness& soft = on_fixed ? step.static_contact : step.contact;
         for (int i = 0; i < most_points; ++i) {
             const Real wanted =
@@ -305,18 +305,6 @@ struct Manifold : ConstraintTraits {
     }
 
   private:
-    /// The rotation of a body since the step began, as a rotation vector to first order.
-    template <class Real, BodyKind kind>
-    static Vec3<Real> turned_by(const LaneBody<Real, kind>& body)
-    {
-        return small_rotation(body.delta_rotation);
-    }
-    template <class Real>
-    static Vec3<Real> turned_by(const LaneBody<Real, BodyKind::planar>& body)
-    {
-        return {Real(0), Real(0), body.delta_yaw};
-    }
-
     /// A unit vector perpendicular to the unit vector n: along n x e_x, or n x e_z where n is close to the x axis.
     template <class Real>
     static Vec3<Real> across(const Vec3<Real>& n)
@@ -349,7 +337,7 @@ struct Manifold : ConstraintTraits {
     static Real separation_at(const Row& row, int i, const A& a, const B& b)
     {
         return row.separation[i] + dot(row.normal, to_three(b.delta) - to_three(a.delta)) +
-               dot(row.lever_b[i], turned_by(b)) - dot(row.lever_a[i], turned_by(a));
+               dot(row.lever_b[i], small_turn_of(b)) - dot(row.lever_a[i], small_turn_of(a));
     }
     template <class Real, class Row, class A, class B>
     static Real speed_at(const Row& row, int i, const A& a, const B& b)

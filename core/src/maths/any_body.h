@@ -209,6 +209,16 @@ Real turn_about(const LaneBody<Real, any_kind>& any, const Vec3<Real>& axis)
     return look_at<true>(any, [&](const auto& body) { return turn_about(body, axis); });
 }
 template <class Real>
+Vec3<Real> small_turn_of(const LaneBody<Real, any_kind>& any)
+{
+    return look_at<true>(any, [](const auto& body) { return small_turn_of(body); });
+}
+template <class Real>
+bool is_fixed(const LaneBody<Real, any_kind>& any)
+{
+    return any.own_kind == BodyKind::fixed;
+}
+template <class Real>
 bool stays_in_plane(const LaneBody<Real, any_kind>& any)
 {
     return any.own_kind != BodyKind::rigid;

@@ -77,6 +77,12 @@ Sym3<Real> angular_response(const LaneBody<Real, BodyKind::fixed>&)
     return {none, none, none, none, none, none};
 }
 
+/// Whether the body never moves by impulses: of its kind, not of its state.
+template <class Real, BodyKind kind>
+constexpr bool is_fixed(const LaneBody<Real, kind>&)
+{
+    return kind == BodyKind::fixed;
+}
 /// Whether nothing can turn the body out of the plane z = 0: of its kind, not of its state.
 template <class Real, BodyKind kind>
 constexpr bool stays_in_plane(const LaneBody<Real, kind>&)
@@ -180,6 +186,18 @@ Quat<Real> turn_of(const LaneBody<Real, BodyKind::planar>& body)
 {
     const SineCosine<Real> half = sine_cosine(Real(0.5F) * body.delta_yaw);
     return {Real(0), Real(0), half.sine, half.cosine};
+}
+
+/// The same as a rotation vector, to first order.
+template <class Real, BodyKind kind>
+Vec3<Real> small_turn_of(const LaneBody<Real, kind>& body)
+{
+    return small_rotation(body.delta_rotation);
+}
+template <class Real>
+Vec3<Real> small_turn_of(const LaneBody<Real, BodyKind::planar>& body)
+{
+    return {Real(0), Real(0), body.delta_yaw};
 }
 
 /// The angle, rad, by which a body has turned since the step began about an axis that is fixed in it. `axis` is that

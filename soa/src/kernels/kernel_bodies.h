@@ -206,7 +206,10 @@ Vec3<Lanes> free_acceleration(const StepConstants& step, const BodyArrays& array
                               const std::int32_t* offsets, const Body<kind>& body)
 {
     const Lanes zero(0);
-    if constexpr (kind == BodyKind::fixed) {
+    if constexpr (kind == any_kind) {
+        return look_at<false>(body,
+                              [&](const auto& own) { return free_acceleration(step, arrays, offsets, own); });
+    } else if constexpr (kind == BodyKind::fixed) {
         return {zero, zero, zero};
     } else {
         Lanes a[4];

@@ -65,10 +65,11 @@ constexpr bool is_left_to_scalar()
 template <class Type, BodyKind kind, BodyKind partner>
 constexpr BodyKind computed_as()
 {
-    if (Type::is_contact || Type::has_restitution) return kind;
+    if (Type::is_contact) return kind;
     if (is_mixed(kind, partner) || (Type::needs_bodies_that_turn && is_planar_pair(kind, partner)))
         return any_kind;
-    return kind == BodyKind::fixed && partner == BodyKind::rigid ? BodyKind::rigid : kind;
+    const bool as_rigid = kind == BodyKind::fixed && partner == BodyKind::rigid && !Type::has_restitution;
+    return as_rigid ? BodyKind::rigid : kind;
 }
 
 template <KernelShare share, class Type, BodyKind a, BodyKind b>
