@@ -30,6 +30,7 @@
 //
 //   once a step
 //     prepare(start, parameters, memory, a, b, impulse&) -> Row       see StepStart; writes the impulses to start from
+//     put_in_order(order, parameters& or memory&)                     of a contact: exchanges bodies a and b where order is -1
 //     tension<Real>(row, impulse) -> Tension                          with pulls_at_arms: see tension.h
 //   each substep
 //     torque<Real>(row, impulse) -> Real                              with has_torque: norm of its angular impulses or more
