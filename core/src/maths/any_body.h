@@ -84,12 +84,14 @@ LaneBody<Real, any_kind> as_any(const LaneBody<Real, kind>& body)
     return any;
 }
 
-/// Returns work(kind), with the body's own kind as an integral constant; never with that of a particle, if the body is known
-/// to turn.
-template <bool turns, class Work>
+/// The kinds that such a body may be of: all, or those that turn. Types with rows about axes are not for particles.
+enum class Kinds { all, that_turn };
+
+/// Returns work(kind), with the body's own kind as an integral constant.
+template <Kinds kinds, class Work>
 auto with_kind(BodyKind own_kind, const Work& work)
 {
-    if constexpr (!turns) {
+    if constexpr (kinds == Kinds::all) {
         if (own_kind == BodyKind::particle)
             return work(std::integral_constant<BodyKind, BodyKind::particle>{});
     }
@@ -98,20 +100,20 @@ auto with_kind(BodyKind own_kind, const Work& work)
     return work(std::integral_constant<BodyKind, BodyKind::fixed>{});
 }
 /// Returns look(body) with the body as one of its own kind.
-template <bool turns, class Real, class Look>
+template <Kinds kinds, class Real, class Look>
 auto look_at(const LaneBody<Real, any_kind>& any, const Look& look)
 {
-    return with_kind<turns>(any.own_kind, [&](auto kind) {
+    return with_kind<kinds>(any.own_kind, [&](auto kind) {
         LaneBody<Real, kind()> body;
         copy_fields(any, body);
         return look(body);
     });
 }
 /// Calls change(body) likewise, and takes over what it changed.
-template <bool turns, class Real, class Change>
+template <Kinds kinds, class Real, class Change>
 void change_by(LaneBody<Real, any_kind>& any, const Change& change)
 {
-    with_kind<turns>(any.own_kind, [&](auto kind) {
+    with_kind<kinds>(any.own_kind, [&](auto kind) {
         LaneBody<Real, kind()> body;
         copy_fields(any, body);
         change(body);
@@ -124,27 +126,27 @@ void change_by(LaneBody<Real, any_kind>& any, const Change& change)
 template <class Real>
 Vec3<Real> velocity_at(const LaneBody<Real, any_kind>& any, const Vec3<Real>& arm)
 {
-    return look_at<false>(any, [&](const auto& body) { return velocity_at(body, arm); });
+    return look_at<Kinds::all>(any, [&](const auto& body) { return velocity_at(body, arm); });
 }
 template <class Real>
 void apply_impulse(LaneBody<Real, any_kind>& any, const Vec3<Real>& arm, const Vec3<Real>& impulse)
 {
-    change_by<false>(any, [&](auto& body) { apply_impulse(body, arm, impulse); });
+    change_by<Kinds::all>(any, [&](auto& body) { apply_impulse(body, arm, impulse); });
 }
 template <class Real>
 void apply_displacement(LaneBody<Real, any_kind>& any, const Vec3<Real>& arm, const Vec3<Real>& push)
 {
-    change_by<false>(any, [&](auto& body) { apply_displacement(body, arm, push); });
+    change_by<Kinds::all>(any, [&](auto& body) { apply_displacement(body, arm, push); });
 }
 template <class Real>
 Sym3<Real> inverse_point_mass(const LaneBody<Real, any_kind>& any, const Vec3<Real>& arm)
 {
-    return look_at<false>(any, [&](const auto& body) { return inverse_point_mass(body, arm); });
+    return look_at<Kinds::all>(any, [&](const auto& body) { return inverse_point_mass(body, arm); });
 }
 template <class Real>
 Vec3<Real> turned(const LaneBody<Real, any_kind>& any, const Vec3<Real>& arm)
 {
-    return look_at<false>(any, [&](const auto& body) { return turned(body, arm); });
+    return look_at<Kinds::all>(any, [&](const auto& body) { return turned(body, arm); });
 }
 
 // ---- of joint_pose.h and wrench.h ------------------------------------------------------------------------------------
@@ -165,12 +167,12 @@ Quat<Real> to_world(const Orientation<Real, any_kind>& o, const Quat<Real>& loca
 template <class Real>
 Vec3<Real> over_mass(const LaneBody<Real, any_kind>& any, const Vec3<Real>& v)
 {
-    return look_at<true>(any, [&](const auto& body) { return over_mass(body, v); });
+    return look_at<Kinds::that_turn>(any, [&](const auto& body) { return over_mass(body, v); });
 }
 template <class Real>
 Vec3<Real> over_inertia(const LaneBody<Real, any_kind>& any, const Vec3<Real>& v)
 {
-    return look_at<true>(any, [&](const auto& body) { return over_inertia(body, v); });
+    return look_at<Kinds::that_turn>(any, [&](const auto& body) { return over_inertia(body, v); });
 }
 /// The inertia of a planar body is about z, and fields that a kind does not have are 0: these need no switch.
 template <class Real>
@@ -186,32 +188,32 @@ Real angular_size(const LaneBody<Real, any_kind>& any)
 template <class Real>
 void apply_wrench(LaneBody<Real, any_kind>& any, const Vec3<Real>& linear, const Vec3<Real>& angular)
 {
-    change_by<true>(any, [&](auto& body) { apply_wrench(body, linear, angular); });
+    change_by<Kinds::that_turn>(any, [&](auto& body) { apply_wrench(body, linear, angular); });
 }
 template <class Real>
 void apply_turn(LaneBody<Real, any_kind>& any, const Vec3<Real>& angular)
 {
-    change_by<true>(any, [&](auto& body) { apply_turn(body, angular); });
+    change_by<Kinds::that_turn>(any, [&](auto& body) { apply_turn(body, angular); });
 }
 template <class Real>
 void displace(LaneBody<Real, any_kind>& any, const Vec3<Real>& linear, const Vec3<Real>& angular)
 {
-    change_by<true>(any, [&](auto& body) { displace(body, linear, angular); });
+    change_by<Kinds::that_turn>(any, [&](auto& body) { displace(body, linear, angular); });
 }
 template <class Real>
 Quat<Real> turn_of(const LaneBody<Real, any_kind>& any)
 {
-    return look_at<true>(any, [](const auto& body) -> Quat<Real> { return turn_of(body); });
+    return look_at<Kinds::that_turn>(any, [](const auto& body) -> Quat<Real> { return turn_of(body); });
 }
 template <class Real>
 Real turn_about(const LaneBody<Real, any_kind>& any, const Vec3<Real>& axis)
 {
-    return look_at<true>(any, [&](const auto& body) { return turn_about(body, axis); });
+    return look_at<Kinds::that_turn>(any, [&](const auto& body) { return turn_about(body, axis); });
 }
 template <class Real>
 Vec3<Real> small_turn_of(const LaneBody<Real, any_kind>& any)
 {
-    return look_at<true>(any, [](const auto& body) { return small_turn_of(body); });
+    return look_at<Kinds::that_turn>(any, [](const auto& body) { return small_turn_of(body); });
 }
 template <class Real>
 bool is_fixed(const LaneBody<Real, any_kind>& any)
@@ -230,19 +232,19 @@ template <class Real>
 Real unbearable_tension(const LaneBody<Real, any_kind>& any, const Vec3<Real>& arm, const Vec3<Real>& push,
                         const Real& substep)
 {
-    return look_at<false>(any,
-                          [&](const auto& body) { return unbearable_tension(body, arm, push, substep); });
+    return look_at<Kinds::all>(
+        any, [&](const auto& body) { return unbearable_tension(body, arm, push, substep); });
 }
 template <class Real>
 void stiffen(LaneBody<Real, any_kind>& any, const Vec3<Real>& arm, const Vec3<Real>& push,
              const Real& substep)
 {
-    change_by<false>(any, [&](auto& body) { stiffen(body, arm, push, substep); });
+    change_by<Kinds::all>(any, [&](auto& body) { stiffen(body, arm, push, substep); });
 }
 template <class Real>
 Real largest_response(const LaneBody<Real, any_kind>& any)
 {
-    return look_at<false>(any, [](const auto& body) { return largest_response(body); });
+    return look_at<Kinds::all>(any, [](const auto& body) { return largest_response(body); });
 }
 
 }  // namespace motley

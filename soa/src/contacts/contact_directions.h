@@ -127,24 +127,30 @@ ContactDirections directions_of_discs(const float* rows, std::size_t block, std:
 
 using ReadDirections = ContactDirections (*)(const float* rows, std::size_t block, std::size_t lane);
 
+/// Null for pairs that do not occur: body a is of the kind that comes first (see ContactIntake), and one of them moves.
+template <class Type, BodyKind a, BodyKind b>
+constexpr ReadDirections reader_of()
+{
+    if constexpr (a > b || a == BodyKind::fixed) {
+        return nullptr;
+    } else {
+        return directions_of<Type, a, b>;
+    }
+}
 template <class Type, BodyKind a>
 ReadDirections reader_of(BodyKind b)
 {
     switch (b) {
         case BodyKind::particle:
-            return directions_of<Type, a, BodyKind::particle>;
+            return reader_of<Type, a, BodyKind::particle>();
         case BodyKind::planar:
-            return directions_of<Type, a, BodyKind::planar>;
+            return reader_of<Type, a, BodyKind::planar>();
         case BodyKind::rigid:
-            return directions_of<Type, a, BodyKind::rigid>;
+            return reader_of<Type, a, BodyKind::rigid>();
         case BodyKind::fixed:
             break;
     }
-    if constexpr (a == BodyKind::fixed) {
-        return nullptr;
-    } else {
-        return directions_of<Type, a, BodyKind::fixed>;
-    }
+    return reader_of<Type, a, BodyKind::fixed>();
 }
 template <class Type>
 ReadDirections reader_of(BodyKind a, BodyKind b)

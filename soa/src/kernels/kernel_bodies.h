@@ -87,7 +87,7 @@ inline std::int32_t row_of(const BodyArrays& arrays, std::int32_t offset)
 [[gnu::noinline]] inline Body<any_kind> load_body(const BodyArrays& arrays, const std::int32_t* offsets,
                                                   Body<any_kind>*)
 {
-    return with_kind<false>(arrays.kind, [&](auto kind) {
+    return with_kind<Kinds::all>(arrays.kind, [&](auto kind) {
         return as_any(load_body(arrays, offsets, static_cast<Body<kind()>*>(nullptr)));
     });
 }
@@ -120,7 +120,7 @@ inline std::int32_t row_of(const BodyArrays& arrays, std::int32_t offset)
 [[gnu::noinline]] inline void store_velocity(float* rows, const std::int32_t* offsets,
                                              const Body<any_kind>& any, int count)
 {
-    look_at<false>(any, [&](const auto& body) { store_velocity(rows, offsets, body, count); });
+    look_at<Kinds::all>(any, [&](const auto& body) { store_velocity(rows, offsets, body, count); });
 }
 template <class Body>
 [[gnu::always_inline]] inline void store_velocity(const BodyArrays& arrays, const std::int32_t* offsets,
@@ -207,8 +207,8 @@ Vec3<Lanes> free_acceleration(const StepConstants& step, const BodyArrays& array
 {
     const Lanes zero(0);
     if constexpr (kind == any_kind) {
-        return look_at<false>(body,
-                              [&](const auto& own) { return free_acceleration(step, arrays, offsets, own); });
+        return look_at<Kinds::all>(
+            body, [&](const auto& own) { return free_acceleration(step, arrays, offsets, own); });
     } else if constexpr (kind == BodyKind::fixed) {
         return {zero, zero, zero};
     } else {

@@ -152,7 +152,7 @@ void if_it_moves(const BodyArrays& arrays, const Body<kind>& body, const Store& 
 {
     if (!arrays.can_move) return;
     if constexpr (kind == any_kind) {
-        look_at<false>(body, [&](const auto& own) { store(reinterpret_cast<const float*>(&own)); });
+        look_at<Kinds::all>(body, [&](const auto& own) { store(reinterpret_cast<const float*>(&own)); });
     } else {
         store(reinterpret_cast<const float*>(&body));
     }

@@ -425,8 +425,10 @@ struct Kernels {
                     const float* present = streams.present == nullptr
                                                ? nullptr
                                                : streams.present + block * block_lanes + bundle.lane;
+                    [[maybe_unused]] Lanes order;
+                    if constexpr (may_be_exchanged) order = order_of(data, bundle);
                     const auto put = [&](Memory kept, float* table, std::int64_t stride) {
-                        if constexpr (may_be_exchanged) Type::put_in_order(order_of(data, bundle), kept);
+                        if constexpr (may_be_exchanged) Type::put_in_order(order, kept);
                         scatter_finite(kept, table, stride, bundle.constraint, bundle.count, present);
                     };
                     put(memory, data.memory_out, data.memory_stride);

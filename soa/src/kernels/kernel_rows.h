@@ -11,12 +11,13 @@ void unused(const Numbers&...)
 template <class Row>
 inline constexpr int fields_of = std::is_empty_v<Row> ? 0 : static_cast<int>(sizeof(Row) / sizeof(Lanes));
 
-/// A row consists of Reals only, stored field by field: field i of the lanes from l on is at stream[16 i + l]. Each field is a
-/// load of its own, so that those without a reader are dropped. So is each store in kernels for speed, where fields are in
-/// registers; in those for size it is a loop.
+/// Kernels of the other shares are for size: see KernelShare.
 inline constexpr bool is_for_speed =
     KernelShare::MOTLEY_SHARE == KernelShare::swept || KernelShare::MOTLEY_SHARE == KernelShare::unusual;
 
+/// A row consists of Reals only, stored field by field: field i of the lanes from l on is at stream[16 i + l]. Each field is a
+/// load of its own, so that those without a reader are dropped. So is each store in kernels for speed, where fields are in
+/// registers; in those for size it is a loop.
 template <class Row, int... field>
 void load_fields(Row& row, const float* stream, std::integer_sequence<int, field...>)
 {
