@@ -20,6 +20,7 @@ namespace motley {
 struct Pulley : ConstraintTraits {
     using Definition = PulleyDefinition;
     static constexpr bool has_world_points = true;
+    static constexpr bool is_rare = true;
     static constexpr float far_away = 1e12F;
 
     template <class Real>

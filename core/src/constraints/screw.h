@@ -20,6 +20,7 @@ namespace motley {
 struct Screw : ConstraintTraits {
     using Definition = ScrewDefinition;
     static constexpr bool needs_bodies_that_turn = true;
+    static constexpr bool is_rare = true;
 
     template <class Real>
     struct Parameters {

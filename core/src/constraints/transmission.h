@@ -33,6 +33,7 @@ template <class JointDefinition>
 struct Transmission : ConstraintTraits {
     using Definition = JointDefinition;
     static constexpr bool needs_bodies_that_turn = true;
+    static constexpr bool is_rare = true;
     static constexpr bool slides = std::is_same_v<Definition, RackAndPinionDefinition>;
 
     template <class Real>

@@ -52,12 +52,14 @@ constexpr bool is_usual()
     const bool is_planar = a == BodyKind::planar || b == BodyKind::planar;
     return !is_mixed(a, b) && !(is_planar && Type::needs_bodies_that_turn) && !Type::is_rare;
 }
-/// Joints between moving bodies of different kinds are few in any scene, so one scalar copy of their kernels serves
-/// every instruction set, with the same bits. See kernel_table().
+/// Joints between moving bodies of different kinds are few in any scene, and so are joints of a rare type between others
+/// than rigid bodies: one scalar copy of their kernels serves every instruction set, with the same bits. See kernel_table().
 template <class Type, BodyKind a, BodyKind b>
 constexpr bool is_left_to_scalar()
 {
-    return Lanes_width > 1 && is_mixed(a, b) && !Type::is_contact;
+    const bool is_rigid = a == BodyKind::rigid || b == BodyKind::rigid;
+    const bool few = is_mixed(a, b) || (Type::is_rare && !is_rigid);
+    return Lanes_width > 1 && few && !Type::is_contact;
 }
 
 /// The kind as which a kernel computes a body. One kernel serves all unusual pairs of a joint. A joint that does not need to
