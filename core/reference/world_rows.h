@@ -1,10 +1,18 @@
 // The rows of a substep, shared by the sequential and the simultaneous solution.
 #pragma once
 
+#include <Eigen/QR>
+#include <algorithm>
+
 #include "motley/reference/world.h"
 
 namespace motley::reference {
 
+inline std::size_t contacts_of(const std::vector<Block>& blocks)
+{
+    return static_cast<std::size_t>(std::count_if(
+        blocks.begin(), blocks.end(), [](const Block& b) { return b.kind == Block::Kind::contact; }));
+}
 /// The impulses of a joint's contacts, which are the last blocks of it.
 inline double push_of(const Joint& joint, std::size_t contacts)
 {
@@ -18,6 +26,25 @@ inline Eigen::MatrixXd to_force_of(const Block& block)
 {
     if (block.bounds_torque) return block.jacobian.rightCols<3>().transpose();
     return Eigen::MatrixXd::Identity(block.jacobian.rows(), block.jacobian.rows());
+}
+
+/// A bounded impulse after a step that would lead to `free`. Where that is too long, the step has the same stride in
+/// every direction of the force and is then shortened: it converges only where the force points against the speed that
+/// remains (see bounded_impulse.h). `to_force` maps impulses to what is bounded, whose response is k; `most` is at
+/// least k's largest eigenvalue.
+inline Eigen::VectorXd bounded(const Eigen::VectorXd& held, const Eigen::VectorXd& free,
+                               const Eigen::MatrixXd& to_force, const Eigen::MatrixXd& k, double most,
+                               double bound)
+{
+    if ((to_force * free).norm() <= bound) return free;
+    Eigen::VectorXd next = held;
+    if (most > 0) {
+        const Eigen::VectorXd stride = k * (to_force * (free - held)) / most;
+        next += to_force.completeOrthogonalDecomposition().pseudoInverse() * stride;
+    }
+    const double size = (to_force * next).norm();
+    if (size > bound) next *= bound / size;
+    return next;
 }
 
 struct World::BlockRow {
