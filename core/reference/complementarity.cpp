@@ -17,6 +17,7 @@
 #include "complementarity.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -33,8 +34,13 @@ using Square = RowGroup::Square;
 
 /// epsilon: the share of a row's own K that is added to it. A smaller one converges faster but rounds worse. Equations
 /// alone are well posed; among contacts, rows may nearly contradict each other, and a larger epsilon keeps their
-/// impulses smaller.
-constexpr double epsilon_of_equations = 1e-8, epsilon_of_contacts = 1e-7;
+/// impulses smaller. Contacts of masses far apart want the smallest one, which is for the attempts after the first.
+constexpr double epsilon_of_equations = 1e-8, epsilon_of_contacts = 1e-7, epsilon_of_attempts = 1e-10;
+/// In the attempts after the first a step may increase the merit up to the largest of so many before (L. Grippo,
+/// F. Lampariello, S. Lucidi 1986): a descent in every step sticks at kinks of the map.
+constexpr std::size_t merits_kept = 20;
+/// Of the walks away from such a kink, one for each attempt.
+constexpr std::array<double, 6> epsilon_of_walks{1e-6, 1e-3, 1e-5, 1e-4, 1e-7, 1e-2};
 /// A violation below which the rounding of doubles hardly lets the natural map decrease any more.
 constexpr double enough = 1e-13;
 /// A violation below which further attempts are not worth their time.
@@ -105,6 +111,8 @@ class Part {
     int bodies_, nodes_;     ///< nodes: bodies, then joints
     bool is_linear_ = true;  ///< only equations
     double epsilon_ = 0, least_ = unbounded;
+    std::array<double, merits_kept> merits_{};  ///< of the last steps, in a ring
+    std::size_t merits_kept_ = 1, merit_count_ = 0;
     BlockSystem system_;
     VectorXd move_;
 
@@ -331,16 +339,19 @@ class Part {
         }
         return true;
     }
-    /// Takes the largest share of the step, of 1, 1/2, 1/4, ..., that decreases the map, and returns it. Returns 0,
-    /// with the impulses as they were, if none does.
+    /// Takes the largest share of the step, of 1, 1/2, 1/4, ..., that leaves less of the map than the worst of the last steps,
+    /// and returns it. Returns 0, with the impulses as they were, if none does.
     double descend(Look& now)
     {
+        merits_[merit_count_++ % merits_kept_] = now.merit;
+        const auto kept = static_cast<std::ptrdiff_t>(std::min(merit_count_, merits_kept_));
+        const double worst = *std::max_element(merits_.begin(), merits_.begin() + kept);
         for (Unit& unit : units_) unit.start = unit.group->lambda;
         for (double length = 1; length > 0.02; length /= 2) {
             for (Unit& unit : units_) unit.group->lambda = unit.start + length * unit.step;
             accumulate();
             const Look there = look();
-            if (there.merit < (1 - 1e-4 * length) * now.merit) {
+            if (there.merit < (1 - 1e-4 * length) * worst) {
                 now = there;
                 return length;
             }
@@ -377,25 +388,29 @@ class Part {
     void iterate()
     {
         keep_best(look());
-        newton(is_linear_ ? 40 : 15);
+        newton(is_linear_ ? 40 : 15, is_linear_ ? epsilon_of_equations : epsilon_of_contacts, 1);
         // The descent may be stuck at a kink of the map that is no solution. Full steps lead away from it: the impulses
         // of nearly redundant rows grow until one reaches its bound. Sweeps lead to another face of the cones.
-        for (int attempt = 0; attempt < 4 && !is_linear_ && least_ > rounding; ++attempt) {
+        int sweeps = 50;
+        for (const double epsilon : epsilon_of_walks) {
+            if (is_linear_ || least_ <= rounding) return;
             go_back_to_best();
-            walk(15, attempt % 2 == 0 ? 1e-6 : 1e-3);
-            newton(25);
-            if (least_ <= rounding) break;
+            walk(15, epsilon);
+            newton(60, epsilon_of_attempts, merits_kept);
+            if (least_ <= rounding) return;
             go_back_to_best();
-            for (int i = 0; i < (50 << attempt); ++i) sweep();
-            newton(25);
+            for (int i = 0; i < sweeps; ++i) sweep();
+            sweeps = std::min(2 * sweeps, 400);
+            newton(60, epsilon_of_attempts, merits_kept);
         }
     }
-    /// At most `rounds` Newton steps, as long as they decrease the map. Where one does not, a larger epsilon turns it
-    /// towards solving each row by itself (Levenberg and Marquardt).
-    void newton(int rounds)
+    /// At most `rounds` Newton steps, as long as they decrease the map below what the last `merits_kept_now` left. Where one does
+    /// not, a larger epsilon turns it towards solving each row by itself (Levenberg and Marquardt).
+    void newton(int rounds, double least_epsilon, std::size_t merits_kept_now)
     {
+        merits_kept_ = merits_kept_now;
+        merit_count_ = 0;
         Look now = look();
-        const double least_epsilon = is_linear_ ? epsilon_of_equations : epsilon_of_contacts;
         epsilon_ = least_epsilon;
         for (int round = 0; round < rounds && now.violation > enough; ++round) {
             const bool has_step = factor() && find_step();

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <numbers>
 
+#include "mixed_scene.h"
 #include "rig.h"
 
 namespace motley {
@@ -300,6 +301,39 @@ TEST(DirectMethod, AStackOfLightAndHeavyCubesIsSolvedInEveryStep)
     Solver solver(settings);
     EXPECT_LT(stack.run(solver, 20, 0.5F), 1e-9);
     EXPECT_LT(std::abs(stack.scene.state(below).linear_velocity.y), 1e-6F);
+}
+
+TEST(DirectMethod, StacksOfMassesFarApartAreHardlyEverLeftUnsolved)
+{
+    // Twelve stacks of twenty cubes of 1 kg and of a heavier mass in turn, each aside by up to 2 cm, 240 substeps together. Most
+    // stacks tip over. Measured: 3, 3, 10, 34 and 46 unsolved, off by 3e-7 m/s at most up to 1 t.
+    for (const float heavy : {10.0F, 100.0F, 1000.0F, 1e4F, 1e5F}) {
+        testing::Random random(3);
+        int unsolved = 0, solves = 0;
+        double violation = 0;
+        for (int k = 0; k < testing::repeats(12); ++k) {
+            Cubes stack;
+            BodyId below = stack.scene.ground();
+            for (int i = 0; i < 20; ++i)
+                below =
+                    stack.add({0.02 * random.symmetric(), 0.5 + i, 0}, i % 2 == 0 ? 1.0F : heavy, {below});
+            SolverSettings settings = direct(DriftCorrection::baumgarte);
+            settings.substeps = 4;
+            Solver solver(settings);
+            for (int step = 0; step < 5; ++step) {
+                stack.find_contacts(0.5F);
+                const StepReport report = solver.step(stack.scene, frame_time, stack.contacts);
+                ASSERT_EQ(report.status, StepStatus::done) << report.error;
+                unsolved += report.direct_unsolved;
+                solves += settings.substeps;
+                violation = std::max(violation, report.direct_violation);
+            }
+        }
+        std::printf("cubes of 1 kg and %g kg: %d unsolved, off by %.2g m/s\n", static_cast<double>(heavy),
+                    unsolved, violation);
+        EXPECT_LE(unsolved, 2 + (heavy > 1000 ? 0.25 : 0.05) * solves) << heavy;
+        if (heavy <= 1000) EXPECT_LT(violation, 1e-5) << heavy;
+    }
 }
 
 TEST(DirectMethod, ANetOfHingesAndWeldsWithFarMoreRowsThanMotionsIsSolved)
