@@ -309,6 +309,7 @@ TEST(DirectMethod, StacksOfMassesFarApartAreHardlyEverLeftUnsolved)
     // stacks tip over. Which solves are left depends on rounding: of twelve stacks, 240 substeps, 3, 3, 10, 34 and 46 on x86-64
     // and 2, 11, 26, 40 and 43 on ARM.
     for (const float heavy : {10.0F, 100.0F, 1000.0F, 1e4F, 1e5F}) {
+        if (testing::is_sanitized && heavy > 100) continue;  // of one stack alone all may be left
         testing::Random random(3);
         int unsolved = 0, solves = 0;
         double violation = 0;
