@@ -1,5 +1,6 @@
 # What a scene requires: the joints and body models that kernels are compiled for, and whether Method::direct is. Sets
 #   motley_constraint_headers   the headers in core/src/constraints whose kernels are compiled, contact.h always
+#   motley_rare_headers         those of them whose types are all rare (ConstraintTraits::is_rare), as kernels include them
 #   motley_built_definitions    what the sources are told of it
 set(folder ${CMAKE_CURRENT_LIST_DIR}/../core/src/constraints)
 file(GLOB all_joints CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*.h)
@@ -49,9 +50,14 @@ endfunction()
 
 set(motley_constraint_headers contact ${joints})
 set(built_types "")
+set(motley_rare_headers "")
 foreach(header IN LISTS motley_constraint_headers)
     motley_types_of(${header} types)
     list(APPEND built_types ${types})
+    file(STRINGS ${folder}/${header}.h is_rare REGEX "is_rare = true;")
+    if(is_rare)
+        list(APPEND motley_rare_headers constraints/${header}.h)
+    endif()
 endforeach()
 string(JOIN "," built_types ${built_types})
 string(JOIN ", " built_joints ${joints})

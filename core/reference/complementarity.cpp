@@ -36,15 +36,23 @@ using Square = RowGroup::Square;
 /// alone are well posed; among contacts, rows may nearly contradict each other, and a larger epsilon keeps their
 /// impulses smaller. Contacts of masses far apart want the smallest one, which is for the attempts after the first.
 constexpr double epsilon_of_equations = 1e-8, epsilon_of_contacts = 1e-7, epsilon_of_attempts = 1e-10;
-/// In the attempts after the first a step may increase the merit up to the largest of so many before (L. Grippo,
-/// F. Lampariello, S. Lucidi 1986): a descent in every step sticks at kinks of the map.
-constexpr std::size_t merits_kept = 20;
-/// Of the walks away from such a kink, one for each attempt.
+/// That of the walk with which each attempt begins.
 constexpr std::array<double, 6> epsilon_of_walks{1e-6, 1e-3, 1e-5, 1e-4, 1e-7, 1e-2};
 /// A violation below which the rounding of doubles hardly lets the natural map decrease any more.
 constexpr double enough = 1e-13;
 /// A violation below which further attempts are not worth their time.
 constexpr double rounding = 0.01 * solved_to;
+
+/// How Newton steps go on.
+struct Descent {
+    int rounds;  ///< steps at most
+    double least_epsilon;
+    /// A step must leave less of the map than the worst of so many steps before it. With 1 the map decreases in every step, which
+    /// ends at kinks of the map (L. Grippo, F. Lampariello, S. Lucidi 1986).
+    std::size_t memory;
+};
+constexpr Descent descent_of_equations{40, epsilon_of_equations, 1},
+    descent_of_contacts{15, epsilon_of_contacts, 1}, descent_of_attempts{60, epsilon_of_attempts, 20};
 
 /// The groups of one part, with its bodies numbered from 0.
 class Part {
@@ -111,8 +119,7 @@ class Part {
     int bodies_, nodes_;     ///< nodes: bodies, then joints
     bool is_linear_ = true;  ///< only equations
     double epsilon_ = 0, least_ = unbounded;
-    std::array<double, merits_kept> merits_{};  ///< of the last steps, in a ring
-    std::size_t merits_kept_ = 1, merit_count_ = 0;
+    std::vector<double> merits_;  ///< of the map, before each of these Newton steps
     BlockSystem system_;
     VectorXd move_;
 
@@ -339,13 +346,13 @@ class Part {
         }
         return true;
     }
-    /// Takes the largest share of the step, of 1, 1/2, 1/4, ..., that leaves less of the map than the worst of the last steps,
-    /// and returns it. Returns 0, with the impulses as they were, if none does.
-    double descend(Look& now)
+    /// Takes the largest share of the step, of 1, 1/2, 1/4, ..., that leaves less of the map than the worst of the last `memory`
+    /// steps began with, and returns it. Returns 0, with the impulses as they were, if none does.
+    double descend(Look& now, std::size_t memory)
     {
-        merits_[merit_count_++ % merits_kept_] = now.merit;
-        const auto kept = static_cast<std::ptrdiff_t>(std::min(merit_count_, merits_kept_));
-        const double worst = *std::max_element(merits_.begin(), merits_.begin() + kept);
+        merits_.push_back(now.merit);
+        const auto kept = static_cast<std::ptrdiff_t>(std::min(merits_.size(), memory));
+        const double worst = *std::max_element(merits_.end() - kept, merits_.end());
         for (Unit& unit : units_) unit.start = unit.group->lambda;
         for (double length = 1; length > 0.02; length /= 2) {
             for (Unit& unit : units_) unit.group->lambda = unit.start + length * unit.step;
@@ -388,35 +395,35 @@ class Part {
     void iterate()
     {
         keep_best(look());
-        newton(is_linear_ ? 40 : 15, is_linear_ ? epsilon_of_equations : epsilon_of_contacts, 1);
+        newton(is_linear_ ? descent_of_equations : descent_of_contacts);
+        if (is_linear_) return;
         // The descent may be stuck at a kink of the map that is no solution. Full steps lead away from it: the impulses
         // of nearly redundant rows grow until one reaches its bound. Sweeps lead to another face of the cones.
         int sweeps = 50;
         for (const double epsilon : epsilon_of_walks) {
-            if (is_linear_ || least_ <= rounding) return;
+            if (least_ <= rounding) return;
             go_back_to_best();
             walk(15, epsilon);
-            newton(60, epsilon_of_attempts, merits_kept);
+            newton(descent_of_attempts);
             if (least_ <= rounding) return;
             go_back_to_best();
             for (int i = 0; i < sweeps; ++i) sweep();
             sweeps = std::min(2 * sweeps, 400);
-            newton(60, epsilon_of_attempts, merits_kept);
+            newton(descent_of_attempts);
         }
     }
-    /// At most `rounds` Newton steps, as long as they decrease the map below what the last `merits_kept_now` left. Where one does
-    /// not, a larger epsilon turns it towards solving each row by itself (Levenberg and Marquardt).
-    void newton(int rounds, double least_epsilon, std::size_t merits_kept_now)
+    /// Newton steps, as long as they decrease the map as `descent` asks. Where one does not, a larger epsilon turns it
+    /// towards solving each row by itself (Levenberg and Marquardt).
+    void newton(const Descent& descent)
     {
-        merits_kept_ = merits_kept_now;
-        merit_count_ = 0;
+        merits_.clear();
         Look now = look();
-        epsilon_ = least_epsilon;
-        for (int round = 0; round < rounds && now.violation > enough; ++round) {
+        epsilon_ = descent.least_epsilon;
+        for (int round = 0; round < descent.rounds && now.violation > enough; ++round) {
             const bool has_step = factor() && find_step();
             const double before = now.violation;
             const bool contradictory = has_step && is_linear_ && contradicts(now);
-            const double length = has_step ? descend(now) : 0;
+            const double length = has_step ? descend(now, descent.memory) : 0;
             if (contradictory && now.violation > std::max(0.5 * before, rounding)) {
                 for (Unit& unit : units_) unit.group->lambda = unit.start;
                 give_up_contradictions();
@@ -430,7 +437,7 @@ class Part {
             if (length == 0 && (now.violation < rounding || epsilon_ >= 1)) return;
             epsilon_ = length == 0    ? std::min(1.0, epsilon_ * 1e3)
                        : length < 0.2 ? std::min(1.0, epsilon_ * 1e2)
-                                      : std::max(least_epsilon, epsilon_ * 1e-2);
+                                      : std::max(descent.least_epsilon, epsilon_ * 1e-2);
         }
     }
     /// Full steps of the proximal point method, also where they increase the map.

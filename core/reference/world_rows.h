@@ -8,6 +8,7 @@
 
 namespace motley::reference {
 
+/// How many of these blocks are contacts.
 inline std::size_t contacts_of(const std::vector<Block>& blocks)
 {
     return static_cast<std::size_t>(std::count_if(

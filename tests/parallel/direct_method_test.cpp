@@ -253,15 +253,20 @@ struct Cubes {
             }
         }
     }
+    StepReport step(Solver& solver, float friction)
+    {
+        find_contacts(friction);
+        const StepReport report = solver.step(scene, frame_time, contacts);
+        EXPECT_EQ(report.status, StepStatus::done) << report.error;
+        return report;
+    }
     /// The largest violation over some steps, each of which must be solved.
     double run(Solver& solver, int steps, float friction)
     {
         double violation = 0;
-        for (int step = 0; step < steps; ++step) {
-            find_contacts(friction);
-            const StepReport report = solver.step(scene, frame_time, contacts);
-            EXPECT_EQ(report.status, StepStatus::done) << report.error;
-            EXPECT_EQ(report.direct_unsolved, 0) << "step " << step;
+        for (int i = 0; i < steps; ++i) {
+            const StepReport report = step(solver, friction);
+            EXPECT_EQ(report.direct_unsolved, 0) << "step " << i;
             violation = std::max(violation, report.direct_violation);
         }
         return violation;
@@ -323,9 +328,8 @@ TEST(DirectMethod, StacksOfMassesFarApartAreHardlyEverLeftUnsolved)
             settings.substeps = 4;
             Solver solver(settings);
             for (int step = 0; step < 5; ++step) {
-                stack.find_contacts(0.5F);
-                const StepReport report = solver.step(stack.scene, frame_time, stack.contacts);
-                ASSERT_EQ(report.status, StepStatus::done) << report.error;
+                const StepReport report = stack.step(solver, 0.5F);
+                ASSERT_EQ(report.status, StepStatus::done);
                 unsolved += report.direct_unsolved;
                 solves += settings.substeps;
                 violation = std::max(violation, report.direct_violation);

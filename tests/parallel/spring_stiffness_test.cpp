@@ -25,6 +25,19 @@ ConstraintId hang_on(Scene& scene, BodyId a, BodyId b, TwistDriveDefinition driv
     return scene.add_joint(drive);
 }
 
+/// The most kinetic energy that a scene has after any of these steps.
+double most_energy(Scene& scene, Solver& solver, int steps)
+{
+    double most = 0;
+    for (int step = 0; step < steps; ++step) {
+        const StepReport report = solver.step(scene, frame_time);
+        EXPECT_EQ(report.status, StepStatus::done);
+        EXPECT_EQ(report.bodies_contained, 0);
+        most = std::max(most, scene.errors().kinetic_energy);
+    }
+    return most;
+}
+
 double angle_of(const BodyState& state)
 {
     return 2 * std::atan2(state.orientation.z, state.orientation.w);
@@ -251,12 +264,7 @@ TEST(Armature, BesideALightLinkGivesNoEnergy)
             SolverSettings settings;
             settings.exact_joints = exact;
             Solver solver(settings);
-            double most = 0;
-            for (int step = 0; step < testing::long_run(1200); ++step) {
-                ASSERT_EQ(solver.step(scene, frame_time).status, StepStatus::done);
-                most = std::max(most, scene.errors().kinetic_energy);
-            }
-            EXPECT_LT(most, at_start) << exact << " " << rotor;
+            EXPECT_LT(most_energy(scene, solver, testing::long_run(1200)), at_start) << exact << " " << rotor;
         }
     }
 }
@@ -271,12 +279,7 @@ TEST(Armature, WarmStartsDoNotThrowALightLink)
                 {.spring_stiffness = 100, .spring_target = 1, .armature = rotor});
         scene.add_joint(FixedDefinition{link, arm, {{0.25F, 0, 0}}, {{-0.25F, 0, 0}}});
         Solver solver;
-        double most = 0;
-        for (int step = 0; step < 600; ++step) {
-            ASSERT_EQ(solver.step(scene, frame_time).status, StepStatus::done);
-            most = std::max(most, scene.errors().kinetic_energy);
-        }
-        EXPECT_LT(most, 0.5 * 100) << rotor;
+        EXPECT_LT(most_energy(scene, solver, 600), 0.5 * 100) << rotor;
     }
 }
 
@@ -309,18 +312,10 @@ TEST(Torque, ThroughALightCrossGivesNoEnergy)
 {
     for (const float mass : {0.1F, 1e-3F, 1e-5F}) {
         Universal joined(mass);
-        Scene& scene = joined.scene;
-        scene.set_velocity(joined.two, {0, 3, 2}, {6, -15, 18});
-        const double at_start = scene.errors().kinetic_energy;
+        joined.scene.set_velocity(joined.two, {0, 3, 2}, {6, -15, 18});
+        const double at_start = joined.scene.errors().kinetic_energy;
         Solver solver;
-        double most = 0;
-        for (int step = 0; step < 1200; ++step) {
-            const StepReport report = solver.step(scene, frame_time);
-            ASSERT_EQ(report.status, StepStatus::done);
-            ASSERT_EQ(report.bodies_contained, 0) << mass;
-            most = std::max(most, scene.errors().kinetic_energy);
-        }
-        EXPECT_LT(most, 1.01 * at_start) << mass;
+        EXPECT_LT(most_energy(joined.scene, solver, 1200), 1.01 * at_start) << mass;
     }
 }
 
@@ -339,12 +334,8 @@ TEST(Torque, ThroughACrossGivesNoEnergyWhateverTheStart)
                 settings.substeps = substeps;
                 settings.exact_joints = exact;
                 Solver solver(settings);
-                double most = 0;
-                for (int step = 0; step < 1200; ++step) {
-                    ASSERT_EQ(solver.step(joined.scene, frame_time).status, StepStatus::done);
-                    most = std::max(most, joined.scene.errors().kinetic_energy);
-                }
-                EXPECT_LT(most, 1.01 * at_start) << exact << ", " << substeps << " substeps, start " << start;
+                EXPECT_LT(most_energy(joined.scene, solver, 1200), 1.01 * at_start)
+                    << exact << ", " << substeps << " substeps, start " << start;
             }
         }
     }

@@ -73,7 +73,8 @@ struct ConstraintTraits {
     static constexpr bool has_restitution = false;
     /// Not for particles, which have no axes.
     static constexpr bool needs_bodies_that_turn = false;
-    /// Few scenes have many of it: AVX-512 then runs it in lanes of AVX2, SSE2 in scalar ones.
+    /// Few scenes have many of it: AVX-512 then runs it in lanes of AVX2, SSE2 in scalar ones; between bodies of which none is
+    /// rigid every instruction set does.
     static constexpr bool is_rare = false;
     /// Is a force: its distance from its target does not count as an error of the scene.
     static constexpr bool only_pulls = false;

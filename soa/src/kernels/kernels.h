@@ -57,8 +57,8 @@ constexpr bool is_usual()
 template <class Type, BodyKind a, BodyKind b>
 constexpr bool is_left_to_scalar()
 {
-    const bool is_rigid = a == BodyKind::rigid || b == BodyKind::rigid;
-    const bool few = is_mixed(a, b) || (Type::is_rare && !is_rigid);
+    const bool has_rigid = a == BodyKind::rigid || b == BodyKind::rigid;
+    const bool few = is_mixed(a, b) || (Type::is_rare && !has_rigid);
     return Lanes_width > 1 && few && !Type::is_contact;
 }
 
