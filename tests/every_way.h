@@ -10,7 +10,7 @@ namespace motley::testing {
 /// Every way to solve a step that treats bodies in its own way.
 inline std::vector<SolverSettings> every_way()
 {
-    std::vector<SolverSettings> ways(7);
+    std::vector<SolverSettings> ways(8);
     for (SolverSettings& settings : ways) settings.gravity = {0, -9.81F, 0};
     ways[1].exact_joints = true;
     ways[2].method = Method::sequential_impulse;
@@ -18,6 +18,7 @@ inline std::vector<SolverSettings> every_way()
     ways[4].measures = true;
     ways[5].tolerance = 1e-4F;
     ways[6].exact_contacts = true;
+    ways[7].exact_joints = ways[7].exact_limits = true;
     return ways;
 }
 

@@ -381,7 +381,8 @@ FigureUse Solver::Impl::use_of_figures(const SceneCore& scene) const
     // Nor in lockstep with many sweeps: velocities of copies are not computed anew (Renewal).
     const bool in_lockstep = !tells_blocks_apart(scene) && !settings.exact_contacts &&
                              (settings.exact_joints || !PlanRunner::sweeps_long(settings));
-    return {possible && in_lockstep, possible && settings.exact_joints};
+    const bool exactly = possible && settings.exact_joints;
+    return {possible && in_lockstep, exactly, exactly && settings.exact_limits};
 }
 
 /// Whether visit_patches_once() may rewrite the plan. Not where residuals are measured, by island or of the whole

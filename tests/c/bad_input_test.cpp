@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "c/mirror.h"
+#include "c/solver_mirrors.h"
 #include "motley/c/motley.h"
 
 namespace motley {
@@ -373,6 +373,24 @@ TEST(CStructs, AnOlderHostsStructKeepsTheDefaultsOfWhatItDoesNotKnow)
     EXPECT_EQ(host.new_field, 2);
 }
 
+TEST(CStructs, HostsOfTheFirstReleaseHaveDefaultsForWhatTheyDoNotKnow)
+{
+    alignas(motley_solver_settings) unsigned char old[sizeof(motley_solver_settings)];
+    std::memset(old, 0x7f, sizeof old);
+    auto* settings = reinterpret_cast<motley_solver_settings*>(old);
+    ASSERT_EQ(motley_init_solver_settings(settings, 112), MOTLEY_DONE);
+    EXPECT_EQ(settings->exact_limits, 0x7f7f7f7f) << "behind what the host has";
+    settings->substeps = 3;
+    motley_solver* solver = nullptr;
+    ASSERT_EQ(motley_solver_create(settings, nullptr, &solver), MOTLEY_DONE);
+    motley_solver_settings now = motley_default_solver_settings();
+    now.exact_limits = 1;
+    ASSERT_EQ(motley_solver_read_settings(solver, &now), MOTLEY_DONE);
+    EXPECT_EQ(now.substeps, 3);
+    EXPECT_EQ(now.exact_limits, 0);
+    motley_solver_destroy(solver);
+}
+
 // The sizes of version 1, on machines of 64 bits. A struct that says that it never changes keeps its size for ever; of the
 // others a later version may only be larger, and says first_size.
 TEST(CStructs, HaveTheSizesThatHostsWereBuiltWith)
@@ -404,7 +422,7 @@ TEST(CStructs, HaveTheSizesThatHostsWereBuiltWith)
     EXPECT_EQ(sizeof(motley_joint_report), 36U);
     EXPECT_EQ(sizeof(motley_break_event), 16U);
     EXPECT_EQ(sizeof(motley_wheel), 32U);
-    EXPECT_EQ(sizeof(motley_solver_settings), 112U);
+    EXPECT_EQ(c::first_size<motley_solver_settings>, 112U);
     EXPECT_EQ(sizeof(motley_solver_options), 32U);
     EXPECT_EQ(sizeof(motley_executor), 32U);
     EXPECT_EQ(sizeof(motley_contact), 72U);

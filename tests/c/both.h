@@ -43,6 +43,7 @@ class Both {
         c.gravity = as_c<motley_vec3f>(settings.gravity);
         c.method = static_cast<motley_method>(settings.method);
         c.exact_joints = settings.exact_joints;
+        c.exact_limits = settings.exact_limits;
         c.exact_contacts = settings.exact_contacts;
         c.measures = settings.measures;
         c.sleep_speed = settings.sleep_speed;

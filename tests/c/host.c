@@ -77,8 +77,8 @@ static void check_defaults(void)
     DEMAND(wheel.suspension.y == 1 && wheel.axle.z == 1 && wheel.wheel_axle.z == 1 && isinf(wheel.upper));
     DEMAND(wheel.spring_damping_ratio == 0.7F && wheel.motor_max_torque == 0);
     DEMAND(settings.method == MOTLEY_SOFT_STEP && settings.substeps == 4 && settings.iterations == 0);
-    DEMAND(settings.relaxations == 1 && !settings.exact_joints && !settings.exact_contacts &&
-           settings.warm_start && !settings.measures);
+    DEMAND(settings.relaxations == 1 && !settings.exact_joints && !settings.exact_limits &&
+           !settings.exact_contacts && settings.warm_start && !settings.measures);
     DEMAND(settings.contact_damping_ratio == 10 && settings.push_out_speed == 3 &&
            settings.joint_hertz == 1e6F);
     DEMAND(settings.joint_damping_ratio == 2 && settings.restitution_threshold == 1 &&

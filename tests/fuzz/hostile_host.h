@@ -255,6 +255,7 @@ class HostileHost {
         if (sleep & 1) settings.sleep_speed = number();
         if (sleep & 2) settings.sleep_after = number();
         settings.exact_contacts = sleep & 4;
+        settings.exact_limits = sleep & 8;
         solver_.set_settings(settings);
     }
 

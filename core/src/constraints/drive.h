@@ -40,6 +40,8 @@ struct Drive : ConstraintTraits {
     static constexpr bool slides = drive_axis == DriveAxis::slide;
     static constexpr bool has_torque = !slides;
     static constexpr bool turns_about_points = !slides;
+    static constexpr ActiveRow active_row = slides ? ActiveRow::linear : ActiveRow::angular;
+    static constexpr bool has_motor = true;
     static constexpr bool is_euler = drive_axis == DriveAxis::euler;
     /// Few joints have Euler angles.
     static constexpr bool is_rare = is_euler;
@@ -116,7 +118,8 @@ struct Drive : ConstraintTraits {
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
-        Real motor, spring, limit;
+        Real limit, motor;  ///< in this order for exact joints
+        Real spring;
         /// m/s or rad/s, of the rotor's speed in the substep. I_r times it is what the rotor took from the bodies.
         Real rotor_change;
         Real rotor_speed;  ///< m/s or rad/s, as the last sweep left it
@@ -293,6 +296,71 @@ struct Drive : ConstraintTraits {
              b);
     }
 
+    /// The limit acts once it is touched, while it pushes inwards harder than the motor alone; the motor acts while it has
+    /// force left and does not arrive at the limit. One row bears both, so the impulse is all that of the one or of the other. A
+    /// rotor shares the impulses of its row with the bodies: drives with one are left to the sweeps.
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static ActingRow<Real> act(const StepConstants& step, const Row& row, Impulse& impulse, Substep& substep,
+                               const A& a, const B& b)
+    {
+        SubstepRow<Real, A::kind, B::kind> here;
+        build<Real>(row, here, a, b);
+        const auto& drive = row.in_sweep;
+        const Real none(0), one(1), limit(ActsBy::limit), motor(ActsBy::motor);
+        const Bounds<Real> at = bounds_of(drive, here.value);
+        const Real both = impulse.limit + impulse.motor, most = drive.motor_max_impulse;
+        // Where the motor drives outwards and is there within a substep.
+        const Real left = select(at.speed < none, at.room + Real(step.substep) * at.speed, one);
+        const Real touches = select(left < none, one, absolute(impulse.limit));
+        const Real pushes = select(drive.lower < drive.upper, at.inwards * both - at.motor_alone, one);
+        const Real of_limit = select(touches > none, select(pushes > none, limit, none), none);
+        const Real of_motor = select(absolute(both) < most, select(left < none, none, motor), none);
+        const Real usable = select(drive.armature > none, none, here.effective_mass);
+        const Real by = select(usable > none, select(of_limit > none, of_limit, of_motor), none);
+
+        const auto acts = by > none, by_motor = by > limit;
+        // What does not act lets go: the motor keeps what it may push.
+        const Real kept = select(acts, both, maximum(minimum(both, most), -most));
+        const Real by_limit = select(acts, select(by_motor, none, kept), none);
+        const auto is_usable = usable > none;
+        impulse.limit = select(is_usable, by_limit, impulse.limit);
+        impulse.motor = select(is_usable, kept - by_limit, impulse.motor);
+        substep.effective_mass = select(
+            acts, none, select(substep.effective_mass > none, substep.effective_mass, here.effective_mass));
+        const Real error = select(drive.lower < drive.upper, at.inwards * error_of_limit(step, at.room),
+                                  here.value - drive.lower);
+        ActingRow<Real> out{{{none, none, none},
+                             here.axis,
+                             here.axis,
+                             select(by_motor, none, error),
+                             select(by_motor, drive.motor_speed, none)},
+                            by,
+                            select(is_usable, kept - both, none)};
+        if constexpr (slides) {
+            out.row.linear = here.axis;
+            out.row.lever_a = here.levers.a;
+            out.row.lever_b = here.levers.b;
+        }
+        return out;
+    }
+    template <class Real, class Row, class Substep, class Impulse>
+    static Real exceeds(const Row& row, const Substep& substep, const Impulse& impulse, const Real& by)
+    {
+        const auto& drive = row.in_sweep;
+        const Real none(0), one(1);
+        const Bounds<Real> at = bounds_of(drive, substep.value);
+        const Real both = impulse.limit + impulse.motor;
+        const Real pulls =
+            select(drive.lower < drive.upper, select(at.inwards * both < at.motor_alone, one, none), none);
+        const Real of_motor = select(absolute(both) > drive.motor_max_impulse, one, none);
+        return select(by > Real(ActsBy::limit), of_motor, select(by > none, pulls, none));
+    }
+    template <class Real, class Substep>
+    static void set_aside(Substep& substep, const Real& by)
+    {
+        substep.effective_mass = select(by > Real(0), Real(0), substep.effective_mass);
+    }
+
     template <class Real, class Row, class A, class B>
     static void project(const StepConstants&, const Row& row, A& a, B& b)
     {
@@ -354,6 +422,22 @@ struct Drive : ConstraintTraits {
     }
 
   private:
+    /// As seen from the inside of the range.
+    template <class Real>
+    struct Bounds {
+        Real inwards;      ///< 1 where the lower limit is the nearer one, else -1
+        Real room, speed;  ///< to the nearer limit, and of the motor, 0 without one
+        Real motor_alone;  ///< the impulse of the motor at its bound, as fast as it can get
+    };
+    template <class Real>
+    static Bounds<Real> bounds_of(const InSweep<Real>& drive, const Real& value)
+    {
+        const Real above = value - drive.lower, below = drive.upper - value;
+        const Real inwards = select(above < below, Real(1), Real(-1));
+        const Real most = drive.motor_max_impulse;
+        const Real speed = select(most > Real(0), inwards * drive.motor_speed, Real(0));
+        return {inwards, minimum(above, below), speed, select(speed < Real(0), -most, most)};
+    }
     /// What the bodies got of the impulses: the rotor took the rest.
     template <class Real, class Impulse>
     static Real to_bodies(const Real& armature, const Impulse& impulse)

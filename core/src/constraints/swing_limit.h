@@ -22,6 +22,7 @@ struct SwingLimit : ConstraintTraits {
     static constexpr bool needs_bodies_that_turn = true;
     static constexpr bool has_torque = true;
     static constexpr bool turns_about_points = true;
+    static constexpr ActiveRow active_row = ActiveRow::angular;
 
     template <class Real>
     struct Parameters {
@@ -114,6 +115,35 @@ struct SwingLimit : ConstraintTraits {
             limit_impulse(step, substep.room, closing, substep.effective_mass, impulse.limit), Real(0));
         push(substep, wanted - impulse.limit, a, b);
         impulse.limit = wanted;
+    }
+
+    /// Acts while it pushes inwards.
+    template <class Real, class Row, class Impulse, class Substep, class A, class B>
+    static ActingRow<Real> act(const StepConstants& step, const Row& row, Impulse& impulse, Substep& substep,
+                               const A& a, const B& b)
+    {
+        SubstepRow<Real, A::kind, B::kind> here;
+        build<Real>(row, here, a, b);
+        const Real none(0), limit(ActsBy::limit), before = impulse.limit;
+        impulse.limit = maximum(before, none);
+        const Real by = select(before > none, select(here.effective_mass > none, limit, none), none);
+        substep.effective_mass =
+            select(by > none, none,
+                   select(substep.effective_mass > none, substep.effective_mass, here.effective_mass));
+        // dC/dt is that of a relative to b.
+        const Vec3<Real> along = -here.normal;
+        return {
+            {{none, none, none}, along, along, error_of_limit(step, here.room)}, by, impulse.limit - before};
+    }
+    template <class Real, class Row, class Substep, class Impulse>
+    static Real exceeds(const Row&, const Substep&, const Impulse& impulse, const Real& by)
+    {
+        return select(by > Real(0), select(impulse.limit < Real(0), Real(1), Real(0)), Real(0));
+    }
+    template <class Real, class Substep>
+    static void set_aside(Substep& substep, const Real& by)
+    {
+        substep.effective_mass = select(by > Real(0), Real(0), substep.effective_mass);
     }
 
     template <class Real, class Row, class A, class B>

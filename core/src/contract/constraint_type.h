@@ -46,6 +46,10 @@
 //     remember<Real>(row, impulse, end) -> Memory                     end.a() and end.b() are the bodies now
 //   for SolverSettings::exact_joints, with equality_count
 //     equality_rows<Real>(row, a, b, rows*)                           J and C, row by row
+//   likewise, with an active_row
+//     act<Real>(step, row, impulse&, substep&, a, b) -> ActingRow     what acts now. Then sweeps must leave limit and motor alone:
+//     set_aside<Real>(substep&, by)                                   the effective mass of their row is 0 where something acts
+//     exceeds<Real>(row, substep, impulse, by) -> Real                1 where it has pulled or pushed too hard since
 //   likewise, each substep, with turns_about_points
 //     lengthen_step<Real>(substep&, a, arm_a, b, arm_b)               where a point is locked: see locked_point.h
 #pragma once
@@ -86,6 +90,11 @@ struct ConstraintTraits {
     static constexpr bool turns_about_points = false;
     /// Is defined by points of the world: has world_points(definition), and start.from_world_points().
     static constexpr bool has_world_points = false;
+    /// Of types with a limit or motor that exact joints may hold: see equality_row.h. Such a type has act(), set_aside() and
+    /// exceeds(), and
+    /// the first Real of Impulse is the impulse of the limit. With `has_motor` the second is that of the motor.
+    static constexpr ActiveRow active_row = ActiveRow::none;
+    static constexpr bool has_motor = false;
     /// Rows of J that exact joints may lock.
     static constexpr int equality_count = 0;
     /// The first three of them hold a point on a point along x, y and z, and the others are only angular.

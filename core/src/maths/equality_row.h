@@ -1,17 +1,54 @@
-// One row of an equality constraint, as the solver of exact joints (SolverSettings::exact_joints) reads it.
+// The rows that the solver of exact joints (SolverSettings::exact_joints) holds: of locks, and of limits and motors that act.
+//
+// A sweep knows the response of the two bodies of a limit alone. Where these are links that bear tons, the response is a
+// hundred or a million times as large as that of the figure, and sweeps would take as many rounds to hold the load. So sweeps
+// only find out that a limit or a motor acts; from then on its row is one more row of the lock, until it would pull where
+// it can only push, or push harder than it may: an active set, changed whenever the figure is factored (J. Nocedal, S.
+// Wright, Numerical Optimization, 2006, section 16.5).
 #pragma once
 
+#include <cstdint>
+
+#include "maths/scalar.h"
+#include "maths/step_constants.h"
 #include "motley/core/vector.h"
 
 namespace motley {
 
 /// J = [-linear, -lever_a, linear, lever_b] over the velocities (v_a, omega_a, v_b, omega_b), and C, both in the
-/// present poses of the bodies.
+/// present poses of the bodies. The row is solved when J v + rate C = speed.
 template <class Real>
 struct EqualityRow {
     Vec3<Real> linear;
     Vec3<Real> lever_a, lever_b;
-    Real error;  ///< C, m or rad
+    Real error;            ///< C, m or rad
+    Real speed = Real(0);  ///< m/s or rad/s; other than 0 for motors only
 };
+
+/// The row of a limit or motor.
+enum class ActiveRow : std::uint8_t {
+    none,
+    linear,  ///< it also pushes the bodies along a line
+    angular  ///< it only turns them, about opposite axes
+};
+
+/// What acts on such a row: one of these, as a Real.
+struct ActsBy {
+    static constexpr float nothing = 0, limit = 1, motor = 2;
+};
+
+template <class Real>
+struct ActingRow {
+    EqualityRow<Real> row;
+    Real by;          ///< ActsBy
+    Real taken_back;  ///< N s or N m s, to be added along the row: what has pulled or pushed too hard lets go
+};
+
+/// C of a limit that acts, without a correction faster than push_out_speed.
+template <class Real>
+Real error_of_limit(const StepConstants& step, const Real& c)
+{
+    return maximum(c, Real(step.exact_rate > 0 ? -step.push_out_speed / step.exact_rate : 0.0F));
+}
 
 }  // namespace motley

@@ -19,6 +19,14 @@ Real no_faster_than_push_out(const StepConstants& step, const Real& wanted, cons
     return minimum(wanted, held - effective_mass * (speed - Real(step.push_out_speed)));
 }
 
+/// The share of its impulse that a soft row loses in a sweep. A row that exact joints hold has no effective mass here, and keeps
+/// all.
+template <class Real>
+Real lost_share(const StepConstants& step, const Real& effective_mass)
+{
+    return select(effective_mass > Real(0), Real(step.joint.impulse_scale), Real(0));
+}
+
 /// For C >= 0; the caller clamps the result at 0. While there is room, C > 0, the row may close by that much within the
 /// substep and no more; without room the error is removed as fast as the softness of joints and push_out_speed allow.
 template <class Real>
@@ -29,7 +37,7 @@ Real limit_impulse(const StepConstants& step, const Real& c, const Real& speed, 
     const Real closing = Real(step.inverse_substep) * c;
     const Real soft = Real(step.joint.rate) * c;
     const Real mass_scale = select(room, Real(1), Real(step.joint.mass_scale));
-    const Real impulse_scale = select(room, Real(0), Real(step.joint.impulse_scale));
+    const Real impulse_scale = select(room, Real(0), lost_share(step, effective_mass));
     const Real wanted =
         held - mass_scale * effective_mass * (speed + select(room, closing, soft)) - impulse_scale * held;
     // With room this bound never applies, since closing > -push_out_speed.
@@ -42,7 +50,7 @@ Real lock_impulse(const StepConstants& step, const Real& c, const Real& speed, c
                   const Real& held)
 {
     return held - Real(step.joint.mass_scale) * effective_mass * (speed + Real(step.joint.rate) * c) -
-           Real(step.joint.impulse_scale) * held;
+           lost_share(step, effective_mass) * held;
 }
 
 /// For a contact, C >= 0: with room as a limit; without, penetration beyond the slop is removed as fast as `soft` and

@@ -161,8 +161,9 @@ SolverSettings read_settings(ArchiveReader& archive)
     std::array<unsigned char, sizeof(SolverSettings)> bytes{};
     archive(bytes);
     for (const std::size_t at :
-         {offsetof(SolverSettings, exact_joints), offsetof(SolverSettings, exact_contacts),
-          offsetof(SolverSettings, warm_start), offsetof(SolverSettings, measures)}) {
+         {offsetof(SolverSettings, exact_joints), offsetof(SolverSettings, exact_limits),
+          offsetof(SolverSettings, exact_contacts), offsetof(SolverSettings, warm_start),
+          offsetof(SolverSettings, measures)}) {
         if (bytes[at] > 1) throw std::runtime_error("holds settings that are neither true nor false");
     }
     SolverSettings settings;

@@ -161,11 +161,12 @@ py::dict step(Solver& solver, PythonScene& scene, float dt, const py::object& co
 void add_solver_to(py::module_& module)
 {
     module.attr("contact_dtype") = contact_dtype();
-    py::class_<Solver>(module, "Solver",
-                       "Steps scenes: Solver(threads=1, isa=None, alone_below=8192, **settings). Settings "
-                       "are the fields of\n"
-                       "SolverSettings: method, substeps, iterations, exact_joints, exact_contacts, gravity, "
-                       "sleep_speed, ...")
+    py::class_<Solver>(
+        module, "Solver",
+        "Steps scenes: Solver(threads=1, isa=None, alone_below=8192, **settings). Settings "
+        "are the fields of\n"
+        "SolverSettings: method, substeps, iterations, exact_joints, exact_limits, exact_contacts, gravity, "
+        "sleep_speed, ...")
         .def(py::init(&make_solver), py::arg("threads") = 1, py::arg("isa") = py::none(),
              py::arg("alone_below") = SolverOptions{}.alone_below)
         .def("step", &step, py::arg("scene"), py::arg("dt"), py::arg("contacts") = py::none(),

@@ -43,8 +43,11 @@ struct Mirror<motley_solver_settings, SolverSettings> : Pair<motley_solver_setti
         MOTLEY_FIELD(push_out_speed), MOTLEY_FIELD(joint_hertz), MOTLEY_FIELD(joint_damping_ratio),
         MOTLEY_FIELD(restitution_threshold), MOTLEY_FIELD(drift_correction), MOTLEY_FIELD(baumgarte),
         MOTLEY_FIELD(projections), MOTLEY_FIELD(penetration_slop), MOTLEY_FIELD(sleep_speed),
-        MOTLEY_FIELD(sleep_after));
+        MOTLEY_FIELD(sleep_after), MOTLEY_FIELD(exact_limits));
 };
+template <>
+inline constexpr std::size_t first_size<motley_solver_settings> = offsetof(motley_solver_settings,
+                                                                           exact_limits);
 template <>
 struct Mirror<motley_contact, Contact> : Pair<motley_contact, Contact> {
     static constexpr auto fields =

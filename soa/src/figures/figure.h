@@ -14,6 +14,7 @@
 #include <span>
 
 #include "layout/block.h"
+#include "maths/equality_row.h"
 #include "stores/array.h"
 
 namespace motley {
@@ -26,13 +27,15 @@ struct CopyBody {
     static constexpr int floats = 32 * block_lanes;
 };
 
-/// A node of a figure's tree: a child body and all locks between it and its parent body. The locks of all nodes are
-/// solved at once, by factoring J M^-1 J^T along the tree without fill (J: Jacobian of the locks, M: mass matrix).
+/// A node of a figure's tree: a child body and all locks between it and its parent body, and the limits and motors between
+/// these two that may act. Those of all nodes are solved at once, by factoring J M^-1 J^T along the tree without fill (J:
+/// their Jacobian, M: mass matrix).
 struct FigureNode {
     int body;         ///< the child body
     int parent;       ///< the parent body, moving or fixed; -1 for a root that floats
     int parent_node;  ///< the parent body's node; -1 if the parent is fixed or there is none
     int rows;         ///< of all its locks together, 0 to 6
+    int most_rows;    ///< with those of its limits and motors, at most 6
     /// Where its arrays begin in FigureBlock::system, in floats. M' is the mass matrix of the child body and
     /// everything below it in the tree (articulated inertia).
     std::int64_t jacobian;  ///< EqualityRows; once factored, the form that kernel_tree_rows.h keeps
@@ -44,6 +47,9 @@ struct FigureNode {
     std::int64_t force;     ///< on the child body, from the nodes below it, six
     std::int64_t kept;      ///< copy of the velocity while responses of closures are computed, six
     std::int64_t pull;      ///< angular impulse of stiffened locks, applied at the first solve, three
+    std::int64_t taken;     ///< impulse of what has let go, applied by the next solve, six
+    std::int64_t in_use;    ///< see FigureBlock::rows_of() and for_each_acting(), one
+    std::int64_t acts_by;   ///< ActsBy of its limits and motors, one of each
     // Arrays that share memory with another one, because they are not needed at the same time:
     std::int64_t tension;  ///< at `target`: lambda of the last substep times its length, N s2; one per row
     std::int64_t pivots;   ///< at `change`: pivots of the body's own M, six
@@ -55,13 +61,19 @@ struct FigureNode {
         bool reversed;     ///< the child body is the joint's body a: errors and impulses change sign
     };
     Array<Lock> locks;
+    /// A limit or a motor. Sweeps decide whether it acts, and then the tree finds how much it pushes.
+    struct Active {
+        int joint;      ///< of the shape
+        bool reversed;  ///< as of a lock
+    };
+    Array<Active> actives;
     /// Whether the node has a single lock, whose first three rows hold a point on a point along x, y and z, and whose
-    /// other rows are purely angular.
+    /// other rows, and those of limits and motors, are purely angular.
     [[nodiscard]] bool hangs_by_point() const { return locks.size() == 1 && locks.front().locks_point; }
     /// Where the arms of that point are, once the tree is factored: see PointRows::keep.
     [[nodiscard]] std::int64_t arm_of_child() const { return jacobian; }
     [[nodiscard]] std::int64_t arm_of_parent() const { return jacobian + std::int64_t{3} * block_lanes; }
-    static constexpr int row_floats = 10 * block_lanes;  ///< of an EqualityRow
+    static constexpr int row_floats = 11 * block_lanes;  ///< of an EqualityRow
 };
 
 /// A lock that closes a loop of the figure. It is solved exactly too, from the tree's response to it
@@ -87,12 +99,14 @@ struct FigureShape {
         int a, b;          ///< bodies of the figure
         int equalities;    ///< rows that may be solved exactly; 0 for limits, motors, springs
         bool locks_point;  ///< the first three of them hold a point on a point
+        ActiveRow active_row;
         bool in_tree = false;
     };
     Array<BodyKind> bodies;
     Array<Joint> joints;      ///< by colour
     Array<FigureNode> nodes;  ///< children before parents; empty unless locks are solved exactly
     Array<JointAtPoint> joints_at_points;
+    bool has_actives = false;  ///< a node has limits or motors
     Array<FigureClosure> closures;
     int closure_rows = 0;
     std::int64_t closure_jacobian = 0, closure_factor = 0, closure_target = 0;  ///< like those of a node
@@ -134,6 +148,19 @@ struct FigureBlock {
     const std::int32_t* fixed_offsets = nullptr;  ///< of the bodies that contacts touch, like `offsets`
     int fixed_count = 0;
 
+    /// How many rows of a node are solved now: those of its locks, and of its limits and motors that act in any copy.
+    [[nodiscard]] int rows_of(const FigureNode& node) const { return static_cast<int>(system[node.in_use]); }
+    /// Calls work(limit or motor, its row, its ActsBy in lanes) for each that acts in any copy.
+    template <class Work>
+    void for_each_acting(const FigureNode& node, const Work& work) const
+    {
+        float* by = system + node.acts_by;
+        const float* row = system + node.in_use;
+        for (const FigureNode::Active& active : node.actives) {
+            if (*++row > 0) work(active, static_cast<int>(*row), by);
+            by += block_lanes;
+        }
+    }
     [[nodiscard]] float* body(int index) const
     {
         return bodies + static_cast<std::int64_t>(index) * CopyBody::floats;

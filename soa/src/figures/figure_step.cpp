@@ -61,29 +61,104 @@ std::int64_t impulse_floats(const FigureBlock::Joint& joint)
     return std::int64_t{joint.kernels->impulse_floats} * block_lanes;
 }
 
-/// Computes the Jacobian J and the position error C of every lock at the present poses, and factors the tree,
-/// stiffened by the tension of the locks.
+bool any_of_lanes(const float* lanes, std::int32_t count)
+{
+    return std::any_of(lanes, lanes + count, [](float value) { return value != 0; });
+}
+
+/// Finds out which limits and motors of a node act in any copy, and adds their rows to those of the locks. One that pushes
+/// nowhere does not act.
+void add_acting_rows(const KernelContext& context, const FigureBlock& block, const FigureNode& node)
+{
+    int rows = node.rows;
+    float* by = block.system + node.acts_by;
+    float* row = block.system + node.in_use;
+    for (const FigureNode::Active& active : node.actives) {
+        const FigureShape::Joint& joint = block.shape->joints[static_cast<std::size_t>(active.joint)];
+        const auto& [kernels, streams, which] = block.joints[active.joint];
+        const float* impulses = streams.impulses + which * impulse_floats(block.joints[active.joint]);
+        const std::int32_t count = streams.counts[which];
+        bool acts = false;
+        for (int i = 0; i < kernels->active_impulses; ++i)
+            acts = acts || any_of_lanes(impulses + i * block_lanes, count);
+        if (acts) {
+            float* const of_child = block.system + node.taken;
+            float* const of_parent =
+                node.parent_node < 0
+                    ? nullptr
+                    : block.system + block.shape->nodes[static_cast<std::size_t>(node.parent_node)].taken;
+            kernels->act(context, streams, which, block.body(joint.a), block.body(joint.b),
+                         block.system + node.jacobian + FigureNode::row_floats * rows, by,
+                         active.reversed ? of_child : of_parent, active.reversed ? of_parent : of_child);
+            acts = any_of_lanes(by, count);
+        }
+        *++row = acts ? static_cast<float>(rows++) : 0;
+        by += block_lanes;
+    }
+    block.system[node.in_use] = static_cast<float>(rows);
+}
+
+/// Nothing has let go.
+void forget_taken(const FigureBlock& block)
+{
+    if (!block.shape->has_actives) return;
+    for (const FigureNode& node : block.shape->nodes)
+        std::fill_n(block.system + node.taken, 6 * block_lanes, 0.0F);
+}
+
+/// Computes the Jacobian J and the position error C of every lock at the present poses, and of the limits and motors that act,
+/// and factors the tree, stiffened by the tension of the locks.
 void factor_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
 {
     const auto locate = [&](int which, float* rows, float* tensions) {
         const FigureShape::Joint& joint = block.shape->joints[static_cast<std::size_t>(which)];
         const FigureBlock::Joint& lanes = block.joints[which];
-        lanes.kernels->equality_rows(lanes.streams, lanes.block, block.body(joint.a), block.body(joint.b),
-                                     rows);
+        lanes.kernels->equality_rows(context, lanes.streams, lanes.block, block.body(joint.a),
+                                     block.body(joint.b), rows);
         const std::int64_t floats = impulse_floats(lanes);
         const float* impulses = lanes.streams.impulses + lanes.block * floats;
         for (std::int64_t i = 0; i < floats; ++i) tensions[i] = context.step.substep * impulses[i];
     };
     constexpr std::int64_t row_floats = FigureNode::row_floats;
+    forget_taken(block);
     for (const FigureNode& node : block.shape->nodes) {
         for (const FigureNode::Lock& lock : node.locks)
             locate(lock.joint, block.system + node.jacobian + row_floats * lock.first_row,
                    block.system + node.tension + block_lanes * lock.first_row);
+        add_acting_rows(context, block, node);
     }
     for (const FigureClosure& closure : block.shape->closures)
         locate(closure.joint, block.system + block.shape->closure_jacobian + row_floats * closure.first_row,
                block.system + block.shape->closure_target + block_lanes * closure.first_row);
     kernels.factor(block);
+}
+
+bool exceeds(const FigureBlock& block)
+{
+    if (!block.shape->has_actives) return false;
+    bool any = false;
+    for (const FigureNode& node : block.shape->nodes) {
+        block.for_each_acting(node, [&](const FigureNode::Active& active, int, const float* by) {
+            const FigureBlock::Joint& lanes = block.joints[active.joint];
+            any = any || lanes.kernels->exceeds(lanes.streams, lanes.block, by);
+        });
+    }
+    return any;
+}
+
+/// Solves the tree, and then again without the limits and motors that it has made pull or push too hard. These may be others
+/// then; two rounds leave few.
+void solve_within_bounds(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
+                         float rate)
+{
+    kernels.solve(block, rate);
+    for (int round = 0; round < 2 && exceeds(block); ++round) {
+        factor_tree(context, kernels, block);
+        // What stiffened locks do to the bodies has been done by the first solve.
+        for (const FigureNode& node : block.shape->nodes)
+            std::fill_n(block.system + node.pull, 3 * block_lanes, 0.0F);
+        kernels.solve(block, rate);
+    }
 }
 
 /// Runs the stages of a plan that apply to a figure; the others apply to the whole scene.
@@ -129,7 +204,8 @@ class CopiesRunner {
                 lengthen_steps(block_);
                 break;
             case Operation::solve_trees:
-                if (has_tree_ && has_others_) kernels_.solve(block_, context_.step.exact_rate);
+                if (has_tree_ && has_others_)
+                    solve_within_bounds(context_, kernels_, block_, context_.step.exact_rate);
                 break;
             case Operation::solve:
                 iterate(&ConstraintKernels::solve_copies, stage.times, context_.step.exact_rate);
@@ -165,7 +241,7 @@ class CopiesRunner {
         const int sweeps = has_others_ ? times : 1;
         for (int i = 0; i < sweeps; ++i) {
             sweep(context_, block_, kernel);
-            if (has_tree_) kernels_.solve(block_, rate);
+            if (has_tree_) solve_within_bounds(context_, kernels_, block_, rate);
         }
     }
 };
@@ -187,11 +263,23 @@ void prepare_tree(const KernelContext& context, const FigureKernels& kernels, co
 
 void begin_tree(const FigureBlock& block)
 {
+    // What has let go has not been applied in this substep.
+    forget_taken(block);
     for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
         if (!block.shape->joints[i].in_tree) continue;
         const std::int64_t floats = impulse_floats(block.joints[i]);
         float* impulses = block.joints[i].streams.impulses + block.joints[i].block * floats;
         std::fill(impulses, impulses + floats, 0.0F);
+    }
+    if (!block.shape->has_actives) return;
+    for (const FigureNode& node : block.shape->nodes) {
+        block.for_each_acting(node, [&](const FigureNode::Active& active, int, const float* by) {
+            const FigureBlock::Joint& lanes = block.joints[active.joint];
+            float* impulses = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
+            for (int which = 0; which < lanes.kernels->active_impulses; ++which, impulses += block_lanes)
+                for (int i = 0; i < block_lanes; ++i)
+                    impulses[i] = by[i] != ActsBy::nothing ? 0.0F : impulses[i];
+        });
     }
 }
 
@@ -205,13 +293,20 @@ void lengthen_steps(const FigureBlock& block)
                                       block.body(of_shape.b), block.system + joint.arm_a,
                                       block.system + joint.arm_b);
     }
+    if (!block.shape->has_actives) return;
+    for (const FigureNode& node : block.shape->nodes) {
+        block.for_each_acting(node, [&](const FigureNode::Active& active, int, const float* by) {
+            const FigureBlock::Joint& lanes = block.joints[active.joint];
+            lanes.kernels->set_aside(lanes.streams, lanes.block, by);
+        });
+    }
 }
 
 void solve_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
                 float rate)
 {
     kernels.load_velocities(context, block);
-    kernels.solve(block, rate);
+    solve_within_bounds(context, kernels, block, rate);
     kernels.store_velocities(context, block);
 }
 

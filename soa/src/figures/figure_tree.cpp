@@ -22,6 +22,7 @@ class TreeBuilder {
     explicit TreeBuilder(FigureShape& shape)
         : shape_(shape),
           locks_on_(shape.bodies.size()),
+          actives_on_(shape.bodies.size()),
           node_of_(shape.bodies.size(), none),
           is_in_node_(shape.joints.size(), 0)
     {
@@ -42,6 +43,7 @@ class TreeBuilder {
     static constexpr int none = -1;
     FigureShape& shape_;
     Array<Array<int>> locks_on_;      ///< joints, by body
+    Array<Array<int>> actives_on_;    ///< likewise, limits and motors
     Array<int> node_of_;              ///< by body
     Array<std::uint8_t> is_in_node_;  ///< by joint
     Array<FigureNode> nodes_;         ///< parents before children
@@ -61,9 +63,10 @@ class TreeBuilder {
     {
         for (std::size_t i = 0; i < shape_.joints.size(); ++i) {
             const FigureShape::Joint& joint = shape_.joints[i];
-            if (joint.equalities == 0) continue;
-            locks_on_[at(joint.a)].push_back(static_cast<int>(i));
-            locks_on_[at(joint.b)].push_back(static_cast<int>(i));
+            if (joint.equalities == 0 && joint.active_row == ActiveRow::none) continue;
+            Array<Array<int>>& on = joint.equalities > 0 ? locks_on_ : actives_on_;
+            on[at(joint.a)].push_back(static_cast<int>(i));
+            on[at(joint.b)].push_back(static_cast<int>(i));
         }
     }
     /// A search along the locks: a body becomes a child of the body from which it was reached. It starts from fixed
@@ -95,7 +98,7 @@ class TreeBuilder {
             }
         }
     }
-    /// Makes a node of all locks between the two bodies, up to six rows.
+    /// Makes a node of all locks between the two bodies, and of their limits and motors, up to six rows.
     void hang(int body, int parent)
     {
         FigureNode node{};
@@ -108,6 +111,15 @@ class TreeBuilder {
             is_in_node_[at(joint)] = 1;
             node.locks.push_back({joint, node.rows, j.equalities, j.locks_point, j.a == body});
             node.rows += j.equalities;
+        }
+        node.most_rows = node.rows;
+        for (const int joint : actives_on_[at(body)]) {
+            const FigureShape::Joint& j = shape_.joints[at(joint)];
+            if (other_end(joint, body) != parent || node.rows == 0 || node.most_rows == most_rows) continue;
+            if (node.hangs_by_point() && j.active_row == ActiveRow::linear) continue;
+            node.actives.push_back({joint, j.a == body});
+            shape_.has_actives = true;
+            ++node.most_rows;
         }
         node_of_[at(body)] = static_cast<int>(nodes_.size());
         nodes_.push_back(std::move(node));
@@ -130,10 +142,13 @@ class TreeBuilder {
         };
         constexpr int row_floats = FigureNode::row_floats / block_lanes;
         for (FigureNode& node : nodes_) {
-            node.jacobian = take(row_floats * node.rows);
-            node.response = take(6 * node.rows);
-            node.factor = take(node.rows * (node.rows + 1) / 2);
-            node.target = node.tension = take(node.rows);
+            node.jacobian = take(row_floats * node.most_rows);
+            node.response = take(6 * node.most_rows);
+            node.factor = take(node.most_rows * (node.most_rows + 1) / 2);
+            node.target = node.tension = take(node.most_rows);
+            if (shape_.has_actives) node.taken = take(6);
+            node.in_use = take(1);
+            node.acts_by = take(static_cast<int>(node.actives.size()));
             node.change = node.pivots = take(6);
             node.mass = node.mass_factor = take(21);
             node.force = take(6);

@@ -139,9 +139,10 @@ std::unique_ptr<FigureShape> shape_of(const Members& members, std::size_t member
     const std::span<const std::uint32_t> signature = members.signature_of(member);
     for (std::size_t i = 0; i < joints.size(); ++i) {
         const Placement& p = joints[i]->placement;
-        shape->joints.push_back(
-            {p.type, p.a.kind(), p.b.kind(), p.colour, static_cast<int>(signature[3 * i + 1]),
-             static_cast<int>(signature[3 * i + 2]), joints[i]->equalities, joints[i]->locks_point});
+        shape->joints.push_back({p.type, p.a.kind(), p.b.kind(), p.colour,
+                                 static_cast<int>(signature[3 * i + 1]),
+                                 static_cast<int>(signature[3 * i + 2]), joints[i]->equalities,
+                                 joints[i]->locks_point, joints[i]->active_row});
     }
     return shape;
 }
@@ -173,7 +174,7 @@ Array<JointOfComponent> joints_by_component(std::span<const Figures::Candidate> 
     const std::size_t rigid_rows = rigid.size();
     DisjointSets components;
     components.reset(rigid_rows);
-    for (const auto& [joint, equalities, locks_point] : joints) {
+    for (const auto& [joint, equalities, locks_point, active_row] : joints) {
         if (is_rigid(joint.a) && is_rigid(joint.b))
             components.tie(static_cast<std::int32_t>(joint.a.row()),
                            static_cast<std::int32_t>(joint.b.row()));
@@ -182,7 +183,7 @@ Array<JointOfComponent> joints_by_component(std::span<const Figures::Candidate> 
     Array<std::uint32_t> size(rigid_rows, 0);
     for (std::size_t row = 0; row < rigid_rows; ++row) ++size[static_cast<std::size_t>(components.root(row))];
     Array<std::uint8_t> excluded(rigid_rows, 0);
-    for (const auto& [joint, equalities, locks_point] : joints) {
+    for (const auto& [joint, equalities, locks_point, active_row] : joints) {
         if (can_be_in_lanes(joint, kernels)) continue;
         for (const BodyRow body : {joint.a, joint.b})
             if (is_rigid(body)) excluded[static_cast<std::size_t>(components.root(body.row()))] = 1;

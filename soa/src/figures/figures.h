@@ -8,6 +8,7 @@
 
 #include "figures/figure.h"
 #include "layout/batches.h"
+#include "maths/equality_row.h"
 #include "stores/array.h"
 
 namespace motley {
@@ -19,6 +20,7 @@ class Figures {
         Placement placement;
         int equalities;    ///< rows that may be solved exactly, or 0
         bool locks_point;  ///< the first three of them hold a point on a point
+        ActiveRow active_row = ActiveRow::none;
     };
     /// Sorts the joints into `placed`. Those of figures come first, sixteen consecutive copies of each joint, with
     /// gaps where a block has fewer copies, so that each joint of a block of copies has a block of its own. The rest

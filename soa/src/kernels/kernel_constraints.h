@@ -563,8 +563,8 @@ struct Kernels {
         });
     }
 
-    static void equality_rows(const BlockStreams& streams, std::int32_t block, const float* body_a,
-                              const float* body_b, float* out)
+    static void equality_rows(const KernelContext&, const BlockStreams& streams, std::int32_t block,
+                              const float* body_a, const float* body_b, float* out)
     {
         const int count = streams.counts[block];
         for (int lane = 0; lane < count; lane += Lanes_width) {
@@ -574,6 +574,68 @@ struct Kernels {
                 load_row<A>(body_a + lane), load_row<B>(body_b + lane), rows);
             for (int i = 0; i < Type::equality_count; ++i)
                 store_row(rows[i], out + i * fields_of<EqualityRow<Lanes>> * block_lanes + lane);
+        }
+    }
+
+    static void act(const KernelContext& context, const BlockStreams& streams, std::int32_t block,
+                    const float* body_a, const float* body_b, float* row, float* by, float* taken_a,
+                    float* taken_b)
+    {
+        for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
+            const int lane = bundle.lane;
+            auto impulse = load_row<Impulse>(bundle.impulse);
+            auto substep = load_row<Substep>(bundle.substep);
+            const ActingRow<Lanes> acting =
+                Type::template act<Lanes>(context.step, load_row<Row>(bundle.row), impulse, substep,
+                                          load_row<A>(body_a + lane), load_row<B>(body_b + lane));
+            store_row(impulse, bundle.impulse);
+            store_row(substep, bundle.substep);
+            const EqualityRow<Lanes>& whole = acting.row;
+            const Lanes share = select(acting.by > Lanes(0), Lanes(1), Lanes(0));
+            store_row(EqualityRow<Lanes>{share * whole.linear, share * whole.lever_a, share * whole.lever_b,
+                                         share * whole.error, share * whole.speed},
+                      row + lane);
+            store_lanes(acting.by, by + lane);
+            const auto take = [&](float* from, const Lanes& push, const Vec3<Lanes>& lever) {
+                if (from == nullptr) return;
+                float* const linear = from + lane;
+                float* const angular = linear + 3 * block_lanes;
+                store_row(load_row<Vec3<Lanes>>(linear) + push * whole.linear, linear);
+                store_row(load_row<Vec3<Lanes>>(angular) + push * lever, angular);
+            };
+            take(taken_a, -acting.taken_back, whole.lever_a);
+            take(taken_b, acting.taken_back, whole.lever_b);
+        });
+    }
+
+    static bool exceeds(const BlockStreams& streams, std::int32_t block, const float* by)
+    {
+        const int count = streams.counts[block];
+        const auto at = [&](float* stream, int floats) {
+            return stream + std::int64_t{block} * floats * block_lanes;
+        };
+        bool any = false;
+        for (int lane = 0; lane < count; lane += Lanes_width) {
+            alignas(64) float exceeding[Lanes_width];
+            store_lanes(Type::template exceeds<Lanes>(
+                            load_row<Row>(at(streams.rows, fields_of<Row>) + lane),
+                            load_row<Substep>(at(streams.substep_rows, fields_of<Substep>) + lane),
+                            load_row<Impulse>(at(streams.impulses, fields_of<Impulse>) + lane),
+                            load_lanes(by + lane)),
+                        exceeding);
+            for (int i = 0; i < Lanes_width && lane + i < count; ++i) any = any || exceeding[i] != 0;
+        }
+        return any;
+    }
+
+    static void set_aside(const BlockStreams& streams, std::int32_t block, const float* by)
+    {
+        const int count = streams.counts[block];
+        for (int lane = 0; lane < count; lane += Lanes_width) {
+            float* const at = streams.substep_rows + static_cast<std::int64_t>(block) * substep_stride + lane;
+            auto substep = load_row<Substep>(at);
+            Type::set_aside(substep, load_lanes(by + lane));
+            store_row(substep, at);
         }
     }
 
@@ -634,6 +696,12 @@ struct Kernels {
         if constexpr (Type::pulls_at_arms && Lanes_width == 1) {
             kernels.stiffen = stiffen;
             if constexpr (has_copies) kernels.stiffen_copies = stiffen_copies;
+        }
+        if constexpr (has_copies && Type::active_row != ActiveRow::none) {
+            kernels.act = act;
+            kernels.set_aside = set_aside;
+            kernels.exceeds = exceeds;
+            kernels.active_impulses = Type::has_motor ? 2 : 1;
         }
         kernels.project = project;
     }

@@ -83,8 +83,9 @@ struct AnyRows {
     static constexpr int most = 6;
     int rows;
     Row6 child[most], parent[most];
-    Lanes error[most];
+    Lanes error[most], speed[most];
     [[nodiscard]] int count() const { return rows; }
+    [[nodiscard]] Lanes speed_of(int i) const { return speed[i]; }
 
     /// of() reads EqualityRows, kept() what keep() has stored in their place.
     static AnyRows of(const float* from, int rows)
@@ -96,6 +97,7 @@ struct AnyRows {
             put(row.linear, row.lever_b, out.child[i]);
             put(-row.linear, -row.lever_a, out.parent[i]);
             out.error[i] = row.error;
+            out.speed[i] = row.speed;
         }
         return out;
     }
@@ -147,6 +149,15 @@ struct PointRows {
     Vec3<Lanes> arm_child, arm_parent;
     Lanes error[rows];
     Vec3<Lanes> turn[turns > 0 ? turns : 1];  ///< angular rows: J on the child, and -J on the parent
+    Lanes speed[turns > 0 ? turns : 1];       ///< of angular rows, the only ones that a motor may have
+    Lanes speed_of(auto i) const
+    {
+        if constexpr (i() < 3) {
+            return Lanes(0);
+        } else {
+            return speed[i() - 3];
+        }
+    }
 
     static PointRows of(const float* from, int)
     {
@@ -159,7 +170,9 @@ struct PointRows {
         out.arm_child = lever_of_point(x.lever_b, y.lever_b);
         out.arm_parent = lever_of_point(x.lever_a, y.lever_a);
         unrolled<turns>([&](auto i) {
-            out.turn[i] = load_row<EqualityRow<Lanes>>(from + (3 + i) * FigureNode::row_floats).lever_b;
+            const auto row = load_row<EqualityRow<Lanes>>(from + (3 + i) * FigureNode::row_floats);
+            out.turn[i] = row.lever_b;
+            out.speed[i] = row.speed;
         });
         return out;
     }
@@ -171,6 +184,8 @@ struct PointRows {
         load_array(from + 6 * block_lanes, out.error);
         unrolled<turns>(
             [&](auto i) { out.turn[i] = load_row<Vec3<Lanes>>(from + (6 + rows + 3 * i) * block_lanes); });
+        unrolled<turns>(
+            [&](auto i) { out.speed[i] = load_lanes(from + (6 + rows + 3 * turns + i) * block_lanes); });
         return out;
     }
     void keep(float* to) const
@@ -179,6 +194,8 @@ struct PointRows {
         store_row(arm_parent, to + 3 * block_lanes);
         store_array(error, to + 6 * block_lanes);
         unrolled<turns>([&](auto i) { store_row(turn[i], to + (6 + rows + 3 * i) * block_lanes); });
+        unrolled<turns>(
+            [&](auto i) { store_lanes(speed[i], to + (6 + rows + 3 * turns + i) * block_lanes); });
     }
     static constexpr int first_entry(int row) { return row < 3 ? row : 3; }
     static constexpr bool reaches_parent(int row, int entry)
@@ -209,11 +226,13 @@ struct PointRows {
             x[5] = x[5] - y[3 + i] * turn[i].z;
         });
     }
-    /// The wrench of the node's only lock.
-    [[nodiscard]] Wrench<Lanes> wrench(const Lanes* lambda, int, int) const
+    /// The wrench of the node's only lock, whose rows end before `last`.
+    [[nodiscard]] Wrench<Lanes> wrench(const Lanes* lambda, int, int last) const
     {
         Wrench<Lanes> sum{{lambda[0], lambda[1], lambda[2]}, {Lanes(0), Lanes(0), Lanes(0)}};
-        unrolled<turns>([&](auto i) { sum.turn = sum.turn + lambda[3 + i] * turn[i]; });
+        unrolled<turns>([&](auto i) {
+            if (3 + i < last) sum.turn = sum.turn + lambda[3 + i] * turn[i];
+        });
         return sum;
     }
 

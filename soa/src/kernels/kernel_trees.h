@@ -23,11 +23,11 @@ void factor_in_place(Count rows, Triangle<n>& k, const Lanes (&least)[n])
                     [&](int i, const Lanes& pivot) { return inverse_or_zero(maximum(pivot, least[i])); });
 }
 
-/// Swaps the sides of a row whose body a is the child body: J v and C change sign.
+/// Swaps the sides of a row whose body a is the child body: J v, C and the speed change sign.
 inline void turn_round(float* row)
 {
     auto r = load_row<EqualityRow<Lanes>>(row);
-    store_row(EqualityRow<Lanes>{r.linear, r.lever_b, r.lever_a, -r.error}, row);
+    store_row(EqualityRow<Lanes>{r.linear, r.lever_b, r.lever_a, -r.error, -r.speed}, row);
 }
 
 /// The first `rows` rows of a triangle, from and to memory.
@@ -106,10 +106,10 @@ Lanes reach_of(const Rows& j)
 }
 
 template <class Rows>
-void factor_locks(const Mover& body, const FigureNode& node, float* system, float* parent_mass,
+void factor_locks(const Mover& body, const FigureNode& node, int row_count, float* system, float* parent_mass,
                   const Triangle<6>& mass)
 {
-    Rows j = Rows::of(system + node.jacobian, node.rows);
+    Rows j = Rows::of(system + node.jacobian, row_count);
     const auto rows = j.count();
     const Lanes most = Lanes(tree_turn) * reach_of(j);
     repeat(rows, [&](auto i) { j.error[i] = maximum(minimum(j.error[i], most), -most); });
@@ -161,7 +161,7 @@ template <class Rows>
 void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, float* parent_force,
               const Row6& change, const Lanes& rate, TreeSweep sweep, int lane)
 {
-    const Rows j = Rows::kept(system + node.jacobian, node.rows);
+    const Rows j = Rows::kept(system + node.jacobian, figure.rows_of(node));
     const auto rows = j.count();
     const Mover body = load_row<Mover>(figure.body(node.body) + lane);
     Row6 child, parent;
@@ -175,6 +175,7 @@ void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, 
     Lanes y[Rows::most];
     repeat(rows, [&](auto i) {
         y[i] = -((j.along_child(i, child) + j.along_parent(i, parent)) + rate * j.error[i]);
+        if (sweep == TreeSweep::solves) y[i] = y[i] + j.speed_of(i);
         y[i] = y[i] - j.along_child(i, change);
     });
     Triangle<Rows::most> factor;
@@ -210,7 +211,7 @@ template <class Rows>
 void reach_down(const FigureBlock& figure, const FigureNode& node, float* system, const float* parent_change,
                 Row6& change, TreeSweep sweep, int lane)
 {
-    const Rows j = Rows::kept(system + node.jacobian, node.rows);
+    const Rows j = Rows::kept(system + node.jacobian, figure.rows_of(node));
     const auto rows = j.count();
     Lanes lambda[Rows::most];
     repeat(rows, [&](auto i) { lambda[i] = load_lanes(system + node.target + i * block_lanes); });
@@ -241,16 +242,28 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
         add_to_sum(figure, lock.joint,
                    lock.reversed ? Wrench<Lanes>{-on_child.push, -on_child.turn} : on_child, lane);
     }
+    // Sweeps add these to the sums themselves.
+    figure.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float* by) {
+        const Lanes pushed = active.reversed ? -lambda[row] : lambda[row];
+        const auto by_motor = load_lanes(by + lane) > Lanes(ActsBy::limit);
+        float* impulse = impulse_of(figure, active.joint) + lane;
+        const Lanes limit = load_lanes(impulse);
+        store_lanes(select(by_motor, limit, limit + pushed), impulse);
+        if (figure.joints[active.joint].kernels->active_impulses == 1) return;
+        impulse += block_lanes;
+        const Lanes motor = load_lanes(impulse);
+        store_lanes(select(by_motor, motor + pushed, motor), impulse);
+    });
 }
 
 /// Calls work with a null pointer whose type is the form of the node's rows: PointRows or AnyRows. Not for a body that hangs by
 /// nothing.
 template <class Work>
-void with_rows(const FigureNode& node, const Work& work)
+void with_rows(const FigureNode& node, int row_count, const Work& work)
 {
-    if (node.rows == 0) return;
+    if (row_count == 0) return;
     if (!node.hangs_by_point()) return work(static_cast<AnyRows*>(nullptr));
-    switch (node.rows) {
+    switch (row_count) {
         case 3:
             return work(static_cast<PointRows<3>*>(nullptr));
         case 4:
@@ -317,6 +330,9 @@ inline void factor_tree(const FigureBlock& figure, int lane)
             for (int i = lock.first_row; lock.reversed && i < lock.first_row + lock.rows; ++i)
                 turn_round(system + node.jacobian + i * FigureNode::row_floats);
         }
+        figure.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float*) {
+            if (active.reversed) turn_round(system + node.jacobian + row * FigureNode::row_floats);
+        });
         const Mover body = load_row<Mover>(figure.body(node.body) + lane);
         const Triangle<6> mass = mass_of(body);
         Row6 pivots;
@@ -335,12 +351,28 @@ inline void factor_tree(const FigureBlock& figure, int lane)
         store_row(factor, system + node.mass_factor);
         float* parent_mass =
             node.parent_node < 0 ? nullptr : system + nodes[static_cast<std::size_t>(node.parent_node)].mass;
-        with_rows(node,
-                  [&]<class Rows>(Rows*) { factor_locks<Rows>(body, node, system, parent_mass, factor); });
+        const int row_count = figure.rows_of(node);
+        with_rows(node, row_count, [&]<class Rows>(Rows*) {
+            factor_locks<Rows>(body, node, row_count, system, parent_mass, factor);
+        });
     }
 }
 
-/// Changes the velocities of all bodies such that J v + rate C = 0 for the locks of the tree.
+/// Adds the impulse of what has let go to the force on a body, once.
+[[gnu::noinline]] inline void apply_taken(const FigureNode& node, float* system)
+{
+    Row6 taken, force;
+    load_array(system + node.taken, taken);
+    load_array(system + node.force, force);
+    for (int c = 0; c < 6; ++c) {
+        force[c] = force[c] + taken[c];
+        taken[c] = Lanes(0);
+    }
+    store_array(force, system + node.force);
+    store_array(taken, system + node.taken);
+}
+
+/// Changes the velocities of all bodies such that J v + rate C is the speed of each row, 0 for the locks of the tree.
 [[gnu::noinline]] inline void sweep_tree(const FigureBlock& figure, float rate, TreeSweep sweep, int lane)
 {
     const Array<FigureNode>& nodes = figure.shape->nodes;
@@ -355,7 +387,9 @@ inline void factor_tree(const FigureBlock& figure, int lane)
         store_row(none, system + node.force);
         store_row(pulls ? load_row<Vec3<Lanes>>(system + node.pull) : none,
                   system + node.force + 3 * block_lanes);
-        if (pulls) store_row(none, system + node.pull);
+        if (!pulls) continue;
+        store_row(none, system + node.pull);
+        if (figure.shape->has_actives) apply_taken(node, system);
     }
     for (const FigureNode& node : nodes) {
         Row6 change;
@@ -363,7 +397,7 @@ inline void factor_tree(const FigureBlock& figure, int lane)
         solve_in_place(Constant<6>{}, load_row<Triangle<6>>(system + node.mass_factor), change);
         store_array(change, system + node.change);
         float* parent_force = parent_of(node, &FigureNode::force);
-        with_rows(node, [&]<class Rows>(Rows*) {
+        with_rows(node, figure.rows_of(node), [&]<class Rows>(Rows*) {
             reach_up<Rows>(figure, node, system, parent_force, change, Lanes(rate), sweep, lane);
         });
     }
@@ -372,7 +406,7 @@ inline void factor_tree(const FigureBlock& figure, int lane)
         Row6 change;
         load_array(system + node.change, change);
         const float* parent_change = parent_of(node, &FigureNode::change);
-        with_rows(node, [&]<class Rows>(Rows*) {
+        with_rows(node, figure.rows_of(node), [&]<class Rows>(Rows*) {
             reach_down<Rows>(figure, node, system, parent_change, change, sweep, lane);
         });
         store_array(change, system + node.change);

@@ -150,11 +150,21 @@ struct ConstraintKernels {
     CopiesSweep solve_copies = nullptr;
     CopiesSweep relax_copies = nullptr;
     CopiesSweep restitute_copies = nullptr;
-    /// Writes EqualityRows, `equality_count` of them, sixteen floats a field. Null for types that lock nothing.
-    using CopiesRows = void (*)(const BlockStreams&, std::int32_t block, const float* body_a,
-                                const float* body_b, float* rows);
-    CopiesRows equality_rows = nullptr;
+    /// Writes EqualityRows, sixteen floats a field.
+    using CopiesRows = void (*)(const KernelContext&, const BlockStreams&, std::int32_t block,
+                                const float* body_a, const float* body_b, float* rows);
+    CopiesRows equality_rows = nullptr;  ///< `equality_count` of them. Null for types that lock nothing
     int equality_count = 0;
+    /// Finds out what acts on the row of a limit or motor, and writes its EqualityRow (0 where nothing does) and ActsBy, sixteen
+    /// floats a field. What lets go is added to `taken_a` and `taken_b`, the six impulses on the bodies; null of fixed ones.
+    /// Null for types without such a row.
+    void (*act)(const KernelContext&, const BlockStreams&, std::int32_t block, const float* body_a,
+                const float* body_b, float* row, float* by, float* taken_a, float* taken_b) = nullptr;
+    /// After warm_start: leaves the rows on which something acts to the tree.
+    void (*set_aside)(const BlockStreams&, std::int32_t block, const float* by) = nullptr;
+    /// After the tree has been solved: whether any of what acts has pulled or pushed too hard.
+    bool (*exceeds)(const BlockStreams&, std::int32_t block, const float* by) = nullptr;
+    int active_impulses = 0;  ///< how many impulses such a row has: see ConstraintTraits::active_row
     /// After warm_start, where the two bodies are held together at the point with these arms (three fields of sixteen floats):
     /// see locked_point.h. Null for types without such rows.
     void (*lengthen_steps)(const BlockStreams&, std::int32_t block, const float* body_a, const float* body_b,

@@ -62,7 +62,7 @@ std::uint32_t sleeper_of(const BodyStore& bodies, const Placement& placement)
 
 void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse& use)
 {
-    const bool plants_trees = std::exchange(use_, use).exactly != use.exactly;
+    const bool plants_trees = !std::exchange(use_, use).has_trees_of(use);
     if (!scene.joints->version || scene.joints->version != joint_version_ || plants_trees) {
         // The old layout is marked invalid until all of the new one is made, because an allocation may fail in
         // between.
@@ -116,7 +116,8 @@ void Layout::place_joints(SceneCore& scene)
             candidates_.push_back({{a, b, static_cast<std::int32_t>(i),
                                     static_cast<std::uint8_t>(contact_type_count + type), store.colours[i]},
                                    equalities,
-                                   Type::locks_point});
+                                   Type::locks_point,
+                                   use_.limits_exactly ? Type::active_row : ActiveRow::none});
             ties_.push_back({a, b, Type::locks_place(store.definitions[i])});
         }
     });

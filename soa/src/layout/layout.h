@@ -27,8 +27,14 @@ struct RowRange {
 
 /// How joints may be solved in this step.
 struct FigureUse {
-    bool in_lockstep = false;  ///< figures that touch no other moving body are solved on their own
-    bool exactly = false;      ///< all locks of a figure are solved at once, by its tree
+    bool in_lockstep = false;     ///< figures that touch no other moving body are solved on their own
+    bool exactly = false;         ///< all locks of a figure are solved at once, by its tree
+    bool limits_exactly = false;  ///< and with them limits and motors
+    /// Whether trees are those of `other`.
+    [[nodiscard]] bool has_trees_of(const FigureUse& other) const
+    {
+        return exactly == other.exactly && limits_exactly == other.limits_exactly;
+    }
 };
 
 /// Lives as long as its solver; buffers are kept from step to step. What persists of a result (colours,
