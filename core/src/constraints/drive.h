@@ -329,11 +329,7 @@ struct Drive : ConstraintTraits {
             acts, none, select(substep.effective_mass > none, substep.effective_mass, here.effective_mass));
         const Real error = select(drive.lower < drive.upper, at.inwards * error_of_limit(step, at.room),
                                   here.value - drive.lower);
-        ActingRow<Real> out{{{none, none, none},
-                             here.axis,
-                             here.axis,
-                             select(by_motor, none, error),
-                             select(by_motor, drive.motor_speed, none)},
+        ActingRow<Real> out{{{none, none, none}, here.axis, here.axis, error, drive.motor_speed},
                             by,
                             select(is_usable, kept - both, none)};
         if constexpr (slides) {

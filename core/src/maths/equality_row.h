@@ -39,8 +39,8 @@ struct ActsBy {
 
 template <class Real>
 struct ActingRow {
-    EqualityRow<Real> row;
-    Real by;          ///< ActsBy
+    EqualityRow<Real> row;  ///< with the error of the limit and the speed of the motor, whichever acts
+    Real by;                ///< ActsBy
     Real taken_back;  ///< N s or N m s, to be added along the row: what has pulled or pushed too hard lets go
 };
 

@@ -50,9 +50,11 @@ struct FigureNode {
     std::int64_t taken;     ///< impulse of what has let go, applied by the next solve, six
     std::int64_t in_use;    ///< see FigureBlock::rows_of() and for_each_acting(), one
     std::int64_t acts_by;   ///< ActsBy of its limits and motors, one of each
+    std::int64_t
+        tension;  ///< lambda of the last substep times its length, N s2; one per row of the locks. At `target` in
+                  ///< figures whose nodes have no limits or motors
     // Arrays that share memory with another one, because they are not needed at the same time:
-    std::int64_t tension;  ///< at `target`: lambda of the last substep times its length, N s2; one per row
-    std::int64_t pivots;   ///< at `change`: pivots of the body's own M, six
+    std::int64_t pivots;       ///< at `change`: pivots of the body's own M, six
     std::int64_t mass_factor;  ///< at `mass`, which it overwrites: factors of M'
     struct Lock {
         int joint;  ///< of the shape
@@ -106,7 +108,8 @@ struct FigureShape {
     Array<Joint> joints;      ///< by colour
     Array<FigureNode> nodes;  ///< children before parents; empty unless locks are solved exactly
     Array<JointAtPoint> joints_at_points;
-    bool has_actives = false;  ///< a node has limits or motors
+    bool has_actives = false;    ///< a node has limits or motors
+    std::int64_t exceeding = 0;  ///< with them: in which copies one has pulled or pushed too hard, one
     Array<FigureClosure> closures;
     int closure_rows = 0;
     std::int64_t closure_jacobian = 0, closure_factor = 0, closure_target = 0;  ///< like those of a node

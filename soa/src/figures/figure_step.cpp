@@ -66,6 +66,22 @@ bool any_of_lanes(const float* lanes, std::int32_t count)
     return std::any_of(lanes, lanes + count, [](float value) { return value != 0; });
 }
 
+/// Finds out what acts on the row of a limit or motor, and writes it. With `only` just in those copies where that is not 0.
+void act(const KernelContext& context, const FigureBlock& block, const FigureNode& node,
+         const FigureNode::Active& active, int row, float* by, const float* only = nullptr)
+{
+    const FigureShape::Joint& joint = block.shape->joints[static_cast<std::size_t>(active.joint)];
+    const auto& [kernels, streams, which] = block.joints[active.joint];
+    float* const of_child = block.system + node.taken;
+    float* const of_parent =
+        node.parent_node < 0
+            ? nullptr
+            : block.system + block.shape->nodes[static_cast<std::size_t>(node.parent_node)].taken;
+    kernels->act(context, streams, which, block.body(joint.a), block.body(joint.b),
+                 block.system + node.jacobian + FigureNode::row_floats * row, by,
+                 active.reversed ? of_child : of_parent, active.reversed ? of_parent : of_child, only);
+}
+
 /// Finds out which limits and motors of a node act in any copy, and adds their rows to those of the locks. One that pushes
 /// nowhere does not act.
 void add_acting_rows(const KernelContext& context, const FigureBlock& block, const FigureNode& node)
@@ -74,22 +90,14 @@ void add_acting_rows(const KernelContext& context, const FigureBlock& block, con
     float* by = block.system + node.acts_by;
     float* row = block.system + node.in_use;
     for (const FigureNode::Active& active : node.actives) {
-        const FigureShape::Joint& joint = block.shape->joints[static_cast<std::size_t>(active.joint)];
-        const auto& [kernels, streams, which] = block.joints[active.joint];
-        const float* impulses = streams.impulses + which * impulse_floats(block.joints[active.joint]);
-        const std::int32_t count = streams.counts[which];
+        const FigureBlock::Joint& lanes = block.joints[active.joint];
+        const float* impulses = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
+        const std::int32_t count = lanes.streams.counts[lanes.block];
         bool acts = false;
-        for (int i = 0; i < kernels->active_impulses; ++i)
+        for (int i = 0; i < lanes.kernels->active_impulses; ++i)
             acts = acts || any_of_lanes(impulses + i * block_lanes, count);
         if (acts) {
-            float* const of_child = block.system + node.taken;
-            float* const of_parent =
-                node.parent_node < 0
-                    ? nullptr
-                    : block.system + block.shape->nodes[static_cast<std::size_t>(node.parent_node)].taken;
-            kernels->act(context, streams, which, block.body(joint.a), block.body(joint.b),
-                         block.system + node.jacobian + FigureNode::row_floats * rows, by,
-                         active.reversed ? of_child : of_parent, active.reversed ? of_parent : of_child);
+            act(context, block, node, active, rows, by);
             acts = any_of_lanes(by, count);
         }
         *++row = acts ? static_cast<float>(rows++) : 0;
@@ -107,14 +115,17 @@ void forget_taken(const FigureBlock& block)
 }
 
 /// Computes the Jacobian J and the position error C of every lock at the present poses, and of the limits and motors that act,
-/// and factors the tree, stiffened by the tension of the locks.
-void factor_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
+/// and factors the tree, stiffened by the tension of the locks. Given `only`, what acts is found out again in copies where that
+/// is not 0; all else stays, so that the factors of the other copies have the same bits as before.
+void factor_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
+                 const float* only = nullptr)
 {
     const auto locate = [&](int which, float* rows, float* tensions) {
         const FigureShape::Joint& joint = block.shape->joints[static_cast<std::size_t>(which)];
         const FigureBlock::Joint& lanes = block.joints[which];
         lanes.kernels->equality_rows(context, lanes.streams, lanes.block, block.body(joint.a),
                                      block.body(joint.b), rows);
+        if (only != nullptr) return;
         const std::int64_t floats = impulse_floats(lanes);
         const float* impulses = lanes.streams.impulses + lanes.block * floats;
         for (std::int64_t i = 0; i < floats; ++i) tensions[i] = context.step.substep * impulses[i];
@@ -125,7 +136,13 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
         for (const FigureNode::Lock& lock : node.locks)
             locate(lock.joint, block.system + node.jacobian + row_floats * lock.first_row,
                    block.system + node.tension + block_lanes * lock.first_row);
-        add_acting_rows(context, block, node);
+        if (only == nullptr) {
+            add_acting_rows(context, block, node);
+        } else {
+            block.for_each_acting(node, [&](const FigureNode::Active& active, int row, float* by) {
+                act(context, block, node, active, row, by, only);
+            });
+        }
     }
     for (const FigureClosure& closure : block.shape->closures)
         locate(closure.joint, block.system + block.shape->closure_jacobian + row_floats * closure.first_row,
@@ -133,17 +150,19 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
     kernels.factor(block);
 }
 
-bool exceeds(const FigureBlock& block)
+/// Finds the copies in which a limit or motor has pulled or pushed too hard. Null where none has.
+const float* find_exceeding(const FigureBlock& block)
 {
-    if (!block.shape->has_actives) return false;
-    bool any = false;
+    if (!block.shape->has_actives) return nullptr;
+    float* const exceeding = block.system + block.shape->exceeding;
+    std::fill_n(exceeding, block_lanes, 0.0F);
     for (const FigureNode& node : block.shape->nodes) {
         block.for_each_acting(node, [&](const FigureNode::Active& active, int, const float* by) {
             const FigureBlock::Joint& lanes = block.joints[active.joint];
-            any = any || lanes.kernels->exceeds(lanes.streams, lanes.block, by);
+            lanes.kernels->exceeds(lanes.streams, lanes.block, by, exceeding);
         });
     }
-    return any;
+    return any_of_lanes(exceeding, block.count) ? exceeding : nullptr;
 }
 
 /// Solves the tree, and then again without the limits and motors that it has made pull or push too hard. These may be others
@@ -152,12 +171,14 @@ void solve_within_bounds(const KernelContext& context, const FigureKernels& kern
                          float rate)
 {
     kernels.solve(block, rate);
-    for (int round = 0; round < 2 && exceeds(block); ++round) {
-        factor_tree(context, kernels, block);
+    for (int round = 0; round < 2; ++round) {
+        const float* const exceeding = find_exceeding(block);
+        if (exceeding == nullptr) return;
+        factor_tree(context, kernels, block, exceeding);
         // What stiffened locks do to the bodies has been done by the first solve.
         for (const FigureNode& node : block.shape->nodes)
             std::fill_n(block.system + node.pull, 3 * block_lanes, 0.0F);
-        kernels.solve(block, rate);
+        kernels.correct(block, rate);
     }
 }
 

@@ -145,7 +145,8 @@ class TreeBuilder {
             node.jacobian = take(row_floats * node.most_rows);
             node.response = take(6 * node.most_rows);
             node.factor = take(node.most_rows * (node.most_rows + 1) / 2);
-            node.target = node.tension = take(node.most_rows);
+            node.target = take(node.most_rows);
+            node.tension = shape_.has_actives ? take(node.rows) : node.target;
             if (shape_.has_actives) node.taken = take(6);
             node.in_use = take(1);
             node.acts_by = take(static_cast<int>(node.actives.size()));
@@ -155,6 +156,7 @@ class TreeBuilder {
             node.kept = take(6);
             node.pull = take(3);
         }
+        if (shape_.has_actives) shape_.exceeding = take(1);
         shape_.closure_jacobian = take(row_floats * closure_rows_);
         shape_.closure_factor = take(closure_rows_ * (closure_rows_ + 1) / 2);
         shape_.closure_target = shape_.closure_alone = take(closure_rows_);

@@ -109,13 +109,14 @@ inline void factor_closures(const FigureBlock& figure, int lane)
 }
 
 /// Applies the impulses with which the closures hold, then solves the tree so that its locks hold too.
-inline void solve_closures(const FigureBlock& figure, float rate, int lane)
+inline void solve_closures(const FigureBlock& figure, float rate, TreeSweep sweep, int lane)
 {
     const FigureShape& shape = *figure.shape;
     const StoredTriangle k{figure.system + shape.closure_factor + lane};
     const StoredColumn x{figure.system + shape.closure_target + lane};
     for_each_closure_row(figure, lane, [&](const ClosureRow& c, int row) {
-        x.set(row, -(speed_along(c) + Lanes(rate) * c.row.error));
+        const Lanes target = -(speed_along(c) + Lanes(rate) * c.row.error);
+        x.set(row, sweep == TreeSweep::corrects ? where_exceeding(figure, lane, target, Lanes(0)) : target);
     });
     // A row without a pivot gets no impulse.
     solve_in_place(shape.closure_rows, k, x, [&](int i, const Lanes& value) {
@@ -134,7 +135,7 @@ inline void solve_closures(const FigureBlock& figure, float rate, int lane)
         }
         add_to_sum(figure, closure.joint, sum, lane);
     }
-    sweep_tree(figure, rate, TreeSweep::solves, lane);
+    sweep_tree(figure, rate, sweep, lane);
 }
 
 inline void factor_trees(const FigureBlock& figure)
@@ -145,10 +146,18 @@ inline void factor_trees(const FigureBlock& figure)
     }
 }
 
-inline void solve_trees(const FigureBlock& figure, float rate)
+[[gnu::noinline]] inline void sweep_trees(const FigureBlock& figure, float rate, TreeSweep sweep)
 {
     for (int lane = 0; lane < figure.count; lane += Lanes_width) {
-        sweep_tree(figure, rate, TreeSweep::solves, lane);
-        if (figure.shape->closure_rows > 0) solve_closures(figure, rate, lane);
+        sweep_tree(figure, rate, sweep, lane);
+        if (figure.shape->closure_rows > 0) solve_closures(figure, rate, sweep, lane);
     }
+}
+inline void solve_trees(const FigureBlock& figure, float rate)
+{
+    sweep_trees(figure, rate, TreeSweep::solves);
+}
+inline void correct_trees(const FigureBlock& figure, float rate)
+{
+    sweep_trees(figure, rate, TreeSweep::corrects);
 }

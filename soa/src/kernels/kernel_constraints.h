@@ -579,21 +579,33 @@ struct Kernels {
 
     static void act(const KernelContext& context, const BlockStreams& streams, std::int32_t block,
                     const float* body_a, const float* body_b, float* row, float* by, float* taken_a,
-                    float* taken_b)
+                    float* taken_b, const float* only)
     {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
             const int lane = bundle.lane;
-            auto impulse = load_row<Impulse>(bundle.impulse);
-            auto substep = load_row<Substep>(bundle.substep);
-            const ActingRow<Lanes> acting =
+            const auto before = load_row<Impulse>(bundle.impulse);
+            const auto substep_before = load_row<Substep>(bundle.substep);
+            auto impulse = before;
+            auto substep = substep_before;
+            ActingRow<Lanes> acting =
                 Type::template act<Lanes>(context.step, load_row<Row>(bundle.row), impulse, substep,
                                           load_row<A>(body_a + lane), load_row<B>(body_b + lane));
+            if (only != nullptr) {
+                const auto changes = load_lanes(only + lane) > Lanes(0);
+                keep_where_not(changes, before, impulse);
+                keep_where_not(changes, substep_before, substep);
+                acting.by = select(changes, acting.by, load_lanes(by + lane));
+                acting.taken_back = select(changes, acting.taken_back, Lanes(0));
+            }
             store_row(impulse, bundle.impulse);
             store_row(substep, bundle.substep);
             const EqualityRow<Lanes>& whole = acting.row;
-            const Lanes share = select(acting.by > Lanes(0), Lanes(1), Lanes(0));
+            const Lanes none(0);
+            const Lanes share = select(acting.by > none, Lanes(1), none);
+            const auto by_motor = acting.by > Lanes(ActsBy::limit);
             store_row(EqualityRow<Lanes>{share * whole.linear, share * whole.lever_a, share * whole.lever_b,
-                                         share * whole.error, share * whole.speed},
+                                         select(by_motor, none, share * whole.error),
+                                         select(by_motor, whole.speed, none)},
                       row + lane);
             store_lanes(acting.by, by + lane);
             const auto take = [&](float* from, const Lanes& push, const Vec3<Lanes>& lever) {
@@ -607,25 +619,27 @@ struct Kernels {
             take(taken_b, acting.taken_back, whole.lever_b);
         });
     }
+    template <class Mask, class Fields>
+    static void keep_where_not(const Mask& changes, const Fields& before, Fields& now)
+    {
+        const Lanes* const from = reinterpret_cast<const Lanes*>(&before);
+        Lanes* const to = reinterpret_cast<Lanes*>(&now);
+        for (int i = 0; i < fields_of<Fields>; ++i) to[i] = select(changes, to[i], from[i]);
+    }
 
-    static bool exceeds(const BlockStreams& streams, std::int32_t block, const float* by)
+    static void exceeds(const BlockStreams& streams, std::int32_t block, const float* by, float* exceeding)
     {
         const int count = streams.counts[block];
         const auto at = [&](float* stream, int floats) {
             return stream + std::int64_t{block} * floats * block_lanes;
         };
-        bool any = false;
         for (int lane = 0; lane < count; lane += Lanes_width) {
-            alignas(64) float exceeding[Lanes_width];
-            store_lanes(Type::template exceeds<Lanes>(
-                            load_row<Row>(at(streams.rows, fields_of<Row>) + lane),
-                            load_row<Substep>(at(streams.substep_rows, fields_of<Substep>) + lane),
-                            load_row<Impulse>(at(streams.impulses, fields_of<Impulse>) + lane),
-                            load_lanes(by + lane)),
-                        exceeding);
-            for (int i = 0; i < Lanes_width && lane + i < count; ++i) any = any || exceeding[i] != 0;
+            const Lanes now = Type::template exceeds<Lanes>(
+                load_row<Row>(at(streams.rows, fields_of<Row>) + lane),
+                load_row<Substep>(at(streams.substep_rows, fields_of<Substep>) + lane),
+                load_row<Impulse>(at(streams.impulses, fields_of<Impulse>) + lane), load_lanes(by + lane));
+            store_lanes(maximum(now, load_lanes(exceeding + lane)), exceeding + lane);
         }
-        return any;
     }
 
     static void set_aside(const BlockStreams& streams, std::int32_t block, const float* by)

@@ -152,8 +152,15 @@ void factor_locks(const Mover& body, const FigureNode& node, int row_count, floa
     store_row(sum, parent_mass);
 }
 
-/// `solves`: a solve of the step. `answers`: the response of the tree to an impulse while everything else is at rest.
-enum class TreeSweep { solves, answers };
+/// `solves`: a solve of the step. `corrects`: one in exceeding copies only (FigureShape::exceeding). `answers`: the response of
+/// the tree to an impulse while everything else is at rest.
+enum class TreeSweep { solves, corrects, answers };
+
+/// `now` in exceeding copies, `before` in the others.
+inline Lanes where_exceeding(const FigureBlock& figure, int lane, const Lanes& now, const Lanes& before)
+{
+    return select(load_lanes(figure.system + figure.shape->exceeding + lane) > Lanes(0), now, before);
+}
 
 /// From child to parent: computes y = K^-1 (target - J_c M'^-1 f), where J_c is the Jacobian on the child and f the
 /// force on it, and adds J_p^T y to the force on the parent.
@@ -166,7 +173,7 @@ void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, 
     const Mover body = load_row<Mover>(figure.body(node.body) + lane);
     Row6 child, parent;
     put(body.linear, body.angular, child);
-    if (node.parent_node >= 0 || sweep == TreeSweep::solves) {
+    if (node.parent_node >= 0 || sweep != TreeSweep::answers) {
         const Mover on = load_row<Mover>(figure.body(node.parent) + lane);
         put(on.linear, on.angular, parent);
     } else {
@@ -175,8 +182,9 @@ void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, 
     Lanes y[Rows::most];
     repeat(rows, [&](auto i) {
         y[i] = -((j.along_child(i, child) + j.along_parent(i, parent)) + rate * j.error[i]);
-        if (sweep == TreeSweep::solves) y[i] = y[i] + j.speed_of(i);
+        if (sweep != TreeSweep::answers) y[i] = y[i] + j.speed_of(i);
         y[i] = y[i] - j.along_child(i, change);
+        if (sweep == TreeSweep::corrects) y[i] = where_exceeding(figure, lane, y[i], Lanes(0));
     });
     Triangle<Rows::most> factor;
     load_factor(rows, system + node.factor, factor);
@@ -383,7 +391,7 @@ inline void factor_tree(const FigureBlock& figure, int lane)
     };
     const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
     for (const FigureNode& node : nodes) {
-        const bool pulls = sweep == TreeSweep::solves;
+        const bool pulls = sweep != TreeSweep::answers;
         store_row(none, system + node.force);
         store_row(pulls ? load_row<Vec3<Lanes>>(system + node.pull) : none,
                   system + node.force + 3 * block_lanes);
@@ -411,6 +419,10 @@ inline void factor_tree(const FigureBlock& figure, int lane)
         });
         store_array(change, system + node.change);
         Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        if (sweep == TreeSweep::corrects) {
+            // A sum with 0 has the bits of the other summand, unless that is -0.
+            for (Lanes& entry : change) entry = where_exceeding(figure, lane, entry, Lanes(-0.0F));
+        }
         body.linear = body.linear + Vec3<Lanes>{change[0], change[1], change[2]};
         body.angular = body.angular + Vec3<Lanes>{change[3], change[4], change[5]};
         store_copy_velocity(body, figure.body(node.body) + lane);

@@ -28,6 +28,7 @@ void enter_tree_kernels<Isa::MOTLEY_ISA>(FigureKernels& figures)
 {
     figures.factor = factor_trees;
     figures.solve = solve_trees;
+    figures.correct = correct_trees;
 }
 
 }  // namespace motley

@@ -157,13 +157,14 @@ struct ConstraintKernels {
     int equality_count = 0;
     /// Finds out what acts on the row of a limit or motor, and writes its EqualityRow (0 where nothing does) and ActsBy, sixteen
     /// floats a field. What lets go is added to `taken_a` and `taken_b`, the six impulses on the bodies; null of fixed ones.
-    /// Null for types without such a row.
+    /// Given `only`, nothing but the row is changed in lanes where that is 0. Null for types without such a row.
     void (*act)(const KernelContext&, const BlockStreams&, std::int32_t block, const float* body_a,
-                const float* body_b, float* row, float* by, float* taken_a, float* taken_b) = nullptr;
+                const float* body_b, float* row, float* by, float* taken_a, float* taken_b,
+                const float* only) = nullptr;
     /// After warm_start: leaves the rows on which something acts to the tree.
     void (*set_aside)(const BlockStreams&, std::int32_t block, const float* by) = nullptr;
-    /// After the tree has been solved: whether any of what acts has pulled or pushed too hard.
-    bool (*exceeds)(const BlockStreams&, std::int32_t block, const float* by) = nullptr;
+    /// After the tree has been solved: writes 1 into the lanes in which what acts has pulled or pushed too hard.
+    void (*exceeds)(const BlockStreams&, std::int32_t block, const float* by, float* exceeding) = nullptr;
     int active_impulses = 0;  ///< how many impulses such a row has: see ConstraintTraits::active_row
     /// After warm_start, where the two bodies are held together at the point with these arms (three fields of sixteen floats):
     /// see locked_point.h. Null for types without such rows.
@@ -210,6 +211,8 @@ struct FigureKernels {
     void (*factor)(const FigureBlock&) = nullptr;  ///< factors the tree; after equality_rows of each lock
     /// Changes velocities v and impulses so that J v + rate C = 0 for every lock (J: Jacobian, C: position error).
     void (*solve)(const FigureBlock&, float rate) = nullptr;
+    /// The same in copies where FigureShape::exceeding is not 0; the others keep their bits.
+    void (*correct)(const FigureBlock&, float rate) = nullptr;
 };
 
 /// The kernels of contacts of discs. Their rows are made by prepare_smooth and prepare_rough of pairs, and by
