@@ -38,6 +38,11 @@ constexpr ExtremeCase cases[] = {
      "L",
      {no_claim, 1e-3, no_claim, no_claim, 1e-3},
      level_load},
+    {"arm of limits under 1e4 kg",
+     "level, eight links of 1 kg: limits hold as locks do",
+     "L",
+     {no_claim, 1e-6, no_claim, no_claim, 1e-9},
+     limits_of_an_arm},
     {"chain of 1,000 links",
      "its own weight, 9,810 N at the top",
      "L",
@@ -154,7 +159,7 @@ const char* name_of(ExtremeWay way)
 SolverSettings settings_of(ExtremeWay way)
 {
     SolverSettings settings;
-    settings.exact_joints = settings.exact_contacts = way == ExtremeWay::exact;
+    settings.exact_joints = settings.exact_limits = settings.exact_contacts = way == ExtremeWay::exact;
     if (way == ExtremeWay::direct) {
         settings.method = Method::direct;
         settings.drift_correction = DriftCorrection::projection;

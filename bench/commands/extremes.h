@@ -14,7 +14,7 @@ namespace motley::bench {
 /// The ways to solve that each case is run under.
 enum class ExtremeWay {
     soft_step,
-    exact,  ///< soft_step with exact joints and contacts
+    exact,  ///< soft_step with exact joints, limits and contacts
     baumgarte,
     projection,
     direct

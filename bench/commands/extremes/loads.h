@@ -20,6 +20,34 @@ inline double a_blow(const ExtremeRun& run)
     for (int i = 0; i < 120; ++i) trial.step();
     return trial.figure(trial.scene.errors().joint_separation_rms / 0.5);
 }
+/// How far the end of a level arm of eight links of 1 kg sinks within a second, of a link's length: each hinge is at its limit,
+/// and the end bears 10 t.
+inline double limits_of_an_arm(const ExtremeRun& run)
+{
+    Trial trial(run);
+    constexpr float half = 0.25F;
+    const Quat<float> about_z{0, -0.70710678F, 0, 0.70710678F};
+    BodyId before = trial.scene.ground();
+    for (int i = 0; i < 8; ++i) {
+        const BodyId body = trial.box({half * (2.0 * i + 1), 0, 0}, 1, {0.02F, 0.02F, 0.02F});
+        const JointFrame inner{{i == 0 ? 0 : half, 0, 0}, about_z}, outer{{-half, 0, 0}, about_z};
+        trial.scene.add_joint(HingeDefinition{before, body, inner, outer});
+        TwistDriveDefinition limit;
+        limit.body_a = before;
+        limit.body_b = body;
+        limit.frame_a = inner;
+        limit.frame_b = outer;
+        limit.lower = 0;
+        limit.upper = 1;
+        trial.scene.add_joint(limit);
+        before = body;
+    }
+    const BodyId end = trial.box({16.0 * half, 0, 0}, 1e4F, {0.01F, 0.01F, 0.01F});
+    trial.scene.add_joint(FixedDefinition{before, end, {{half, 0, 0}}, {}});
+    for (int i = 0; i < 60; ++i) trial.step();
+    return trial.figure(length(trial.scene.state(end).position - Vec3<double>{16.0 * half, 0, 0}) /
+                        (2 * half));
+}
 inline double deep_overlap(const ExtremeRun& run)
 {
     Trial trial(run, {});

@@ -339,17 +339,11 @@ struct Drive : ConstraintTraits {
         }
         return out;
     }
-    template <class Real, class Row, class Substep, class Impulse>
-    static Real exceeds(const Row& row, const Substep& substep, const Impulse& impulse, const Real& by)
+    template <class Real, class Row, class Impulse>
+    static Real exceeds(const Row& row, const Impulse& impulse, const Real& by)
     {
-        const auto& drive = row.in_sweep;
-        const Real none(0), one(1);
-        const Bounds<Real> at = bounds_of(drive, substep.value);
-        const Real both = impulse.limit + impulse.motor;
-        const Real pulls =
-            select(drive.lower < drive.upper, select(at.inwards * both < at.motor_alone, one, none), none);
-        const Real of_motor = select(absolute(both) > drive.motor_max_impulse, one, none);
-        return select(by > Real(ActsBy::limit), of_motor, select(by > none, pulls, none));
+        const auto too_hard = absolute(impulse.motor) > row.in_sweep.motor_max_impulse;
+        return select(by > Real(ActsBy::limit), select(too_hard, Real(1), Real(0)), Real(0));
     }
     template <class Real, class Substep>
     static void set_aside(Substep& substep, const Real& by)

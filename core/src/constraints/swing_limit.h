@@ -135,11 +135,6 @@ struct SwingLimit : ConstraintTraits {
         return {
             {{none, none, none}, along, along, error_of_limit(step, here.room)}, by, impulse.limit - before};
     }
-    template <class Real, class Row, class Substep, class Impulse>
-    static Real exceeds(const Row&, const Substep&, const Impulse& impulse, const Real& by)
-    {
-        return select(by > Real(0), select(impulse.limit < Real(0), Real(1), Real(0)), Real(0));
-    }
     template <class Real, class Substep>
     static void set_aside(Substep& substep, const Real& by)
     {

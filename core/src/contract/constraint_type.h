@@ -49,7 +49,7 @@
 //   likewise, with an active_row
 //     act<Real>(step, row, impulse&, substep&, a, b) -> ActingRow     what acts now. Then sweeps must leave limit and motor alone:
 //     set_aside<Real>(substep&, by)                                   the effective mass of their row is 0 where something acts
-//     exceeds<Real>(row, substep, impulse, by) -> Real                1 where it has pulled or pushed too hard since
+//     exceeds<Real>(row, impulse, by) -> Real                         with has_motor: 1 where it has pushed harder than it may
 //   likewise, each substep, with turns_about_points
 //     lengthen_step<Real>(substep&, a, arm_a, b, arm_b)               where a point is locked: see locked_point.h
 #pragma once
@@ -90,8 +90,7 @@ struct ConstraintTraits {
     static constexpr bool turns_about_points = false;
     /// Is defined by points of the world: has world_points(definition), and start.from_world_points().
     static constexpr bool has_world_points = false;
-    /// Of types with a limit or motor that exact joints may hold: see equality_row.h. Such a type has act(), set_aside() and
-    /// exceeds(), and
+    /// Of types with a limit or motor that exact joints may hold: see equality_row.h. Such a type has act() and set_aside(), and
     /// the first Real of Impulse is the impulse of the limit. With `has_motor` the second is that of the motor.
     static constexpr ActiveRow active_row = ActiveRow::none;
     static constexpr bool has_motor = false;

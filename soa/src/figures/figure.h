@@ -109,7 +109,7 @@ struct FigureShape {
     Array<FigureNode> nodes;  ///< children before parents; empty unless locks are solved exactly
     Array<JointAtPoint> joints_at_points;
     bool has_actives = false;    ///< a node has limits or motors
-    std::int64_t exceeding = 0;  ///< with them: in which copies one has pulled or pushed too hard, one
+    std::int64_t exceeding = 0;  ///< with them: in which copies a motor has pushed harder than it may, one
     Array<FigureClosure> closures;
     int closure_rows = 0;
     std::int64_t closure_jacobian = 0, closure_factor = 0, closure_target = 0;  ///< like those of a node

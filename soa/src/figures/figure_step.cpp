@@ -150,7 +150,7 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
     kernels.factor(block);
 }
 
-/// Finds the copies in which a limit or motor has pulled or pushed too hard. Null where none has.
+/// Finds the copies in which a motor has pushed harder than it may. Null where none has.
 const float* find_exceeding(const FigureBlock& block)
 {
     if (!block.shape->has_actives) return nullptr;
@@ -159,14 +159,16 @@ const float* find_exceeding(const FigureBlock& block)
     for (const FigureNode& node : block.shape->nodes) {
         block.for_each_acting(node, [&](const FigureNode::Active& active, int, const float* by) {
             const FigureBlock::Joint& lanes = block.joints[active.joint];
-            lanes.kernels->exceeds(lanes.streams, lanes.block, by, exceeding);
+            if (lanes.kernels->exceeds != nullptr)
+                lanes.kernels->exceeds(lanes.streams, lanes.block, by, exceeding);
         });
     }
     return any_of_lanes(exceeding, block.count) ? exceeding : nullptr;
 }
 
-/// Solves the tree, and then again without the limits and motors that it has made pull or push too hard. These may be others
-/// then; two rounds leave few.
+/// Solves the tree, and then again without the motors that it has made push harder than they may. These may be others then; two
+/// rounds leave few. A limit that pulls lets go when the tree is factored next, which gives no energy; but a motor that was
+/// too strong for a substep in each step would be too strong for ever.
 void solve_within_bounds(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
                          float rate)
 {

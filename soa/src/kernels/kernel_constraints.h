@@ -636,7 +636,6 @@ struct Kernels {
         for (int lane = 0; lane < count; lane += Lanes_width) {
             const Lanes now = Type::template exceeds<Lanes>(
                 load_row<Row>(at(streams.rows, fields_of<Row>) + lane),
-                load_row<Substep>(at(streams.substep_rows, fields_of<Substep>) + lane),
                 load_row<Impulse>(at(streams.impulses, fields_of<Impulse>) + lane), load_lanes(by + lane));
             store_lanes(maximum(now, load_lanes(exceeding + lane)), exceeding + lane);
         }
@@ -714,7 +713,7 @@ struct Kernels {
         if constexpr (has_copies && Type::active_row != ActiveRow::none) {
             kernels.act = act;
             kernels.set_aside = set_aside;
-            kernels.exceeds = exceeds;
+            if constexpr (Type::has_motor) kernels.exceeds = exceeds;
             kernels.active_impulses = Type::has_motor ? 2 : 1;
         }
         kernels.project = project;

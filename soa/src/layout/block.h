@@ -163,7 +163,8 @@ struct ConstraintKernels {
                 const float* only) = nullptr;
     /// After warm_start: leaves the rows on which something acts to the tree.
     void (*set_aside)(const BlockStreams&, std::int32_t block, const float* by) = nullptr;
-    /// After the tree has been solved: writes 1 into the lanes in which what acts has pulled or pushed too hard.
+    /// After the tree has been solved: writes 1 into the lanes in which a motor has pushed harder than it may. Null for types
+    /// without motors.
     void (*exceeds)(const BlockStreams&, std::int32_t block, const float* by, float* exceeding) = nullptr;
     int active_impulses = 0;  ///< how many impulses such a row has: see ConstraintTraits::active_row
     /// After warm_start, where the two bodies are held together at the point with these arms (three fields of sixteen floats):
