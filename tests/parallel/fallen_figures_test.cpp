@@ -254,10 +254,11 @@ TEST(FallenFigures, AllComeToRestWithinTheirLimits)
     SolverSettings exact = testing::with_gravity({0, -9.81F, 0});
     exact.exact_joints = true;
     exact.substeps = 1;
-    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    for (const int run : {0, 1, 2, 3}) {
         constexpr int copies = 1000;
+        const std::uint64_t seed = 1 + run % 2;
         FallenFigures fallen({.copies = copies, .seed = seed});
-        exact.exact_limits = seed % 2 == 0;
+        exact.exact_limits = run >= 2;
         Solver solver(exact, {.threads = 2});
         constexpr int fall = 640, at_rest = 60;
         std::vector<double> energies(copies);  // J, mean over the last second

@@ -299,9 +299,9 @@ struct Drive : ConstraintTraits {
     /// The limit acts once it is touched, while it pushes inwards harder than the motor alone; the motor acts while it has
     /// force left and does not arrive at the limit. One row bears both, so the impulse is all that of the one or of the other. A
     /// rotor shares the impulses of its row with the bodies: drives with one are left to the sweeps.
-    template <class Real, class Row, class Impulse, class Substep, class A, class B>
-    static ActingRow<Real> act(const StepConstants& step, const Row& row, Impulse& impulse, Substep& substep,
-                               const A& a, const B& b)
+    template <class Real, class Row, class Impulse, class A, class B>
+    static ActingRow<Real> act(const StepConstants& step, const Row& row, Impulse& impulse, const A& a,
+                               const B& b)
     {
         SubstepRow<Real, A::kind, B::kind> here;
         build<Real>(row, here, a, b);
@@ -325,13 +325,12 @@ struct Drive : ConstraintTraits {
         const auto is_usable = usable > none;
         impulse.limit = select(is_usable, by_limit, impulse.limit);
         impulse.motor = select(is_usable, kept - by_limit, impulse.motor);
-        substep.effective_mass = select(
-            acts, none, select(substep.effective_mass > none, substep.effective_mass, here.effective_mass));
         const Real error = select(drive.lower < drive.upper, at.inwards * error_of_limit(step, at.room),
                                   here.value - drive.lower);
         ActingRow<Real> out{{{none, none, none}, here.axis, here.axis, error, drive.motor_speed},
                             by,
-                            select(is_usable, kept - both, none)};
+                            select(is_usable, kept - both, none),
+                            here.effective_mass};
         if constexpr (slides) {
             out.row.linear = here.axis;
             out.row.lever_a = here.levers.a;
@@ -345,12 +344,6 @@ struct Drive : ConstraintTraits {
         const auto too_hard = absolute(impulse.motor) > row.in_sweep.motor_max_impulse;
         return select(by > Real(ActsBy::limit), select(too_hard, Real(1), Real(0)), Real(0));
     }
-    template <class Real, class Substep>
-    static void set_aside(Substep& substep, const Real& by)
-    {
-        substep.effective_mass = select(by > Real(0), Real(0), substep.effective_mass);
-    }
-
     template <class Real, class Row, class A, class B>
     static void project(const StepConstants&, const Row& row, A& a, B& b)
     {
@@ -417,7 +410,7 @@ struct Drive : ConstraintTraits {
     struct Bounds {
         Real inwards;      ///< 1 where the lower limit is the nearer one, else -1
         Real room, speed;  ///< to the nearer limit, and of the motor, 0 without one
-        Real motor_alone;  ///< the impulse of the motor at its bound, as fast as it can get
+        Real motor_alone;  ///< impulse of the motor at its bound, below 0 where it drives outwards
     };
     template <class Real>
     static Bounds<Real> bounds_of(const InSweep<Real>& drive, const Real& value)

@@ -118,29 +118,22 @@ struct SwingLimit : ConstraintTraits {
     }
 
     /// Acts while it pushes inwards.
-    template <class Real, class Row, class Impulse, class Substep, class A, class B>
-    static ActingRow<Real> act(const StepConstants& step, const Row& row, Impulse& impulse, Substep& substep,
-                               const A& a, const B& b)
+    template <class Real, class Row, class Impulse, class A, class B>
+    static ActingRow<Real> act(const StepConstants& step, const Row& row, Impulse& impulse, const A& a,
+                               const B& b)
     {
         SubstepRow<Real, A::kind, B::kind> here;
         build<Real>(row, here, a, b);
         const Real none(0), limit(ActsBy::limit), before = impulse.limit;
         impulse.limit = maximum(before, none);
         const Real by = select(before > none, select(here.effective_mass > none, limit, none), none);
-        substep.effective_mass =
-            select(by > none, none,
-                   select(substep.effective_mass > none, substep.effective_mass, here.effective_mass));
         // dC/dt is that of a relative to b.
         const Vec3<Real> along = -here.normal;
-        return {
-            {{none, none, none}, along, along, error_of_limit(step, here.room)}, by, impulse.limit - before};
+        return {{{none, none, none}, along, along, error_of_limit(step, here.room)},
+                by,
+                impulse.limit - before,
+                here.effective_mass};
     }
-    template <class Real, class Substep>
-    static void set_aside(Substep& substep, const Real& by)
-    {
-        substep.effective_mass = select(by > Real(0), Real(0), substep.effective_mass);
-    }
-
     template <class Real, class Row, class A, class B>
     static void project(const StepConstants&, const Row& row, A& a, B& b)
     {

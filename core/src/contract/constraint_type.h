@@ -47,8 +47,8 @@
 //   for SolverSettings::exact_joints, with equality_count
 //     equality_rows<Real>(row, a, b, rows*)                           J and C, row by row
 //   likewise, with an active_row
-//     act<Real>(step, row, impulse&, substep&, a, b) -> ActingRow     what acts now. Then sweeps must leave limit and motor alone:
-//     set_aside<Real>(substep&, by)                                   the effective mass of their row is 0 where something acts
+//     act<Real>(step, row, impulse&, a, b) -> ActingRow               what acts now; SubstepRow::effective_mass is 0 there, so that
+//                                                                     sweeps leave limit and motor alone
 //     exceeds<Real>(row, impulse, by) -> Real                         with has_motor: 1 where it has pushed harder than it may
 //   likewise, each substep, with turns_about_points
 //     lengthen_step<Real>(substep&, a, arm_a, b, arm_b)               where a point is locked: see locked_point.h
@@ -90,7 +90,7 @@ struct ConstraintTraits {
     static constexpr bool turns_about_points = false;
     /// Is defined by points of the world: has world_points(definition), and start.from_world_points().
     static constexpr bool has_world_points = false;
-    /// Of types with a limit or motor that exact joints may hold: see equality_row.h. Such a type has act() and set_aside(), and
+    /// Of types with a limit or motor that exact joints may hold: see equality_row.h. Such a type has act(), SubstepRow::effective_mass, and
     /// the first Real of Impulse is the impulse of the limit. With `has_motor` the second is that of the motor.
     static constexpr ActiveRow active_row = ActiveRow::none;
     static constexpr bool has_motor = false;

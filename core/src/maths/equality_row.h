@@ -42,6 +42,7 @@ struct ActingRow {
     EqualityRow<Real> row;  ///< with the error of the limit and the speed of the motor, whichever acts
     Real by;                ///< ActsBy
     Real taken_back;  ///< N s or N m s, to be added along the row: what has pulled or pushed too hard lets go
+    Real effective_mass;  ///< K^-1 of the two bodies alone, as in SubstepRow
 };
 
 /// C of a limit that acts, without a correction faster than push_out_speed.

@@ -106,7 +106,17 @@ void add_acting_rows(const KernelContext& context, const FigureBlock& block, con
     block.system[node.in_use] = static_cast<float>(rows);
 }
 
-/// Nothing has let go.
+/// Calls work(limit or motor, its ActsBy in lanes) for all that act.
+template <class Work>
+void for_each_acting(const FigureBlock& block, const Work& work)
+{
+    if (!block.shape->has_actives) return;
+    for (const FigureNode& node : block.shape->nodes)
+        block.for_each_acting(
+            node, [&](const FigureNode::Active& active, int, const float* by) { work(active, by); });
+}
+
+/// Forgets what has let go: see FigureNode::taken.
 void forget_taken(const FigureBlock& block)
 {
     if (!block.shape->has_actives) return;
@@ -123,8 +133,8 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
     const auto locate = [&](int which, float* rows, float* tensions) {
         const FigureShape::Joint& joint = block.shape->joints[static_cast<std::size_t>(which)];
         const FigureBlock::Joint& lanes = block.joints[which];
-        lanes.kernels->equality_rows(context, lanes.streams, lanes.block, block.body(joint.a),
-                                     block.body(joint.b), rows);
+        lanes.kernels->equality_rows(lanes.streams, lanes.block, block.body(joint.a), block.body(joint.b),
+                                     rows);
         if (only != nullptr) return;
         const std::int64_t floats = impulse_floats(lanes);
         const float* impulses = lanes.streams.impulses + lanes.block * floats;
@@ -156,13 +166,11 @@ const float* find_exceeding(const FigureBlock& block)
     if (!block.shape->has_actives) return nullptr;
     float* const exceeding = block.system + block.shape->exceeding;
     std::fill_n(exceeding, block_lanes, 0.0F);
-    for (const FigureNode& node : block.shape->nodes) {
-        block.for_each_acting(node, [&](const FigureNode::Active& active, int, const float* by) {
-            const FigureBlock::Joint& lanes = block.joints[active.joint];
-            if (lanes.kernels->exceeds != nullptr)
-                lanes.kernels->exceeds(lanes.streams, lanes.block, by, exceeding);
-        });
-    }
+    for_each_acting(block, [&](const FigureNode::Active& active, const float* by) {
+        const FigureBlock::Joint& lanes = block.joints[active.joint];
+        if (lanes.kernels->exceeds != nullptr)
+            lanes.kernels->exceeds(lanes.streams, lanes.block, by, exceeding);
+    });
     return any_of_lanes(exceeding, block.count) ? exceeding : nullptr;
 }
 
@@ -294,16 +302,12 @@ void begin_tree(const FigureBlock& block)
         float* impulses = block.joints[i].streams.impulses + block.joints[i].block * floats;
         std::fill(impulses, impulses + floats, 0.0F);
     }
-    if (!block.shape->has_actives) return;
-    for (const FigureNode& node : block.shape->nodes) {
-        block.for_each_acting(node, [&](const FigureNode::Active& active, int, const float* by) {
-            const FigureBlock::Joint& lanes = block.joints[active.joint];
-            float* impulses = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
-            for (int which = 0; which < lanes.kernels->active_impulses; ++which, impulses += block_lanes)
-                for (int i = 0; i < block_lanes; ++i)
-                    impulses[i] = by[i] != ActsBy::nothing ? 0.0F : impulses[i];
-        });
-    }
+    for_each_acting(block, [&](const FigureNode::Active& active, const float* by) {
+        const FigureBlock::Joint& lanes = block.joints[active.joint];
+        float* impulses = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
+        for (int which = 0; which < lanes.kernels->active_impulses; ++which, impulses += block_lanes)
+            for (int i = 0; i < block_lanes; ++i) impulses[i] = by[i] != ActsBy::nothing ? 0.0F : impulses[i];
+    });
 }
 
 void lengthen_steps(const FigureBlock& block)
@@ -316,13 +320,10 @@ void lengthen_steps(const FigureBlock& block)
                                       block.body(of_shape.b), block.system + joint.arm_a,
                                       block.system + joint.arm_b);
     }
-    if (!block.shape->has_actives) return;
-    for (const FigureNode& node : block.shape->nodes) {
-        block.for_each_acting(node, [&](const FigureNode::Active& active, int, const float* by) {
-            const FigureBlock::Joint& lanes = block.joints[active.joint];
-            lanes.kernels->set_aside(lanes.streams, lanes.block, by);
-        });
-    }
+    for_each_acting(block, [&](const FigureNode::Active& active, const float* by) {
+        const FigureBlock::Joint& lanes = block.joints[active.joint];
+        lanes.kernels->set_aside(lanes.streams, lanes.block, by);
+    });
 }
 
 void solve_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,

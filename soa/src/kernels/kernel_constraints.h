@@ -563,8 +563,8 @@ struct Kernels {
         });
     }
 
-    static void equality_rows(const KernelContext&, const BlockStreams& streams, std::int32_t block,
-                              const float* body_a, const float* body_b, float* out)
+    static void equality_rows(const BlockStreams& streams, std::int32_t block, const float* body_a,
+                              const float* body_b, float* out)
     {
         const int count = streams.counts[block];
         for (int lane = 0; lane < count; lane += Lanes_width) {
@@ -584,19 +584,20 @@ struct Kernels {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
             const int lane = bundle.lane;
             const auto before = load_row<Impulse>(bundle.impulse);
-            const auto substep_before = load_row<Substep>(bundle.substep);
             auto impulse = before;
-            auto substep = substep_before;
+            auto substep = load_row<Substep>(bundle.substep);
             ActingRow<Lanes> acting =
-                Type::template act<Lanes>(context.step, load_row<Row>(bundle.row), impulse, substep,
+                Type::template act<Lanes>(context.step, load_row<Row>(bundle.row), impulse,
                                           load_row<A>(body_a + lane), load_row<B>(body_b + lane));
             if (only != nullptr) {
                 const auto changes = load_lanes(only + lane) > Lanes(0);
                 keep_where_not(changes, before, impulse);
-                keep_where_not(changes, substep_before, substep);
                 acting.by = select(changes, acting.by, load_lanes(by + lane));
                 acting.taken_back = select(changes, acting.taken_back, Lanes(0));
             }
+            const auto has_mass = substep.effective_mass > Lanes(0);
+            substep.effective_mass = select(has_mass, substep.effective_mass, acting.effective_mass);
+            leave_to_tree(substep, acting.by);
             store_row(impulse, bundle.impulse);
             store_row(substep, bundle.substep);
             const EqualityRow<Lanes>& whole = acting.row;
@@ -618,6 +619,11 @@ struct Kernels {
             take(taken_a, -acting.taken_back, whole.lever_a);
             take(taken_b, acting.taken_back, whole.lever_b);
         });
+    }
+    /// Without an effective mass, sweeps change neither the limit nor the motor.
+    static void leave_to_tree(Substep& substep, const Lanes& by)
+    {
+        substep.effective_mass = select(by > Lanes(0), Lanes(0), substep.effective_mass);
     }
     template <class Mask, class Fields>
     static void keep_where_not(const Mask& changes, const Fields& before, Fields& now)
@@ -647,7 +653,7 @@ struct Kernels {
         for (int lane = 0; lane < count; lane += Lanes_width) {
             float* const at = streams.substep_rows + static_cast<std::int64_t>(block) * substep_stride + lane;
             auto substep = load_row<Substep>(at);
-            Type::set_aside(substep, load_lanes(by + lane));
+            leave_to_tree(substep, load_lanes(by + lane));
             store_row(substep, at);
         }
     }

@@ -250,7 +250,7 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
         add_to_sum(figure, lock.joint,
                    lock.reversed ? Wrench<Lanes>{-on_child.push, -on_child.turn} : on_child, lane);
     }
-    // Sweeps add these to the sums themselves.
+    // These stay in the impulses, which add_up() adds to the sum of the step.
     figure.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float* by) {
         const Lanes pushed = active.reversed ? -lambda[row] : lambda[row];
         const auto by_motor = load_lanes(by + lane) > Lanes(ActsBy::limit);
@@ -420,7 +420,7 @@ inline void factor_tree(const FigureBlock& figure, int lane)
         store_array(change, system + node.change);
         Mover body = load_row<Mover>(figure.body(node.body) + lane);
         if (sweep == TreeSweep::corrects) {
-            // A sum with 0 has the bits of the other summand, unless that is -0.
+            // x + -0 is x for every x, also for -0.
             for (Lanes& entry : change) entry = where_exceeding(figure, lane, entry, Lanes(-0.0F));
         }
         body.linear = body.linear + Vec3<Lanes>{change[0], change[1], change[2]};

@@ -150,10 +150,10 @@ struct ConstraintKernels {
     CopiesSweep solve_copies = nullptr;
     CopiesSweep relax_copies = nullptr;
     CopiesSweep restitute_copies = nullptr;
-    /// Writes EqualityRows, sixteen floats a field.
-    using CopiesRows = void (*)(const KernelContext&, const BlockStreams&, std::int32_t block,
-                                const float* body_a, const float* body_b, float* rows);
-    CopiesRows equality_rows = nullptr;  ///< `equality_count` of them. Null for types that lock nothing
+    /// Writes EqualityRows, `equality_count` of them, sixteen floats a field. Null for types that lock nothing.
+    using CopiesRows = void (*)(const BlockStreams&, std::int32_t block, const float* body_a,
+                                const float* body_b, float* rows);
+    CopiesRows equality_rows = nullptr;
     int equality_count = 0;
     /// Finds out what acts on the row of a limit or motor, and writes its EqualityRow (0 where nothing does) and ActsBy, sixteen
     /// floats a field. What lets go is added to `taken_a` and `taken_b`, the six impulses on the bodies; null of fixed ones.
