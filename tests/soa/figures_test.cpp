@@ -126,10 +126,10 @@ TEST(FigureTree, NumbersOfNodesDoNotOverlap)
 }
 
 /// Joints between random bodies of a few components, coloured in their order.
-std::vector<Figures::Candidate> random_heap(Random& random, std::uint32_t rows)
+std::vector<JointCandidate> random_heap(Random& random, std::uint32_t rows)
 {
     const int ball = contact_type_count;  // the first joint type: a ball-socket
-    std::vector<Figures::Candidate> joints;
+    std::vector<JointCandidate> joints;
     std::vector<std::uint32_t> colours(rows, 0);
     const auto add = [&](BodyRow a, BodyRow b) {
         std::uint32_t taken = 0;
@@ -161,14 +161,18 @@ TEST(Figures, EveryJointIsPlacedOnceAndEveryLaneIsItsOwnCopys)
     for (int trial = 0; trial < 20; ++trial) {
         Random random(static_cast<std::uint64_t>(100 + trial));
         const std::uint32_t rows = 30 + static_cast<std::uint32_t>(random.below(400));
-        const std::vector<Figures::Candidate> joints = random_heap(random, rows);
+        const std::vector<JointCandidate> joints = random_heap(random, rows);
         BodyStore bodies;
         bodies.rows(BodyKind::rigid).slot.assign(rows, 0);
         bodies.rows(BodyKind::fixed).slot.assign(2, 0);  // the null row and the ground
+        BodySets sets;
+        sets.reset([&](BodyKind kind) { return bodies.rows(kind).size(); });
+        for (const JointCandidate& joint : joints) sets.tie(joint.placement.a, joint.placement.b);
+        sets.flatten();
         for (const bool exact : {false, true}) {
             Figures figures;
             Array<Placement> placed;
-            figures.find(joints, bodies, kernels, exact, placed);
+            figures.find(joints, sets, bodies, kernels, exact, placed);
             std::vector<int> seen(joints.size(), 0);
             for (const Placement& placement : placed) {
                 if (!placement.is_gap()) ++seen[static_cast<std::size_t>(placement.constraint)];

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <utility>
 
-#include "layout/disjoint_sets.h"
 #include "stores/array.h"
 
 namespace motley {
@@ -32,15 +31,15 @@ std::uint32_t rigid_row_of(const Placement& joint)
 /// Components that may be figures, in flat lists: the joints of member m are those from first_joint[m] to
 /// first_joint[m + 1], and likewise its bodies and its signature.
 struct Members {
-    Array<const Figures::Candidate*> joints;  ///< by colour, type and body
-    Array<BodyRow> bodies;                    ///< in the order in which the joints name them
-    Array<std::uint32_t> signatures;          ///< the shapes, in numbers: members with equal ones are copies
+    Array<const JointCandidate*> joints;  ///< by colour, type and body
+    Array<BodyRow> bodies;                ///< in the order in which the joints name them
+    Array<std::uint32_t> signatures;      ///< the shapes, in numbers: members with equal ones are copies
     Array<std::size_t> first_joint{0}, first_body{0}, first_number{0};
     Array<std::uint8_t>
         is_refused;  ///< light_between_heavy() has found a body, so its locks are not solved exactly
 
     [[nodiscard]] std::size_t count() const { return first_joint.size() - 1; }
-    [[nodiscard]] std::span<const Figures::Candidate* const> joints_of(std::size_t member) const
+    [[nodiscard]] std::span<const JointCandidate* const> joints_of(std::size_t member) const
     {
         return std::span(joints).subspan(first_joint[member], first_joint[member + 1] - first_joint[member]);
     }
@@ -59,11 +58,11 @@ struct Members {
 /// {} if there is none. The mass that its joints see is made of both and keeps too few digits of the light one: the
 /// joints hold, but their impulses do not cancel. Momentum changes by 3e-6 per second at 1 : 1,000 and by 3e-5 at
 /// 1 : 10,000 (light_between_heavy_test.cpp).
-BodyId light_between_heavy(std::span<const Figures::Candidate* const> joints, const BodyStore& bodies)
+BodyId light_between_heavy(std::span<const JointCandidate* const> joints, const BodyStore& bodies)
 {
     constexpr double most_mass_ratio = 2000;
     std::map<std::uint32_t, int> locks_on;  // by slot
-    for (const Figures::Candidate* joint : joints) {
+    for (const JointCandidate* joint : joints) {
         if (joint->equalities == 0) continue;
         for (const BodyRow body : {joint->placement.a, joint->placement.b}) {
             if (!is_rigid(body)) return {};
@@ -108,13 +107,13 @@ class BodyNames {
     std::uint32_t figure_ = 0;
 };
 
-/// Completes the last member: numbers its bodies and writes its signature.
-void close_member(Members& members, BodyNames& names, bool is_refused)
+/// Adds a member whose joints end at `end`: numbers its bodies and writes its signature.
+void add_member(Members& members, std::size_t end, BodyNames& names, bool is_refused)
 {
     const std::size_t first_body = members.bodies.size();
     names.start_figure();
-    for (std::size_t i = members.first_joint.back(); i < members.joints.size(); ++i) {
-        const Figures::Candidate& joint = *members.joints[i];
+    for (std::size_t i = members.first_joint.back(); i < end; ++i) {
+        const JointCandidate& joint = *members.joints[i];
         const Placement& p = joint.placement;
         members.signatures.push_back(p.colour | std::uint32_t{p.type} << 8 |
                                      static_cast<std::uint32_t>(p.a.kind()) << 16 |
@@ -126,7 +125,7 @@ void close_member(Members& members, BodyNames& names, bool is_refused)
     }
     members.signatures.push_back(is_refused ? 1 : 0);
     members.is_refused.push_back(is_refused ? 1 : 0);
-    members.first_joint.push_back(members.joints.size());
+    members.first_joint.push_back(end);
     members.first_body.push_back(members.bodies.size());
     members.first_number.push_back(members.signatures.size());
 }
@@ -135,7 +134,7 @@ std::unique_ptr<FigureShape> shape_of(const Members& members, std::size_t member
 {
     auto shape = std::make_unique<FigureShape>();
     for (const BodyRow body : members.bodies_of(member)) shape->bodies.push_back(body.kind());
-    const std::span<const Figures::Candidate* const> joints = members.joints_of(member);
+    const std::span<const JointCandidate* const> joints = members.joints_of(member);
     const std::span<const std::uint32_t> signature = members.signature_of(member);
     for (std::size_t i = 0; i < joints.size(); ++i) {
         const Placement& p = joints[i]->placement;
@@ -153,95 +152,85 @@ bool can_be_in_lanes(const Placement& joint, const KernelTable& kernels)
            kernels.constraints[class_of(joint.type, joint.a.kind(), joint.b.kind())].solve_copies != nullptr;
 }
 
-/// The root of a joint that cannot be in a figure.
-constexpr std::int32_t no_root = -1;
-
-/// A joint of the component whose first rigid row is `root`. No two joints of a colour share a moving body, so
-/// sorting by `order` gives the same sequence in every copy, whatever was added and removed before: the slots of a
-/// figure's bodies are in the order in which these were added.
-struct JointOfComponent {
-    std::int32_t root;
-    std::uint64_t order;  ///< colour, type, slot of a rigid body
-    const Figures::Candidate* joint;
-};
-
-/// The joints of all components that may be figures and have at most `largest` moving bodies, by component.
-Array<JointOfComponent> joints_by_component(std::span<const Figures::Candidate> joints,
-                                            const BodyStore& bodies, const KernelTable& kernels,
-                                            std::size_t largest)
+/// Sorts the joints of all components that may be figures and have at most `largest` moving bodies, component after
+/// component. Returns where the joints of each end, by its root. No two joints of a colour share a moving body, so those
+/// of a component, by colour, type and slot of a rigid body, are in the same order in every copy, whatever was added
+/// and removed before: the slots of a figure's bodies are in the order in which these were added.
+Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, const BodySets& sets,
+                                       const BodyStore& bodies, const KernelTable& kernels,
+                                       std::size_t largest, Array<const JointCandidate*>& sorted)
 {
     const BodyRows& rigid = bodies.rows(BodyKind::rigid);
-    const std::size_t rigid_rows = rigid.size();
-    DisjointSets components;
-    components.reset(rigid_rows);
-    for (const auto& [joint, equalities, locks_point, active_row] : joints) {
-        if (is_rigid(joint.a) && is_rigid(joint.b))
-            components.tie(static_cast<std::int32_t>(joint.a.row()),
-                           static_cast<std::int32_t>(joint.b.row()));
+    const auto root_of = [&](BodyRow body) { return static_cast<std::size_t>(sets.root(body)); };
+    constexpr std::uint32_t excluded = std::numeric_limits<std::uint32_t>::max();
+    Array<std::uint32_t> members(sets.size(), 0);  // by root
+    for (std::uint32_t row = 0; row < rigid.size(); ++row) ++members[root_of({BodyKind::rigid, row})];
+    for (const JointCandidate& joint : joints) {
+        if (can_be_in_lanes(joint.placement, kernels)) continue;
+        for (const BodyRow body : {joint.placement.a, joint.placement.b})
+            if (is_rigid(body)) members[root_of(body)] = excluded;
     }
-    components.flatten();
-    Array<std::uint32_t> size(rigid_rows, 0);
-    for (std::size_t row = 0; row < rigid_rows; ++row) ++size[static_cast<std::size_t>(components.root(row))];
-    Array<std::uint8_t> excluded(rigid_rows, 0);
-    for (const auto& [joint, equalities, locks_point, active_row] : joints) {
-        if (can_be_in_lanes(joint, kernels)) continue;
-        for (const BodyRow body : {joint.a, joint.b})
-            if (is_rigid(body)) excluded[static_cast<std::size_t>(components.root(body.row()))] = 1;
+    // Joints are counted by colour and by component. Then they are sorted by colour, and from there put into their
+    // components, in which little is left to be sorted.
+    constexpr std::uint32_t no_root = excluded;
+    Array<std::uint32_t> roots(joints.size());  // by joint
+    Array<std::uint32_t> ends(sets.size(), 0);
+    std::array<std::uint32_t, parallel_colours> places{};
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const Placement& joint = joints[i].placement;
+        const std::size_t root =
+            can_be_in_lanes(joint, kernels) ? root_of({BodyKind::rigid, rigid_row_of(joint)}) : 0;
+        const bool fits = can_be_in_lanes(joint, kernels) && members[root] <= largest;
+        roots[i] = fits ? static_cast<std::uint32_t>(root) : no_root;
+        if (!fits) continue;
+        ++ends[root];
+        ++places[joint.colour];
     }
-    // Joints are counted by component, stored one component after another, and sorted in each of them.
-    Array<std::uint32_t> end(rigid_rows + 1, 0);
-    const auto root_of = [&](const Figures::Candidate& joint) {
-        if (!can_be_in_lanes(joint.placement, kernels)) return no_root;
-        const std::int32_t root = components.root(rigid_row_of(joint.placement));
-        const auto i = static_cast<std::size_t>(root);
-        return excluded[i] != 0 || size[i] > largest ? no_root : root;
+    const std::size_t count = std::accumulate(places.begin(), places.end(), std::size_t{0});
+    sorted.resize(count);
+    if (count == 0) return ends;
+    std::exclusive_scan(places.begin(), places.end(), places.begin(), 0U);
+    std::exclusive_scan(ends.begin(), ends.end(), ends.begin(), 0U);
+    Array<std::uint32_t> by_colour(count);
+    for (std::uint32_t i = 0; i < joints.size(); ++i)
+        if (roots[i] != no_root) by_colour[places[joints[i].placement.colour]++] = i;
+    for (const std::uint32_t i : by_colour) sorted[ends[roots[i]]++] = &joints[i];
+    const auto order_of = [&](const JointCandidate* joint) {
+        const Placement& p = joint->placement;
+        return std::uint64_t{p.colour} << 40 | std::uint64_t{p.type} << 32 | rigid.slot[rigid_row_of(p)];
     };
-    for (const Figures::Candidate& joint : joints) {
-        const std::int32_t root = root_of(joint);
-        if (root != no_root) ++end[static_cast<std::size_t>(root)];
+    auto begin = sorted.begin();
+    for (const std::uint32_t end : ends) {
+        const auto own_end = sorted.begin() + static_cast<std::ptrdiff_t>(end);
+        std::sort(begin, own_end, [&](const JointCandidate* x, const JointCandidate* y) {
+            return order_of(x) < order_of(y);
+        });
+        begin = own_end;
     }
-    std::exclusive_scan(end.begin(), end.end(), end.begin(), 0U);
-    Array<JointOfComponent> found(end.back());
-    for (const Figures::Candidate& joint : joints) {
-        const std::int32_t root = root_of(joint);
-        if (root == no_root) continue;
-        const Placement& p = joint.placement;
-        found[end[static_cast<std::size_t>(root)]++] = {
-            root, std::uint64_t{p.colour} << 40 | std::uint64_t{p.type} << 32 | rigid.slot[rigid_row_of(p)],
-            &joint};
-    }
-    for (std::size_t root = 0; root < rigid_rows; ++root) {
-        const std::size_t begin = root == 0 ? 0 : end[root - 1];
-        std::sort(found.begin() + static_cast<std::ptrdiff_t>(begin),
-                  found.begin() + static_cast<std::ptrdiff_t>(end[root]),
-                  [](const JointOfComponent& x, const JointOfComponent& y) { return x.order < y.order; });
-    }
-    return found;
+    return ends;
 }
 
-Members members_of(std::span<const Figures::Candidate> joints, const BodyStore& bodies,
+Members members_of(std::span<const JointCandidate> joints, const BodySets& sets, const BodyStore& bodies,
                    const KernelTable& kernels, bool exact, Figures::Refused& refused)
 {
-    const Array<JointOfComponent> found = joints_by_component(
-        joints, bodies, kernels, exact ? bodies.rows(BodyKind::rigid).size() : most_bodies);
     Members members;
-    members.joints.reserve(found.size());
-    members.signatures.reserve(4 * found.size());
-    members.bodies.reserve(2 * found.size());
+    const Array<std::uint32_t> ends =
+        sort_by_component(joints, sets, bodies, kernels,
+                          exact ? bodies.rows(BodyKind::rigid).size() : most_bodies, members.joints);
+    members.signatures.reserve(4 * members.joints.size());
+    members.bodies.reserve(2 * members.joints.size());
     BodyNames names(bodies);
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        members.joints.push_back(found[i].joint);
-        if (i + 1 < found.size() && found[i + 1].root == found[i].root) continue;
-        const auto own =
-            std::span<const Figures::Candidate* const>(members.joints).subspan(members.first_joint.back());
+    for (const std::uint32_t end : ends) {
+        const std::size_t begin = members.first_joint.back();
+        if (begin == end) continue;
+        const auto own = std::span<const JointCandidate* const>(members.joints).subspan(begin, end - begin);
         const BodyId light = exact ? light_between_heavy(own, bodies) : BodyId{};
         if (light != BodyId{}) {
-            refused.joints += std::count_if(own.begin(), own.end(), [](const Figures::Candidate* joint) {
-                return joint->equalities > 0;
-            });
+            refused.joints += std::count_if(
+                own.begin(), own.end(), [](const JointCandidate* joint) { return joint->equalities > 0; });
             refused.light_body = light;
         }
-        close_member(members, names, light != BodyId{});
+        add_member(members, end, names, light != BodyId{});
     }
     return members;
 }
@@ -278,8 +267,8 @@ Placement gap_beside(Placement placement)
 
 }  // namespace
 
-void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, const KernelTable& kernels,
-                   bool exact, Array<Placement>& placed)
+void Figures::find(std::span<const JointCandidate> joints, const BodySets& sets, const BodyStore& bodies,
+                   const KernelTable& kernels, bool exact, Array<Placement>& placed)
 {
     const std::size_t rigid_rows = bodies.rows(BodyKind::rigid).size();
     refused_ = {};
@@ -287,7 +276,7 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
     blocks_.clear();
     lone_.clear();
     touched_trees_.clear();
-    const Members members = members_of(joints, bodies, kernels, exact, refused_);
+    const Members members = members_of(joints, sets, bodies, kernels, exact, refused_);
     const Array<std::size_t> order = sorted_by_signature(members);
 
     placed.clear();
@@ -350,7 +339,7 @@ void Figures::find(std::span<const Candidate> joints, const BodyStore& bodies, c
         }
         first_offset += block.shape->bodies.size() * block_lanes;
     }
-    for (const Candidate& joint : joints) {
+    for (const JointCandidate& joint : joints) {
         if (!can_be_in_lanes(joint.placement, kernels) || block_of_row_[rigid_row_of(joint.placement)] < 0)
             placed.push_back(joint.placement);
     }

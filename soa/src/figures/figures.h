@@ -7,27 +7,19 @@
 #include <span>
 
 #include "figures/figure.h"
-#include "layout/batches.h"
-#include "maths/equality_row.h"
+#include "layout/joint_intake.h"
 #include "stores/array.h"
 
 namespace motley {
 
 class Figures {
   public:
-    /// A joint as it comes from its store, with a colour.
-    struct Candidate {
-        Placement placement;
-        int equalities;    ///< rows that may be solved exactly, or 0
-        bool locks_point;  ///< the first three of them hold a point on a point
-        ActiveRow active_row = ActiveRow::none;
-    };
     /// Sorts the joints into `placed`. Those of figures come first, sixteen consecutive copies of each joint, with
     /// gaps where a block has fewer copies, so that each joint of a block of copies has a block of its own. The rest
     /// follow in their old order. `exact`: the locks of figures are solved by trees, however few copies there are,
-    /// except for the locks that refused() counts.
-    void find(std::span<const Candidate> joints, const BodyStore& bodies, const KernelTable& kernels,
-              bool exact, Array<Placement>& placed);
+    /// except for the locks that refused() counts. `sets`: what the joints connect.
+    void find(std::span<const JointCandidate> joints, const BodySets& sets, const BodyStore& bodies,
+              const KernelTable& kernels, bool exact, Array<Placement>& placed);
     /// Locks that are not solved exactly, because their figure has no fixed body and has a body too light for the
     /// other bodies; see StepReport::exact_joints_refused.
     struct Refused {

@@ -19,48 +19,38 @@ std::size_t row_offset(BodyRow body)
 
 }  // namespace
 
-void FreeGroups::find(std::span<const Tie> ties, const BodyStore& bodies)
+void FreeGroups::find(const JointIntake& intake)
 {
-    sets_.reset([&](BodyKind kind) { return bodies.rows(kind).size(); });
-    for (const Tie& tie : ties) sets_.tie(tie.a, tie.b);
-    sets_.flatten();
-
-    // Groups are numbered in the order of their first tie; then their members are counted, and stored group by group.
+    const BodySets& sets = intake.sets();
+    // Groups are numbered in the order of their first bodies; then their members are counted, and stored group by group.
     constexpr std::int32_t none = -1, held = -2;
-    Array<std::int32_t> group_of_root(sets_.size(), none);
+    group_of_root_.assign(sets.size(), none);
     const auto group_of = [&](BodyRow body) -> std::int32_t& {
-        return group_of_root[static_cast<std::size_t>(sets_.root(body))];
+        return group_of_root_[static_cast<std::size_t>(sets.root(body))];
     };
-    for (const Tie& tie : ties) {
-        if (tie.locks_place && is_fixed(tie.a) != is_fixed(tie.b))
-            group_of(is_fixed(tie.a) ? tie.b : tie.a) = held;
+    for (const JointCandidate& joint : intake.joints()) {
+        const BodyRow a = joint.placement.a, b = joint.placement.b;
+        if (joint.locks_place && is_fixed(a) != is_fixed(b)) group_of(is_fixed(a) ? b : a) = held;
     }
-    Array<std::uint8_t> is_listed(sets_.size());
-    const auto for_each_member = [&](const auto& work) {
-        is_listed.assign(sets_.size(), 0);
-        for (const Tie& tie : ties) {
-            for (const BodyRow body : {tie.a, tie.b}) {
-                if (is_fixed(body) || group_of(body) == held) continue;
-                if (std::exchange(is_listed[sets_.number(body)], std::uint8_t{1}) == 0) work(body);
-            }
-        }
-    };
     end_of_members_.clear();
-    for_each_member([&](BodyRow body) {
+    for (const BodyRow body : intake.bodies()) {
         std::int32_t& group = group_of(body);
+        if (group == held) continue;
         if (group == none) {
             group = static_cast<std::int32_t>(end_of_members_.size());
             end_of_members_.push_back(0);
         }
         ++end_of_members_[static_cast<std::size_t>(group)];
-    });
+    }
     std::uint32_t members = 0;
     for (std::uint32_t& end : end_of_members_)
         members += std::exchange(end, members);  // where the group begins, until its members are stored
     members_.resize(members);
     start_momenta_.resize(end_of_members_.size());
-    for_each_member(
-        [&](BodyRow body) { members_[end_of_members_[static_cast<std::size_t>(group_of(body))]++] = body; });
+    for (const BodyRow body : intake.bodies()) {
+        const std::int32_t group = group_of(body);
+        if (group != held) members_[end_of_members_[static_cast<std::size_t>(group)]++] = body;
+    }
 }
 
 std::span<const BodyRow> FreeGroups::members(std::int64_t group) const

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "layout/block.h"
-#include "layout/body_sets.h"
+#include "layout/joint_intake.h"
 #include "stores/array.h"
 #include "stores/body_store.h"
 
@@ -13,14 +13,8 @@ namespace motley {
 
 class FreeGroups {
   public:
-    /// A joint between two bodies.
-    struct Tie {
-        BodyRow a, b;
-        /// If one body is fixed, the joint keeps the other from moving along some direction.
-        bool locks_place;
-    };
     /// Finds the groups of a scene, except those that a lock ties to a fixed body.
-    void find(std::span<const Tie> ties, const BodyStore& bodies);
+    void find(const JointIntake& intake);
     [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(end_of_members_.size()); }
 
     /// At the beginning of a step: stores the momentum of a group.
@@ -39,10 +33,10 @@ class FreeGroups {
         bool is_damped = false;            ///< some body is, so the group does not fly on a parabola
     };
     [[nodiscard]] Sums sums_of(const KernelContext& context, std::int64_t group) const;
+    Array<std::int32_t> group_of_root_;    ///< while groups are found: by root in JointIntake::sets()
     Array<std::uint32_t> end_of_members_;  ///< by group
     Array<BodyRow> members_;               ///< of all groups, one after another
     Array<Vec3<double>> start_momenta_;    ///< by group
-    BodySets sets_;
 };
 
 }  // namespace motley

@@ -18,11 +18,6 @@
 namespace motley {
 namespace {
 
-/// Whether a joint of this type has rows that are made once a step, and not once a substep.
-template <class Type>
-constexpr bool has_start_rows =
-    std::is_empty_v<typename Type::template SubstepRow<float, BodyKind::rigid, BodyKind::rigid>>;
-
 /// Bodies per range: a few microseconds of streaming.
 constexpr std::int32_t rows_per_range = 512;
 
@@ -73,13 +68,12 @@ void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse&
         joint_version_ = scene.joints->version;
     }
     for (std::size_t kind = 0; kind < body_kind_count; ++kind) {
-        // Bodies that were added since the joints changed have no joints.
         const std::size_t rows = scene.bodies.rows(static_cast<BodyKind>(kind)).size();
-        grow_to(is_jointed_[kind], rows);
         grow_to(start_along_[kind], rows);
         if (scene.bodies.damped > 0 && static_cast<BodyKind>(kind) != BodyKind::fixed)
             grow_to(decay_[kind], 4 * static_cast<std::size_t>(quads_of(static_cast<BodyKind>(kind))) * rows);
     }
+    joint_intake_.grow(scene.bodies);
     figures.make_room(contact_count);
     joint_masks_.grow(scene.bodies);
     if (contact_count > 0) masks_ = joint_masks_;
@@ -89,57 +83,16 @@ void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse&
 
 void Layout::place_joints(SceneCore& scene)
 {
-    const BodyStore& bodies = scene.bodies;
-    joint_masks_.reset(bodies);
-    scene.joints->for_each([&](auto& store, int) {
-        for (std::size_t i = 0; i < store.size(); ++i) {
-            if (store.colours[i] == no_colour) continue;
-            joint_masks_.try_take(bodies.row_of(store.definitions[i].body_a),
-                                  bodies.row_of(store.definitions[i].body_b), store.colours[i]);
-        }
-    });
-    candidates_.clear();
-    ties_.clear();
-    scene.joints->for_each([&](auto& store, int type) {
-        using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-        for (std::size_t i = 0; i < store.size(); ++i) {
-            const BodyRow a = bodies.row_of(store.definitions[i].body_a);
-            const BodyRow b = bodies.row_of(store.definitions[i].body_b);
-            if (bodies.is_contained(a) || bodies.is_contained(b)) {
-                store.forget_impulse(i);
-                continue;
-            }
-            if (bodies.is_asleep(a) || bodies.is_asleep(b)) continue;  // it keeps what it bore
-            if (store.colours[i] == no_colour) store.colours[i] = joint_masks_.take_first(a, b);
-            if (has_start_rows<Type>) joint_masks_.note_start_rows(a, b);
-            const int equalities = Type::is_equality(store.definitions[i]) ? Type::equality_count : 0;
-            candidates_.push_back({{a, b, static_cast<std::int32_t>(i),
-                                    static_cast<std::uint8_t>(contact_type_count + type), store.colours[i]},
-                                   equalities,
-                                   Type::locks_point,
-                                   use_.limits_exactly ? Type::active_row : ActiveRow::none});
-            ties_.push_back({a, b, Type::locks_place(store.definitions[i])});
-        }
-    });
-    find_groups(bodies);
-    figures.find(candidates_, bodies, kernels_, use_.exactly, joint_placements_);
+    joint_masks_.reset(scene.bodies);
+    joint_intake_.take(scene, use_.limits_exactly, joint_masks_);
+    groups.find(joint_intake_);
+    figures.find(joint_intake_.joints(), joint_intake_.sets(), scene.bodies, kernels_, use_.exactly,
+                 joint_placements_);
     joints_.begin(joint_placements_, false);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.count(chunk);
     joints_.open(kernels_, true);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.fill(chunk);
     figures.bind(joints_, kernels_);
-}
-
-void Layout::find_groups(const BodyStore& bodies)
-{
-    groups.find(ties_, bodies);
-    for (int kind = 0; kind < body_kind_count; ++kind)
-        is_jointed_[static_cast<std::size_t>(kind)].assign(bodies.rows(static_cast<BodyKind>(kind)).size(),
-                                                           0);
-    for (const FreeGroups::Tie& tie : ties_) {
-        for (const BodyRow body : {tie.a, tie.b})
-            is_jointed_[static_cast<std::size_t>(body.kind())][body.row()] = 1;
-    }
 }
 
 void Layout::colour_contacts(const BodyStore& bodies, ContactCache& cache)
@@ -368,7 +321,7 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
             rows.delta.data(),
             rows.unpushed.data(),
             start_along_[static_cast<std::size_t>(kind)].data(),
-            is_jointed_[static_cast<std::size_t>(kind)].data(),
+            joint_intake_.is_jointed(static_cast<BodyKind>(kind)),
             static_cast<BodyKind>(kind) == BodyKind::rigid ? joint_masks_.of(BodyKind::rigid) : nullptr,
             &turned_far_,
             rows.acceleration.data(),

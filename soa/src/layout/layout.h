@@ -13,6 +13,7 @@
 #include "layout/batches.h"
 #include "layout/contact_intake.h"
 #include "layout/free_groups.h"
+#include "layout/joint_intake.h"
 #include "motley/core/step_report.h"
 #include "scene/scene_core.h"
 #include "stores/array.h"
@@ -115,6 +116,7 @@ class Layout {
   private:
     const KernelTable& kernels_;
     BatchSet joints_{contact_type_count, constraint_type_count};
+    JointIntake joint_intake_;
     Array<Placement> joint_placements_;
     Array<std::uint32_t> uncoloured_;
     std::shared_ptr<const char> joint_version_;
@@ -126,9 +128,6 @@ class Layout {
         friend bool operator==(const Cut&, const Cut&) = default;
     };
     std::optional<Cut> cut_;  ///< what sweeps_ and transfers_ were cut for; empty if they must be cut again
-    Array<Figures::Candidate> candidates_;
-    Array<FreeGroups::Tie> ties_;
-    std::array<Array<std::uint8_t>, body_kind_count> is_jointed_;    ///< by kind and row
     std::array<AlignedVector<float>, body_kind_count> start_along_;  ///< see Flight
     std::array<AlignedVector<float>, body_kind_count> decay_;        ///< see BodyArrays
     std::atomic<bool> overloaded_ = false, turned_far_ = false;
@@ -144,7 +143,6 @@ class Layout {
 
     void place_joints(SceneCore& scene);
     void keep_impulses(ContactCache& cache, std::uint32_t i);
-    void find_groups(const BodyStore& bodies);
     bool find_decay(const BodyStore& bodies, BodyKind kind, float h);
     bool note_awake(const BodyStore& bodies);
     void list_rows(const SceneCore& scene);
