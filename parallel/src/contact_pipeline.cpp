@@ -58,7 +58,7 @@ void ContactPipeline::sort_into_blocks(bool adds_up)
 {
     BatchSet& contacts = layout_.contacts;
     runner_.run(contacts.chunk_count(), [&](std::int64_t chunk) { layout_.count_contacts(chunk); });
-    contacts.open(layout_.kernels(), adds_up);
+    contacts.open(layout_.kernels(), adds_up, false);
     runner_.run(contacts.chunk_count(), [&](std::int64_t chunk) { contacts.fill(chunk); });
 }
 

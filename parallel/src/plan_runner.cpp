@@ -261,8 +261,8 @@ void PlanRunner::move_bodies(const Step& step)
     if (step.report.bodies_contained == 0) return;
     step.report.first_contained = scene.bodies.id_of_slot(first_slot);
     scene.bodies.contained_count += static_cast<std::size_t>(step.report.bodies_contained);
-    scene.joints->version.reset();  // joints of contained bodies are left out from now on
-    scene.discs.is_stale = true;    // and so are their discs
+    scene.joints->change_altogether();  // joints of contained bodies are left out from now on
+    scene.discs.is_stale = true;        // and so are their discs
     scene.wake_contained();
 }
 

@@ -58,6 +58,9 @@ TEST(KeptLayout, GoesOnAsASolverThatHasNeverSeenTheScene)
         const char* what;
         std::function<void(Chains&, SolverSettings&)> change;
         enum { nobody, somebody, the_ground } touches = nobody;
+        /// Where the layout follows the change: a block keeps 15 chains. A new layout has blocks of 16 and no block of
+        /// fewer than 8.
+        int chains_in_lockstep = -1;
     };
     const auto nothing = [](Chains&, SolverSettings&) {};
     const std::vector<Turn> turns = {
@@ -89,7 +92,8 @@ TEST(KeptLayout, GoesOnAsASolverThatHasNeverSeenTheScene)
              c.scene.remove_body(c.loose.back());
              c.loose.pop_back();
          }},
-        {"a link goes, and its joints", [](Chains& c, SolverSettings&) { c.scene.remove_body(c.links[4]); }},
+        {"a link goes, and its joints", [](Chains& c, SolverSettings&) { c.scene.remove_body(c.links[4]); },
+         Turn::nobody, Chains::count - 1},
         {"a joint comes",
          [](Chains& c, SolverSettings&) {
              c.scene.add_joint(
@@ -128,8 +132,12 @@ TEST(KeptLayout, GoesOnAsASolverThatHasNeverSeenTheScene)
             const StepReport expected = new_solver.step(seen_anew.scene, dt, contacts);
             ASSERT_EQ(report.status, StepStatus::done) << report.error;
             EXPECT_EQ(report.joints, expected.joints);
-            EXPECT_EQ(report.joints_in_lockstep, expected.joints_in_lockstep);
-            EXPECT_EQ(report.blocks, expected.blocks);
+            if (turn.chains_in_lockstep >= 0 && step < 2) {
+                EXPECT_EQ(report.joints_in_lockstep, 3 * turn.chains_in_lockstep);
+            } else {
+                EXPECT_EQ(report.joints_in_lockstep, expected.joints_in_lockstep);
+                EXPECT_EQ(report.blocks, expected.blocks);
+            }
             EXPECT_EQ(report.measures.residual_norm, expected.measures.residual_norm);
             ASSERT_EQ(kept.scene.state_hash(), seen_anew.scene.state_hash()) << "step " << step;
         }

@@ -167,7 +167,7 @@ Laid check_blocks(const Bodies& bodies, const Edges& edges, std::size_t sent_to_
     set.begin(placements, false);
     laid.chunks = set.chunk_count();
     for_chunks(laid.chunks, [&](std::int64_t chunk) { set.count(chunk); });
-    set.open(kernels, false);
+    set.open(kernels, false, false);
     for_chunks(laid.chunks, [&](std::int64_t chunk) { set.fill(chunk); });
     SweepLists sweeps;
     TransferList transfers;

@@ -13,7 +13,7 @@ namespace motley {
 namespace {
 
 /// Checks that no two constraints of one colour share a body that can move. Returns the number of constraints.
-std::size_t check_colours(const Layout& layout)
+std::size_t check_colours(Layout& layout)
 {
     std::set<std::pair<int, std::uint64_t>> taken;  // colour, and kind and row of a body
     std::set<std::pair<int, std::int32_t>> seen;    // type, and constraint
@@ -36,7 +36,7 @@ std::size_t check_colours(const Layout& layout)
 }
 
 /// Checks that each constraint is in one lane of the blocks. Returns the number of constraints.
-std::size_t check_blocks(const Layout& layout)
+std::size_t check_blocks(Layout& layout)
 {
     std::set<std::pair<int, std::int32_t>> seen;
     testing::for_each_lane(layout.sweeps(), [&](const SweepChunk& chunk, std::int32_t block, int lane) {

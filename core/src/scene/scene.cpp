@@ -75,7 +75,7 @@ void Scene::remove_bodies(std::span<const BodyId> bodies)
 void Scene::renumber_bodies()
 {
     core_->renumber_rows();
-    core_->joints->version.reset();  // blocks refer to rows
+    core_->joints->change_altogether();  // blocks refer to rows
 }
 
 bool Scene::is_alive(BodyId body) const

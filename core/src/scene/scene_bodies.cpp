@@ -45,7 +45,7 @@ void Scene::set_mass(BodyId body, float mass, const Sym3<float>& inertia)
     // Contacts of discs keep their effective mass from search to search.
     if (core_->has_disc(body)) core_->discs.is_stale = true;
     // Which joints are solved at once depends on the ratio of the masses that they connect.
-    if (core_->bodies.first_ends[body.slot] != 0) core_->joints->version.reset();
+    if (core_->bodies.first_ends[body.slot] != 0) core_->joints->change_altogether();
 }
 
 void Scene::set_damping(BodyId body, float linear, float angular)
@@ -95,7 +95,7 @@ void Scene::change_body(BodyId body, const BodyChange& change)
     // What is met as seen from above may be met in space now.
     if (core_->shapes.has_capsule(body)) core_->shapes.version.reset();
     // Blocks of joints refer to rows and are for pairs of kinds.
-    if (core_->bodies.first_ends[body.slot] != 0) core_->joints->version.reset();
+    if (core_->bodies.first_ends[body.slot] != 0) core_->joints->change_altogether();
 }
 
 }  // namespace motley

@@ -209,7 +209,7 @@ void SceneCore::sort_disc_rows()
         std::swap(discs.found_at[i], discs.found_at[j]);
     });
     joints->for_each([&](const auto& store, int) {
-        if (store.size() > 0) joints->version.reset();  // their blocks refer to rows
+        if (store.size() > 0) joints->change_altogether();  // their blocks refer to rows
     });
 }
 

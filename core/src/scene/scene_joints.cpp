@@ -116,9 +116,11 @@ void SceneCore::remove_joint_at(int type, std::size_t index)
         joints->unlink(2 * slot, bodies.first_ends[store.definitions[index].body_a.slot]);
         joints->unlink(2 * slot + 1, bodies.first_ends[store.definitions[index].body_b.slot]);
         store.swap_remove(index);
-        if (index < store.size()) joints->slots[store.slots[index]].index = static_cast<std::uint32_t>(index);
+        joints->change(slot);
+        if (index == store.size()) return;
+        joints->slots[store.slots[index]].index = static_cast<std::uint32_t>(index);
+        joints->change(store.slots[index]);
     });
-    joints->version.reset();
 }
 
 void Scene::remove_joint(ConstraintId joint)
@@ -281,7 +283,7 @@ ConstraintId Scene::add_joint(const Definition& definition)
     core_->wake_island(definition.body_b.slot);
     core_->joints->link(2 * id.slot, core_->bodies.first_ends[definition.body_a.slot]);
     core_->joints->link(2 * id.slot + 1, core_->bodies.first_ends[definition.body_b.slot]);
-    core_->joints->version.reset();
+    core_->joints->change(id.slot);
     return id;
 }
 
@@ -299,7 +301,7 @@ void Scene::set_joint(ConstraintId joint, const Definition& definition)
     core_->wake_island(definition.body_a.slot);
     core_->wake_island(definition.body_b.slot);
     // Locks and other joints are laid out differently.
-    if (Type::is_equality(definition) != Type::is_equality(now)) core_->joints->version.reset();
+    if (Type::is_equality(definition) != Type::is_equality(now)) core_->joints->change_altogether();
     store.define(index, definition);
 }
 

@@ -34,7 +34,7 @@ void SceneCore::sleepers_changed()
 {
     discs.is_divided = false;
     joints->for_each([&](const auto& store, int) {
-        if (store.size() > 0) joints->version.reset();
+        if (store.size() > 0) joints->change_altogether();
     });
 }
 

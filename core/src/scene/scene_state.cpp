@@ -188,7 +188,7 @@ void Scene::revive(BodyId body, const Vec3<double>& position, const Vec3<float>&
     check_position("revive.position", position);
     core_->check_velocity(body, &linear, nullptr);
     core_->bodies.revive(body);
-    core_->joints->version.reset();
+    core_->joints->change_altogether();
     core_->bodies.rows(core_->bodies.row_of(body).kind()).pose[core_->bodies.row_of(body).row()].position =
         convert<PoseReal>(position);
     core_->write_velocity(body, &linear, nullptr);

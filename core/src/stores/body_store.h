@@ -40,6 +40,7 @@ struct BodyRow {
     BodyRow(BodyKind kind, std::uint32_t row) : bits(static_cast<std::uint32_t>(kind) << 30 | row) {}
     [[nodiscard]] BodyKind kind() const { return static_cast<BodyKind>(bits >> 30); }
     [[nodiscard]] std::uint32_t row() const { return bits & 0x3FFFFFFFU; }
+    friend bool operator==(const BodyRow&, const BodyRow&) = default;
 };
 
 /// Whether a body sleeps: see scene/sleep.h.

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 #include <tuple>
+#include <utility>
 
 #include "contract/constraint_type.h"
 #include "contract/constraint_types.h"
@@ -146,6 +147,33 @@ struct JointStores {
     /// Token of this set of joints: null after a change, made by the next step, shared by copies of the scene.
     /// A layout that holds the same token was made from the same joints.
     std::shared_ptr<const char> version;
+    /// What has changed since the set had the token `since`, so that a layout that holds it need not start over: the slots
+    /// of joints that came, went or moved in their store, in any order, some of them twice.
+    struct Changes {
+        std::shared_ptr<const char> since;  ///< null when a list of joints would not do, or would be too long
+        Array<std::uint32_t> slots;
+    } changes;
+    /// The joint in this slot has come, gone or moved. Does not allocate.
+    void change(std::uint32_t slot)
+    {
+        if (version) changes.since = std::exchange(version, nullptr);
+        if (changes.slots.size() == changes.slots.capacity()) changes.since.reset();
+        if (changes.since) changes.slots.push_back(slot);
+    }
+    /// The rows of bodies, or which joints are solved, have changed, or too many joints.
+    void change_altogether()
+    {
+        version.reset();
+        changes.since.reset();
+    }
+    /// Gives the set a token, and room to note as many changes as it pays to follow one by one.
+    void close_changes()
+    {
+        changes.since.reset();
+        changes.slots.clear();
+        changes.slots.reserve(64 + slots.size() / 16);
+        if (!version) version = std::make_shared<const char>('\0');
+    }
 
     /// Reserves room to give out one more handle and to take it back, so that neither can fail.
     void make_room()

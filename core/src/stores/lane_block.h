@@ -23,6 +23,11 @@ inline std::int32_t offset_of(BodyRow row)
     return static_cast<std::int32_t>(row.row()) * offsets_a_row(row.kind());
 }
 
+inline BodyRow row_at(BodyKind kind, std::int32_t offset)
+{
+    return {kind, static_cast<std::uint32_t>(offset / offsets_a_row(kind))};
+}
+
 /// The bodies of a block. Lanes from the block's count on are padding: their bodies are the null rows, and they are
 /// never stored.
 struct alignas(64) BlockBodies {

@@ -105,8 +105,9 @@ struct FigureShape {
         bool in_tree = false;
     };
     Array<BodyKind> bodies;
-    Array<Joint> joints;      ///< by colour
-    Array<FigureNode> nodes;  ///< children before parents; empty unless locks are solved exactly
+    Array<Joint> joints;             ///< by colour
+    Array<std::uint32_t> signature;  ///< these in numbers: figures with equal ones are copies
+    Array<FigureNode> nodes;         ///< children before parents; empty unless locks are solved exactly
     Array<JointAtPoint> joints_at_points;
     bool has_actives = false;    ///< a node has limits or motors
     std::int64_t exceeding = 0;  ///< with them: in which copies a motor has pushed harder than it may, one

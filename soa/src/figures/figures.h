@@ -6,14 +6,24 @@
 #include <memory>
 #include <span>
 
+#include "figures/body_names.h"
 #include "figures/figure.h"
 #include "layout/joint_intake.h"
 #include "stores/array.h"
 
 namespace motley {
 
+class JointLanes;
+
 class Figures {
   public:
+    static constexpr std::int32_t none = -1;
+    /// The most moving bodies of a figure without a tree: their lanes, with those of its joints, still fit a second level
+    /// cache.
+    static constexpr std::size_t most_bodies = 64;
+    /// A block with fewer copies than this is swept faster by colour, with all other joints. A constant, so that blocks
+    /// do not depend on the instruction set.
+    static constexpr int fewest_copies = 8;
     /// Sorts the joints into `placed`. Those of figures come first, sixteen consecutive copies of each joint, with
     /// gaps where a block has fewer copies, so that each joint of a block of copies has a block of its own. The rest
     /// follow in their old order. `exact`: the locks of figures are solved by trees, however few copies there are,
@@ -30,13 +40,38 @@ class Figures {
     /// After `placed` has been filled into its blocks: looks up the blocks of the joints.
     void bind(BatchSet& batches, const KernelTable& kernels);
 
+    /// When a few joints come or go (see JointLanes). No tree may be involved.
+    /// A copy in its block, or {none} for a body of no figure.
+    struct Copy {
+        std::int32_t block = none, lane = 0;
+    };
+    [[nodiscard]] Copy copy_of(BodyRow body) const
+    {
+        const std::int32_t block = body.kind() == BodyKind::rigid ? block_of(body.row()) : none;
+        return block == none ? Copy{} : Copy{block, place_of_row_[body.row()] % block_lanes};
+    }
+    /// Takes a copy out of its block: its joints are swept by colour from now on. Returns false when there is no room for
+    /// them; then all must be laid out anew.
+    [[nodiscard]] bool take_apart(const Copy& copy, JointLanes& lanes);
+    /// A component that is swept by colour becomes a copy in a block of its shape, if there is one with a free lane: in the
+    /// one with the fewest copies.
+    /// Returns false when there has been none for as many copies of a shape as are worth a block, or for many shapes; then
+    /// all should be laid out anew.
+    [[nodiscard]] bool put_together(std::span<const JointCandidate> component, const BodyStore& bodies,
+                                    const KernelTable& kernels, JointLanes& lanes);
+    /// Whether no block has too few copies left to be worth it.
+    [[nodiscard]] bool are_worth_it() const
+    {
+        return std::all_of(blocks_.begin(), blocks_.end(),
+                           [](const FigureBlock& block) { return block.count >= fewest_copies; });
+    }
+
     /// Makes room for as many contacts in a step.
     void make_room(std::size_t contacts);
     /// Finds the blocks that are alone in a step, so that they are solved on their own: their bodies touch nothing but
     /// fixed bodies. Takes these contacts (Placement::in_figure). Returns whether other blocks are alone than in the
     /// last step. Does not allocate.
     bool take_contacts(std::span<Placement> contacts, bool may_be_alone);
-    static constexpr std::int32_t none = -1;
     /// The block of the figure that touches a fixed body in this contact; else none.
     [[nodiscard]] std::int32_t stands_on(const Placement& contact) const
     {
@@ -72,6 +107,13 @@ class Figures {
 
   private:
     Refused refused_;
+    BodyNames names_;
+    struct Waiting {
+        std::uint64_t shape;  ///< hash of the signature
+        std::size_t times;
+    };
+    Array<Waiting> waiting_;  ///< shapes that put_together() has found no lane for, since find()
+    static constexpr std::size_t most_waiting = 64;  ///< so many that a search takes as long as the rest
     Array<std::unique_ptr<FigureShape>> shapes_;
     Array<FigureBlock> blocks_;
     Array<Array<FigureBlock::Joint>> joints_;  ///< of each block
@@ -93,6 +135,8 @@ class Figures {
     std::int64_t lone_joints_ = 0;
 
     void list_lone_blocks();
+    [[nodiscard]] BatchSet::Lane lane_of(const Copy& copy, std::size_t joint) const;
+    void place(const Copy& copy, std::size_t body, BodyRow row);
 };
 
 }  // namespace motley

@@ -33,6 +33,16 @@ void BatchSet::Pool::make_room(std::int32_t blocks)
     grow_to(skipped, static_cast<std::size_t>(blocks));
 }
 
+/// Blocks behind those that the constraints of a colour fill.
+void BatchSet::Pool::set_spare_aside()
+{
+    for (std::size_t colour = 0; colour < parallel_colours; ++colour) {
+        const auto used = first_block[colour] + (constraints[colour] + block_lanes - 1) / block_lanes;
+        std::fill(counts.begin() + used, counts.begin() + first_block[colour + 1], std::uint8_t{0});
+        std::fill(skipped.begin() + used, skipped.begin() + first_block[colour + 1], skip_altogether);
+    }
+}
+
 /// Makes lanes [first, 16) padding: the null bodies, and the parameters of a real constraint, so that no lane ever
 /// computes with a zero normal.
 void BatchSet::Pool::pad(std::size_t block, int first, std::int32_t constraint)
@@ -134,7 +144,7 @@ std::array<std::int32_t, BatchSet::colours> BatchSet::add_up(std::size_t p)
     return totals;
 }
 
-void BatchSet::open(const KernelTable& kernels, bool adds_up)
+void BatchSet::open(const KernelTable& kernels, bool adds_up, bool spare)
 {
     adds_up_ = adds_up;
     used_.clear();
@@ -150,11 +160,13 @@ void BatchSet::open(const KernelTable& kernels, bool adds_up)
             pool.constraints[colour] = totals[colour];
             pool.first_block[colour] = blocks;
             blocks += (totals[colour] + block_lanes - 1) / block_lanes;
+            if (spare && totals[colour] > 0) blocks += 1 + totals[colour] / (16 * block_lanes);
         }
         pool.overflow = totals[overflow_colour];
         pool.first_block[overflow_colour] = pool.first_block[colours] = blocks;
         has_overflow = has_overflow || pool.overflow > 0;
         pool.make_room(blocks);
+        if (spare) pool.set_spare_aside();
     }
     if (has_overflow) place_overflow();
     for (const std::size_t p : used_) {
@@ -291,7 +303,7 @@ SweepChunk BatchSet::sweep_chunk(const KernelTable& table, std::size_t p, std::i
             streams(p, tells_apart),
             begin,
             end,
-            constraint_class / (body_kind_count * body_kind_count),
+            type_of(constraint_class),
             kind_a_of(constraint_class),
             kind_b_of(constraint_class),
             tells_apart ? pool.finished.data() : nullptr,
@@ -303,8 +315,7 @@ TransferTile::Part BatchSet::transfer_part(const KernelTable& table, std::size_t
                                            std::int32_t end)
 {
     const int constraint_class = first_class_ + static_cast<int>(p);
-    return {&table.constraints[constraint_class], streams(p, false),
-            constraint_class / (body_kind_count * body_kind_count), begin, end};
+    return {&table.constraints[constraint_class], streams(p, false), type_of(constraint_class), begin, end};
 }
 
 void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweeps, TransferList& transfers)
@@ -385,14 +396,20 @@ BatchSet::Count BatchSet::count(const KernelTable& table) const
     Count total;
     for (const std::size_t p : used_) {
         const Pool& pool = pools_[p];
-        std::int64_t constraints = 0;
-        for (std::int32_t block = 0; block < pool.all_blocks; ++block)
+        std::int64_t constraints = 0, blocks = 0;
+        for (std::int32_t block = 0; block < pool.all_blocks; ++block) {
             constraints += pool.counts[static_cast<std::size_t>(block)];
-        total.add_blocks(table.constraints[static_cast<std::size_t>(first_class_) + p], pool.all_blocks,
-                         constraints);
+            blocks += pool.counts[static_cast<std::size_t>(block)] > 0 ? 1 : 0;
+        }
+        total.add_blocks(table.constraints[static_cast<std::size_t>(first_class_) + p], blocks, constraints);
         total.overflow += pool.overflow;
     }
     return total;
+}
+
+bool BatchSet::has_overflow() const
+{
+    return std::any_of(used_.begin(), used_.end(), [&](std::size_t p) { return pools_[p].overflow > 0; });
 }
 
 }  // namespace motley

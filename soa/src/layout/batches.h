@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "kernels/kernel_table.h"
@@ -175,8 +176,8 @@ class BatchSet {
     /// Counts the constraints of a chunk. Chunks may run on different threads.
     void count(std::int64_t chunk);
     /// After all chunks are counted: makes space for the blocks, and puts the overflow into its blocks, in order.
-    /// `adds_up`: with space for sums over several substeps.
-    void open(const KernelTable& kernels, bool adds_up);
+    /// `adds_up`: with space for sums over several substeps. `spare`: with blocks for constraints that come later.
+    void open(const KernelTable& kernels, bool adds_up, bool spare);
     /// Puts the constraints of a chunk into their lanes. Chunks may run on different threads, unless there are
     /// padding lanes among them (Placement::is_gap).
     void fill(std::int64_t chunk);
@@ -189,6 +190,43 @@ class BatchSet {
     };
     static constexpr std::uint8_t skip_nothing = 0, skip_sweeps = 1, skip_altogether = 2;
     [[nodiscard]] Block block(int constraint_class, int colour, std::int32_t nth);
+
+    /// A lane of a block without overflow. Once the blocks are filled, constraints may come and go one by one, unless there
+    /// are patches: those of a class and colour that are in no figure have the last lanes of it, without gaps.
+    struct Lane {
+        std::int32_t constraint_class = -1, block = 0;
+        std::uint8_t lane = 0, colour = no_colour;
+        friend bool operator==(const Lane&, const Lane&) = default;
+    };
+    [[nodiscard]] bool has_overflow() const;
+    [[nodiscard]] std::int32_t constraint_in(const Lane& lane) const;
+    [[nodiscard]] Placement placement_in(const Lane& lane) const;
+    /// Says under which index the store has the constraint of a lane now.
+    void name(const Lane& lane, std::int32_t constraint);
+    /// The first lane of a class and colour that is free, for put(); none if there are no spare blocks left.
+    [[nodiscard]] std::optional<Lane> take_free_lane(int constraint_class, std::uint8_t colour);
+    /// The last lane that is not free, for end_block_at(), when what was in it has been put elsewhere.
+    [[nodiscard]] Lane give_last_back(int constraint_class, std::uint8_t colour);
+    /// Puts a constraint into a lane: one in use, or the first lane behind those in use.
+    void put(const Lane& lane, const Placement& placement);
+    /// Makes this lane and those behind it padding.
+    void end_block_at(const Lane& lane);
+    /// Calls visit(class, colour, block, bodies, constraints, lanes in use) for each block without overflow.
+    template <class Visit>
+    void for_each_block(const Visit& visit) const
+    {
+        for (const std::size_t p : used_) {
+            const Pool& pool = pools_[p];
+            for (std::uint8_t colour = 0; colour < parallel_colours; ++colour) {
+                for (std::int32_t block = pool.first_block[colour]; block < pool.first_block[colour + 1U];
+                     ++block) {
+                    const auto b = static_cast<std::size_t>(block);
+                    visit(first_class_ + static_cast<int>(p), colour, block, pool.bodies[b], pool.who[b],
+                          int{pool.counts[b]});
+                }
+            }
+        }
+    }
 
     /// Appends this set's chunks to the lists. `tells_apart`: with space for the residuals, the islands and the
     /// wanted number of sweeps of each block. Pointers in them stay valid until the next begin().
@@ -239,6 +277,7 @@ class BatchSet {
             return skipped[static_cast<std::size_t>(block)];
         }
         void make_room(std::int32_t blocks);
+        void set_spare_aside();
         void set_lane(std::size_t block, int lane, const Placement& placement)
         {
             bodies[block].a[lane] = offset_of(placement.a);
@@ -265,6 +304,15 @@ class BatchSet {
     Array<std::int32_t> patch_places_, patch_blocks_;
     bool has_patches_ = false, adds_up_ = false;
 
+    [[nodiscard]] Pool& pool_of(const Lane& lane)
+    {
+        return pools_[static_cast<std::size_t>(lane.constraint_class - first_class_)];
+    }
+    [[nodiscard]] const Pool& pool_of(const Lane& lane) const
+    {
+        return pools_[static_cast<std::size_t>(lane.constraint_class - first_class_)];
+    }
+    [[nodiscard]] Lane end_of(int constraint_class, std::uint8_t colour) const;
     [[nodiscard]] std::size_t keys() const { return pools_.size() * colours; }
     [[nodiscard]] std::size_t key_of(const Placement& placement) const
     {

@@ -233,6 +233,10 @@ constexpr int class_of(int type, BodyKind a, BodyKind b)
 {
     return (type * body_kind_count + static_cast<int>(a)) * body_kind_count + static_cast<int>(b);
 }
+constexpr int type_of(int constraint_class)
+{
+    return constraint_class / (body_kind_count * body_kind_count);
+}
 constexpr BodyKind kind_a_of(int constraint_class)
 {
     return static_cast<BodyKind>(constraint_class / body_kind_count % body_kind_count);

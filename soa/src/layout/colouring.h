@@ -59,6 +59,7 @@ class ColourMasks {
         note(1U << colour, mask_a, mask_b);
         return static_cast<std::uint8_t>(colour);
     }
+    void set(BodyRow moving, std::uint32_t colours) { *mask(moving) = colours; }
     void note_start_rows(BodyRow a, BodyRow b) { note(start_rows_bit, mask(a), mask(b)); }
     /// A mask a row: 0 where no constraint acts.
     [[nodiscard]] const std::uint32_t* of(BodyKind kind) const

@@ -1,15 +1,15 @@
 // Groups are found when joints change, and used at the beginning and the end of each step.
 #include "layout/free_groups.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "stores/growth.h"
 
 namespace motley {
 namespace {
 
-bool is_fixed(BodyRow body)
-{
-    return body.kind() == BodyKind::fixed;
-}
+constexpr BodyKind moving_kinds[] = {BodyKind::particle, BodyKind::planar, BodyKind::rigid};
 
 /// Where the floats of a body begin.
 std::size_t row_offset(BodyRow body)
@@ -22,42 +22,96 @@ std::size_t row_offset(BodyRow body)
 void FreeGroups::find(const JointIntake& intake)
 {
     const BodySets& sets = intake.sets();
-    // Groups are numbered in the order of their first bodies; then their members are counted, and stored group by group.
-    constexpr std::int32_t none = -1, held = -2;
+    // Groups are numbered in the order of their first bodies; then their members are counted, and stored group by group, by
+    // kind and row.
     group_of_root_.assign(sets.size(), none);
-    const auto group_of = [&](BodyRow body) -> std::int32_t& {
-        return group_of_root_[static_cast<std::size_t>(sets.root(body))];
-    };
-    for (const JointCandidate& joint : intake.joints()) {
-        const BodyRow a = joint.placement.a, b = joint.placement.b;
-        if (joint.locks_place && is_fixed(a) != is_fixed(b)) group_of(is_fixed(a) ? b : a) = held;
-    }
-    end_of_members_.clear();
-    for (const BodyRow body : intake.bodies()) {
-        std::int32_t& group = group_of(body);
-        if (group == held) continue;
-        if (group == none) {
-            group = static_cast<std::int32_t>(end_of_members_.size());
-            end_of_members_.push_back(0);
+    for (const BodyRow body : intake.held()) group_of_root_[static_cast<std::size_t>(sets.root(body))] = held;
+    groups_.clear();
+    in_groups_ = 0;
+    for (const BodyKind kind : moving_kinds) {
+        const std::span<const std::uint8_t> is_jointed = intake.is_jointed(kind);
+        group_of_body_[static_cast<std::size_t>(kind)].assign(is_jointed.size(), none);
+        for (std::uint32_t row = 0; row < is_jointed.size(); ++row) {
+            if (is_jointed[row] == 0) continue;
+            std::int32_t& group = group_of_root_[static_cast<std::size_t>(sets.root({kind, row}))];
+            if (group == held) continue;
+            if (group == none) {
+                group = static_cast<std::int32_t>(groups_.size());
+                groups_.emplace_back();
+            }
+            group_of({kind, row}) = group;
+            ++groups_[static_cast<std::size_t>(group)].end;
+            ++in_groups_;
         }
-        ++end_of_members_[static_cast<std::size_t>(group)];
     }
     std::uint32_t members = 0;
-    for (std::uint32_t& end : end_of_members_)
-        members += std::exchange(end, members);  // where the group begins, until its members are stored
-    members_.resize(members);
-    start_momenta_.resize(end_of_members_.size());
-    for (const BodyRow body : intake.bodies()) {
-        const std::int32_t group = group_of(body);
-        if (group != held) members_[end_of_members_[static_cast<std::size_t>(group)]++] = body;
+    for (Group& group : groups_) {
+        group.begin = members;
+        members += std::exchange(group.end, members);
     }
+    members_.resize(members);
+    start_momenta_.resize(groups_.size());
+    for (const BodyKind kind : moving_kinds) {
+        const Array<std::int32_t>& group_of_row = group_of_body_[static_cast<std::size_t>(kind)];
+        for (std::uint32_t row = 0; row < group_of_row.size(); ++row) {
+            if (group_of_row[row] != none)
+                members_[groups_[static_cast<std::size_t>(group_of_row[row])].end++] = {kind, row};
+        }
+    }
+}
+
+void FreeGroups::dissolve(BodyRow body)
+{
+    Array<std::int32_t>& group_of_row = group_of_body_[static_cast<std::size_t>(body.kind())];
+    if (body.row() >= group_of_row.size() || group_of_row[body.row()] == none) return;
+    const std::int32_t group = group_of_row[body.row()];
+    for (const BodyRow member : members(group)) group_of(member) = none;
+    in_groups_ -= members(group).size();
+    groups_[static_cast<std::size_t>(group)] = groups_.back();
+    groups_.pop_back();
+    // The last one has its number now.
+    if (group < size())
+        for (const BodyRow member : members(group)) group_of(member) = group;
+}
+
+void FreeGroups::add(std::span<BodyRow> members, std::span<const JointCandidate> joints)
+{
+    if (joints.empty() || std::any_of(joints.begin(), joints.end(), [](const JointCandidate& joint) {
+            return joint.holds().kind() != BodyKind::fixed;
+        }))
+        return;
+    std::sort(members.begin(), members.end(), [](BodyRow x, BodyRow y) { return x.bits < y.bits; });
+    if (members_.size() > 2 * in_groups_ + 1024) close_gaps();
+    const auto begin = static_cast<std::uint32_t>(members_.size());
+    members_.insert(members_.end(), members.begin(), members.end());
+    for (const BodyRow member : members) {
+        Array<std::int32_t>& group_of_row = group_of_body_[static_cast<std::size_t>(member.kind())];
+        if (member.row() >= group_of_row.size())
+            group_of_row.resize(with_room_to_grow(member.row() + 1), none);
+        group_of_row[member.row()] = static_cast<std::int32_t>(groups_.size());
+    }
+    groups_.push_back({begin, static_cast<std::uint32_t>(members_.size())});
+    in_groups_ += members.size();
+    start_momenta_.resize(groups_.size());
+}
+
+void FreeGroups::close_gaps()
+{
+    Array<BodyRow> together;
+    together.reserve(in_groups_);
+    for (std::int64_t group = 0; group < size(); ++group) {
+        const std::span<const BodyRow> own = members(group);
+        const auto begin = static_cast<std::uint32_t>(together.size());
+        together.insert(together.end(), own.begin(), own.end());
+        groups_[static_cast<std::size_t>(group)] = {begin, static_cast<std::uint32_t>(together.size())};
+    }
+    members_ = std::move(together);
 }
 
 std::span<const BodyRow> FreeGroups::members(std::int64_t group) const
 {
-    const auto i = static_cast<std::size_t>(group);
-    const std::uint32_t begin = i == 0 ? 0 : end_of_members_[i - 1];
-    return std::span(members_).subspan(begin, end_of_members_[i] - begin);
+    const Group& range = groups_[static_cast<std::size_t>(group)];
+    return std::span(members_).subspan(range.begin, range.end - range.begin);
 }
 
 /// The sums are not finite when a member is not: then land() finds no free flight.

@@ -1,6 +1,7 @@
 // One pass over the stores; then the few joints that are new get their colours.
 #include "layout/joint_intake.h"
 
+#include <numeric>
 #include <utility>
 
 #include "stores/growth.h"
@@ -14,7 +15,50 @@ template <class Type>
 constexpr bool has_start_rows =
     std::is_empty_v<typename Type::template SubstepRow<float, BodyKind::rigid, BodyKind::rigid>>;
 
+template <class Type>
+JointCandidate candidate_of(const JointStore<Type>& store, int type, std::size_t index,
+                            const BodyStore& bodies)
+{
+    const typename Type::Definition& definition = store.definitions[index];
+    return {
+        {bodies.row_of(definition.body_a), bodies.row_of(definition.body_b), static_cast<std::int32_t>(index),
+         static_cast<std::uint8_t>(contact_type_count + type), store.colours[index]},
+        Type::is_equality(definition) ? Type::equality_count : 0,
+        Type::locks_point,
+        Type::active_row,
+        Type::locks_place(definition)};
+}
+
+void forget_impulse(JointStores& stores, int type, std::size_t index)
+{
+    stores.for_each([&](auto& store, int t) {
+        if (t == type) store.forget_impulse(index);
+    });
+}
+
 }  // namespace
+
+JointCandidate JointIntake::candidate(const SceneCore& scene, int type, std::size_t index)
+{
+    using Call = JointCandidate (*)(const JointStores&, std::size_t, const BodyStore&);
+    static constexpr auto calls = []<std::size_t... types>(std::index_sequence<types...>)
+    {
+        return std::array<Call, sizeof...(types)>{
+            [](const JointStores& stores, std::size_t i, const BodyStore& bodies) {
+                return candidate_of(std::get<types>(stores.stores), static_cast<int>(types), i, bodies);
+            }...};
+    }
+    (std::make_index_sequence<JointTypes::size>{});
+    return calls[static_cast<std::size_t>(type)](*scene.joints, index, scene.bodies);
+}
+
+std::uint32_t JointIntake::start_rows_bit_of(std::size_t type)
+{
+    static constexpr auto bits = []<class... Types>(TypeList<Types...>) {
+        return std::array{has_start_rows<Types> ? start_rows_bit : std::uint32_t{}...};
+    }(JointTypes{});
+    return bits[type - contact_type_count];
+}
 
 void JointIntake::grow(const BodyStore& bodies)
 {
@@ -22,11 +66,10 @@ void JointIntake::grow(const BodyStore& bodies)
         grow_to(is_jointed_[static_cast<std::size_t>(kind)], bodies.rows(static_cast<BodyKind>(kind)).size());
 }
 
-void JointIntake::note(BodyRow body)
+void JointIntake::note_held(const JointCandidate& joint)
 {
-    if (body.kind() == BodyKind::fixed) return;
-    std::uint8_t& is_noted = is_jointed_[static_cast<std::size_t>(body.kind())][body.row()];
-    if (std::exchange(is_noted, std::uint8_t{1}) == 0) bodies_.push_back(body);
+    const BodyRow body = joint.holds();
+    if (body.kind() != BodyKind::fixed) held_.push_back(body);
 }
 
 void JointIntake::take(SceneCore& scene, bool limits_exactly, ColourMasks& masks)
@@ -35,39 +78,35 @@ void JointIntake::take(SceneCore& scene, bool limits_exactly, ColourMasks& masks
     for (int kind = 0; kind < body_kind_count; ++kind)
         is_jointed_[static_cast<std::size_t>(kind)].assign(bodies.rows(static_cast<BodyKind>(kind)).size(),
                                                            0);
-    std::size_t count = 0;
-    scene.joints->for_each([&](const auto& store, int) { count += store.size(); });
-    joints_.resize(count);
+    std::array<std::size_t, JointTypes::size> counts{};
+    scene.joints->for_each(
+        [&](const auto& store, int type) { counts[static_cast<std::size_t>(type)] = store.size(); });
+    joints_.resize(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
     uncoloured_.clear();
-    bodies_.clear();
+    held_.clear();
     sets_.reset([&](BodyKind kind) { return bodies.rows(kind).size(); });
     JointCandidate* next = joints_.data();
-    scene.joints->for_each([&](auto& store, int type) {
-        using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-        for (std::size_t i = 0; i < store.size(); ++i) {
-            const typename Type::Definition& definition = store.definitions[i];
-            const BodyRow a = bodies.row_of(definition.body_a), b = bodies.row_of(definition.body_b);
-            if (store.colours[i] != no_colour) masks.try_take(a, b, store.colours[i]);
-            if (bodies.is_contained(a) || bodies.is_contained(b)) {
-                store.forget_impulse(i);
-                continue;
-            }
-            if (bodies.is_asleep(a) || bodies.is_asleep(b)) continue;
-            if (store.colours[i] == no_colour)
-                uncoloured_.push_back(static_cast<std::uint32_t>(next - joints_.data()));
-            if (has_start_rows<Type>) masks.note_start_rows(a, b);
-            note(a);
-            note(b);
-            sets_.tie(a, b);
-            const int equalities = Type::is_equality(definition) ? Type::equality_count : 0;
-            *next++ = {{a, b, static_cast<std::int32_t>(i),
-                        static_cast<std::uint8_t>(contact_type_count + type), store.colours[i]},
-                       equalities,
-                       Type::locks_point,
-                       limits_exactly ? Type::active_row : ActiveRow::none,
-                       Type::locks_place(definition)};
-        }
-    });
+    const auto list = [&](const JointCandidate& joint) {
+        const BodyRow a = joint.placement.a, b = joint.placement.b;
+        const std::uint8_t colour = joint.placement.colour;
+        if (colour != no_colour) masks.try_take(a, b, colour);
+        if (bodies.is_contained(a) || bodies.is_contained(b)) return false;
+        if (bodies.is_asleep(a) || bodies.is_asleep(b)) return true;
+        if (colour == no_colour) uncoloured_.push_back(static_cast<std::uint32_t>(next - joints_.data()));
+        if (start_rows_bit_of(joint.placement.type) != 0) masks.note_start_rows(a, b);
+        note(a, true);
+        note(b, true);
+        sets_.tie(a, b);
+        note_held(joint);
+        *next = joint;
+        if (!limits_exactly) next->active_row = ActiveRow::none;
+        ++next;
+        return true;
+    };
+    for (int type = 0; type < JointTypes::size; ++type) {
+        for (std::size_t i = 0; i < counts[static_cast<std::size_t>(type)]; ++i)
+            if (!list(candidate(scene, type, i))) forget_impulse(*scene.joints, type, i);
+    }
     joints_.resize(static_cast<std::size_t>(next - joints_.data()));
     sets_.flatten();
     colour(*scene.joints, masks);

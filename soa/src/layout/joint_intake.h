@@ -21,6 +21,14 @@ struct JointCandidate {
     ActiveRow active_row = ActiveRow::none;
     /// If one body is fixed, the joint keeps the other from moving along some direction.
     bool locks_place = false;
+    /// The moving body that the joint holds in place, with a fixed one; a fixed one if there is none.
+    [[nodiscard]] BodyRow holds() const
+    {
+        const bool a_is_fixed = placement.a.kind() == BodyKind::fixed;
+        const bool b_is_fixed = placement.b.kind() == BodyKind::fixed;
+        if (!locks_place || a_is_fixed == b_is_fixed) return {BodyKind::fixed, 0};
+        return a_is_fixed ? placement.b : placement.a;
+    }
 };
 
 class JointIntake {
@@ -31,26 +39,34 @@ class JointIntake {
     void take(SceneCore& scene, bool limits_exactly, ColourMasks& masks);
     /// Bodies that were added since have no joints.
     void grow(const BodyStore& bodies);
+    void note(BodyRow body, bool is_jointed)
+    {
+        is_jointed_[static_cast<std::size_t>(body.kind())][body.row()] = is_jointed ? 1 : 0;
+    }
 
     [[nodiscard]] std::span<const JointCandidate> joints() const { return joints_; }
-    /// The moving bodies that have one of these joints, in the order in which the joints name them first.
-    [[nodiscard]] std::span<const BodyRow> bodies() const { return bodies_; }
-    /// What the joints connect.
+    /// What the joints connect; valid until some of them come or go.
     [[nodiscard]] const BodySets& sets() const { return sets_; }
-    /// One for each row of a moving kind that has such a joint, else 0.
-    [[nodiscard]] const std::uint8_t* is_jointed(BodyKind kind) const
+    /// The moving bodies that a joint keeps from moving along some direction, with a fixed body; some of them twice.
+    [[nodiscard]] std::span<const BodyRow> held() const { return held_; }
+    /// One for each row that has such a joint, else 0.
+    [[nodiscard]] std::span<const std::uint8_t> is_jointed(BodyKind kind) const
     {
-        return is_jointed_[static_cast<std::size_t>(kind)].data();
+        return is_jointed_[static_cast<std::size_t>(kind)];
     }
+    /// The joint of this type (from 0 on) and index.
+    [[nodiscard]] static JointCandidate candidate(const SceneCore& scene, int type, std::size_t index);
+    /// ColourMasks::start_rows_bit if joints of this type have rows that are made once a step; else 0.
+    [[nodiscard]] static std::uint32_t start_rows_bit_of(std::size_t type);
 
   private:
     Array<JointCandidate> joints_;
     Array<std::uint32_t> uncoloured_;  ///< indices of joints
-    Array<BodyRow> bodies_;
+    Array<BodyRow> held_;
     BodySets sets_;
     std::array<Array<std::uint8_t>, body_kind_count> is_jointed_;  ///< by kind and row
 
-    void note(BodyRow body);
+    void note_held(const JointCandidate& joint);
     void colour(JointStores& stores, ColourMasks& masks);
 };
 

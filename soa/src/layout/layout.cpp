@@ -58,14 +58,17 @@ std::uint32_t sleeper_of(const BodyStore& bodies, const Placement& placement)
 void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse& use)
 {
     const bool plants_trees = !std::exchange(use_, use).has_trees_of(use);
-    if (!scene.joints->version || scene.joints->version != joint_version_ || plants_trees) {
+    JointStores& joints = *scene.joints;
+    if (!joints.version || joints.version != joint_version_ || plants_trees) {
         // The old layout is marked invalid until all of the new one is made, because an allocation may fail in
         // between.
-        joint_version_.reset();
+        const std::shared_ptr<const char> before = std::exchange(joint_version_, nullptr);
+        const bool may_follow =
+            before && !joints.version && joints.changes.since == before && !use_.exactly && !plants_trees;
         cut_.reset();
-        place_joints(scene);
-        if (!scene.joints->version) scene.joints->version = std::make_shared<const char>('\0');
-        joint_version_ = scene.joints->version;
+        if (!may_follow || !follow_changes(scene)) place_joints(scene);
+        joints.close_changes();
+        joint_version_ = joints.version;
     }
     for (std::size_t kind = 0; kind < body_kind_count; ++kind) {
         const std::size_t rows = scene.bodies.rows(static_cast<BodyKind>(kind)).size();
@@ -90,9 +93,30 @@ void Layout::place_joints(SceneCore& scene)
                  joint_placements_);
     joints_.begin(joint_placements_, false);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.count(chunk);
-    joints_.open(kernels_, true);
+    joints_.open(kernels_, true, true);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.fill(chunk);
     figures.bind(joints_, kernels_);
+    if (!use_.exactly) joint_lanes_.start_over(*scene.joints);
+    has_placements_ = true;
+}
+
+bool Layout::follow_changes(SceneCore& scene)
+{
+    has_placements_ = false;
+    return joint_lanes_.follow(scene, joint_masks_);
+}
+
+std::span<const Placement> Layout::joint_placements()
+{
+    if (!std::exchange(has_placements_, true)) {
+        joint_placements_.clear();
+        joints_.for_each_block([&](int constraint_class, std::uint8_t colour, std::int32_t block,
+                                   const BlockBodies&, const BlockConstraints&, int lanes) {
+            for (std::uint8_t lane = 0; lane < lanes; ++lane)
+                joint_placements_.push_back(joints_.placement_in({constraint_class, block, lane, colour}));
+        });
+    }
+    return joint_placements_;
 }
 
 void Layout::colour_contacts(const BodyStore& bodies, ContactCache& cache)
@@ -321,7 +345,7 @@ void Layout::point_at(SceneCore& scene, const StepConstants& step)
             rows.delta.data(),
             rows.unpushed.data(),
             start_along_[static_cast<std::size_t>(kind)].data(),
-            joint_intake_.is_jointed(static_cast<BodyKind>(kind)),
+            joint_intake_.is_jointed(static_cast<BodyKind>(kind)).data(),
             static_cast<BodyKind>(kind) == BodyKind::rigid ? joint_masks_.of(BodyKind::rigid) : nullptr,
             &turned_far_,
             rows.acceleration.data(),

@@ -14,6 +14,7 @@
 #include "layout/contact_intake.h"
 #include "layout/free_groups.h"
 #include "layout/joint_intake.h"
+#include "layout/joint_lanes.h"
 #include "motley/core/step_report.h"
 #include "scene/scene_core.h"
 #include "stores/array.h"
@@ -69,7 +70,8 @@ class Layout {
     [[nodiscard]] bool is_overloaded() const { return overloaded_; }
 
     [[nodiscard]] const SweepLists& sweeps() const { return sweeps_; }
-    [[nodiscard]] std::span<const Placement> joint_placements() const { return joint_placements_; }
+    /// The joints that are solved, with gaps.
+    [[nodiscard]] std::span<const Placement> joint_placements();
     [[nodiscard]] std::span<const Placement> contact_placements() const { return contacts.placements(); }
     /// The figures of the scene, and which of them are solved on their own.
     Figures figures;
@@ -118,6 +120,8 @@ class Layout {
     BatchSet joints_{contact_type_count, constraint_type_count};
     JointIntake joint_intake_;
     Array<Placement> joint_placements_;
+    bool has_placements_ = false;  ///< these are of the present joints
+    JointLanes joint_lanes_{joints_, figures, joint_intake_, groups, kernels_};
     Array<std::uint32_t> uncoloured_;
     std::shared_ptr<const char> joint_version_;
     FigureUse use_;
@@ -142,6 +146,7 @@ class Layout {
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(SceneCore& scene);
+    [[nodiscard]] bool follow_changes(SceneCore& scene);
     void keep_impulses(ContactCache& cache, std::uint32_t i);
     bool find_decay(const BodyStore& bodies, BodyKind kind, float h);
     bool note_awake(const BodyStore& bodies);

@@ -1,0 +1,156 @@
+// Finds components by union-find, and writes down their shapes in the order of the colours of their joints.
+#include "figures/members.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace motley {
+namespace {
+
+/// A body with two locks or more, in a figure without a fixed body and with a body more than 2,000 times as heavy;
+/// {} if there is none. The mass that its joints see is made of both and keeps too few digits of the light one: the
+/// joints hold, but their impulses do not cancel. Momentum changes by 3e-6 per second at 1 : 1,000 and by 3e-5 at
+/// 1 : 10,000 (light_between_heavy_test.cpp).
+BodyId light_between_heavy(std::span<const JointCandidate* const> joints, const BodyStore& bodies)
+{
+    constexpr double most_mass_ratio = 2000;
+    std::map<std::uint32_t, int> locks_on;  // by slot
+    for (const JointCandidate* joint : joints) {
+        if (joint->equalities == 0) continue;
+        for (const BodyRow body : {joint->placement.a, joint->placement.b}) {
+            if (!is_rigid(body)) return {};
+            ++locks_on[bodies.rows(BodyKind::rigid).slot[body.row()]];
+        }
+    }
+    const auto inverse_mass = [&](std::uint32_t slot) { return double{bodies.inverse_masses[slot]}; };
+    double of_heaviest = std::numeric_limits<double>::infinity();
+    for (const auto& [slot, locks] : locks_on) of_heaviest = std::min(of_heaviest, inverse_mass(slot));
+    for (const auto& [slot, locks] : locks_on) {
+        if (locks > 1 && inverse_mass(slot) > most_mass_ratio * of_heaviest) return bodies.id_of_slot(slot);
+    }
+    return {};
+}
+
+/// No two joints of a colour share a moving body, so those of a component, by colour, type and slot of a rigid body, are
+/// in the same order in every copy, whatever was added and removed before: the slots of a figure's bodies are in the
+/// order in which these were added.
+struct InOrder {
+    const Array<std::uint32_t>& slots;  ///< of the rigid rows
+    [[nodiscard]] std::uint64_t number(const JointCandidate* joint) const
+    {
+        const Placement& p = joint->placement;
+        return std::uint64_t{p.colour} << 40 | std::uint64_t{p.type} << 32 | slots[rigid_row_of(p)];
+    }
+    bool operator()(const JointCandidate* x, const JointCandidate* y) const { return number(x) < number(y); }
+};
+
+/// Adds a member whose joints end at `end`: numbers its bodies and writes its signature.
+void add_member(Members& members, std::size_t end, BodyNames& names, bool is_refused)
+{
+    const std::size_t first_body = members.bodies.size();
+    names.start_figure();
+    for (std::size_t i = members.first_joint.back(); i < end; ++i) {
+        const JointCandidate& joint = *members.joints[i];
+        const Placement& p = joint.placement;
+        members.signatures.push_back(p.colour | std::uint32_t{p.type} << 8 |
+                                     static_cast<std::uint32_t>(p.a.kind()) << 16 |
+                                     static_cast<std::uint32_t>(p.b.kind()) << 18 |
+                                     static_cast<std::uint32_t>(joint.equalities) << 20 |
+                                     static_cast<std::uint32_t>(joint.locks_point) << 24);
+        members.signatures.push_back(names.name(p.a, members.bodies, first_body));
+        members.signatures.push_back(names.name(p.b, members.bodies, first_body));
+    }
+    members.signatures.push_back(is_refused ? 1 : 0);
+    members.is_refused.push_back(is_refused ? 1 : 0);
+    members.first_joint.push_back(end);
+    members.first_body.push_back(members.bodies.size());
+    members.first_number.push_back(members.signatures.size());
+}
+
+/// Sorts the joints of all components that may be figures and have at most `largest` moving bodies, component after
+/// component. Returns where the joints of each end, by its root.
+Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, const BodySets& sets,
+                                       const BodyStore& bodies, const KernelTable& kernels,
+                                       std::size_t largest, Array<const JointCandidate*>& sorted)
+{
+    const BodyRows& rigid = bodies.rows(BodyKind::rigid);
+    const auto root_of = [&](BodyRow body) { return static_cast<std::size_t>(sets.root(body)); };
+    constexpr std::uint32_t excluded = std::numeric_limits<std::uint32_t>::max();
+    Array<std::uint32_t> members(sets.size(), 0);  // by root
+    for (std::uint32_t row = 0; row < rigid.size(); ++row) ++members[root_of({BodyKind::rigid, row})];
+    for (const JointCandidate& joint : joints) {
+        if (can_be_in_lanes(joint.placement, kernels)) continue;
+        for (const BodyRow body : {joint.placement.a, joint.placement.b})
+            if (is_rigid(body)) members[root_of(body)] = excluded;
+    }
+    // Joints are counted by colour and by component. Then they are sorted by colour, and from there put into their
+    // components, in which little is left to be sorted.
+    constexpr std::uint32_t no_root = excluded;
+    Array<std::uint32_t> roots(joints.size());  // by joint
+    Array<std::uint32_t> ends(sets.size(), 0);
+    std::array<std::uint32_t, parallel_colours> places{};
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const Placement& joint = joints[i].placement;
+        const std::size_t root =
+            can_be_in_lanes(joint, kernels) ? root_of({BodyKind::rigid, rigid_row_of(joint)}) : 0;
+        const bool fits = can_be_in_lanes(joint, kernels) && members[root] <= largest;
+        roots[i] = fits ? static_cast<std::uint32_t>(root) : no_root;
+        if (!fits) continue;
+        ++ends[root];
+        ++places[joint.colour];
+    }
+    const std::size_t count = std::accumulate(places.begin(), places.end(), std::size_t{0});
+    sorted.resize(count);
+    if (count == 0) return ends;
+    std::exclusive_scan(places.begin(), places.end(), places.begin(), 0U);
+    std::exclusive_scan(ends.begin(), ends.end(), ends.begin(), 0U);
+    Array<std::uint32_t> by_colour(count);
+    for (std::uint32_t i = 0; i < joints.size(); ++i)
+        if (roots[i] != no_root) by_colour[places[joints[i].placement.colour]++] = i;
+    for (const std::uint32_t i : by_colour) sorted[ends[roots[i]]++] = &joints[i];
+    auto begin = sorted.begin();
+    for (const std::uint32_t end : ends) {
+        const auto own_end = sorted.begin() + static_cast<std::ptrdiff_t>(end);
+        if (own_end - begin > 1) std::sort(begin, own_end, InOrder{rigid.slot});
+        begin = own_end;
+    }
+    return ends;
+}
+
+}  // namespace
+
+Members::Members(std::span<const JointCandidate> component, const BodyStore& store, BodyNames& names)
+{
+    for (const JointCandidate& joint : component) joints.push_back(&joint);
+    std::sort(joints.begin(), joints.end(), InOrder{store.rows(BodyKind::rigid).slot});
+    names.make_room(store);
+    add_member(*this, joints.size(), names, false);
+}
+
+Members::Members(std::span<const JointCandidate> candidates, const BodySets& sets, const BodyStore& store,
+                 const KernelTable& kernels, bool exact, BodyNames& names, Figures::Refused& refused)
+{
+    const Array<std::uint32_t> ends =
+        sort_by_component(candidates, sets, store, kernels,
+                          exact ? store.rows(BodyKind::rigid).size() : Figures::most_bodies, joints);
+    signatures.reserve(4 * joints.size());
+    bodies.reserve(2 * joints.size());
+    names.make_room(store);
+    for (const std::uint32_t end : ends) {
+        const std::size_t begin = first_joint.back();
+        if (begin == end) continue;
+        const auto own = std::span<const JointCandidate* const>(joints).subspan(begin, end - begin);
+        const BodyId light = exact ? light_between_heavy(own, store) : BodyId{};
+        if (light != BodyId{}) {
+            refused.joints += std::count_if(
+                own.begin(), own.end(), [](const JointCandidate* joint) { return joint->equalities > 0; });
+            refused.light_body = light;
+        }
+        add_member(*this, end, names, light != BodyId{});
+    }
+}
+
+}  // namespace motley

@@ -1,0 +1,276 @@
+// Follows changes joint by joint.
+#include "layout/joint_lanes.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "stores/growth.h"
+#include "stores/joint_store.h"
+
+namespace motley {
+namespace {
+
+/// Of the list of joints on a body. A row that is free now has none.
+std::uint32_t first_end_of(const BodyStore& bodies, BodyRow body)
+{
+    return bodies.first_ends[bodies.rows(body.kind()).slot[body.row()]];
+}
+
+}  // namespace
+
+bool JointLanes::follow(SceneCore& scene, ColourMasks& masks)
+{
+    const BodyStore& bodies = scene.bodies;
+    if (bodies.contained_count > 0 || bodies.sleepers > 0 || batches_.has_overflow()) return false;
+    look_at(*scene.joints);
+    masks.grow(bodies);
+    intake_.grow(bodies);
+    grow_to(places_, joints_->slots.size());
+    for (std::size_t kind = 0; kind < body_kind_count; ++kind)
+        grow_to(sizes_[kind], bodies.rows(static_cast<BodyKind>(kind)).size());
+    note_changes(scene);
+    if (!take_figures_apart()) return false;
+    drop_gone();
+    for (const BodyRow body : touched_) clear_mask(bodies, body, masks);
+    return place_new(masks) && find_components(scene) && figures_.are_worth_it();
+}
+
+JointLanes::Place& JointLanes::place_of(int type, std::int32_t constraint)
+{
+    return places_[constraint < 0 ? static_cast<std::uint32_t>(~constraint)
+                                  : slots_[static_cast<std::size_t>(type)][constraint]];
+}
+
+void JointLanes::look_at(JointStores& joints)
+{
+    joints_ = &joints;
+    auto type = static_cast<std::size_t>(contact_type_count);
+    joints.for_each([&](auto& store, int) {
+        slots_[type] = store.slots.data();
+        colours_[type++] = store.colours.data();
+    });
+}
+
+void JointLanes::start_over(JointStores& joints)
+{
+    look_at(joints);
+    places_.clear();
+    places_.resize(joints_->slots.size());
+    for (Array<Size>& sizes : sizes_) sizes.clear();
+    small_.clear();
+    batches_.for_each_block([&](int constraint_class, std::uint8_t colour, std::int32_t block,
+                                const BlockBodies&, const BlockConstraints& constraints, int lanes) {
+        const std::uint32_t* slots = slots_[static_cast<std::size_t>(type_of(constraint_class))];
+        for (std::uint8_t lane = 0; lane < lanes; ++lane) {
+            const std::uint32_t slot = slots[constraints.lane[lane]];
+            places_[slot] = {joints.slots[slot].generation, {constraint_class, block, lane, colour}};
+        }
+    });
+}
+
+/// Sorts the changes: joints that have moved in their store get their new index, those that are gone are marked in their
+/// lanes, by the bitwise complement of their slot, and those that have come are listed in the order of the stores.
+void JointLanes::note_changes(const SceneCore& scene)
+{
+    gone_.clear();
+    come_.clear();
+    touched_.clear();
+    changes_.clear();
+    Array<std::uint32_t>& slots = joints_->changes.slots;
+    std::sort(slots.begin(), slots.end());
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+    for (const std::uint32_t slot : slots) {
+        const JointStores::Slot& joint = joints_->slots[slot];
+        Place& place = places_[slot];
+        if (place.is_in_lane() && joint.live != 0 && joint.generation == place.generation) {
+            batches_.name(place.lane, static_cast<std::int32_t>(joint.index));
+            continue;
+        }
+        if (place.is_in_lane()) {
+            const Placement was = batches_.placement_in(place.lane);
+            touch(was);
+            batches_.name(place.lane, static_cast<std::int32_t>(~slot));
+            gone_.push_back(slot);
+        }
+        if (joint.live == 0) continue;
+        come_.push_back(JointIntake::candidate(scene, joint.type, joint.index).placement);
+        place.generation = joint.generation;
+        place.is_new = true;
+        touch(come_.back());
+    }
+    std::sort(come_.begin(), come_.end(), [](const Placement& x, const Placement& y) {
+        return std::tie(x.type, x.constraint) < std::tie(y.type, y.constraint);
+    });
+}
+
+void JointLanes::touch(const Placement& joint)
+{
+    // What comes in the place of what is gone is often between the same bodies.
+    if (!changes_.empty() && changes_.back() == Change{joint.a, joint.b}) return;
+    changes_.push_back({joint.a, joint.b});
+    for (const BodyRow body : {joint.a, joint.b})
+        if (body.kind() != BodyKind::fixed) touched_.push_back(body);
+}
+
+bool JointLanes::take_figures_apart()
+{
+    return std::all_of(touched_.begin(), touched_.end(), [&](BodyRow body) {
+        const Figures::Copy copy = figures_.copy_of(body);
+        return copy.block == Figures::none || figures_.take_apart(copy, *this);
+    });
+}
+
+bool JointLanes::sweep(const BatchSet::Lane& lane)
+{
+    const Placement joint = batches_.placement_in(lane);
+    if (joint.constraint < 0) {  // gone
+        place_of(joint.type, joint.constraint).lane = {};
+        return true;
+    }
+    return add(joint);
+}
+
+bool JointLanes::add(const Placement& joint)
+{
+    const int constraint_class = class_of(joint.type, joint.a.kind(), joint.b.kind());
+    const std::optional<BatchSet::Lane> lane = batches_.take_free_lane(constraint_class, joint.colour);
+    if (!lane) return false;
+    batches_.put(*lane, joint);
+    place_of(joint.type, joint.constraint).lane = *lane;
+    return true;
+}
+
+void JointLanes::solve_in_copy(const Placement& joint, const BatchSet::Lane& lane)
+{
+    batches_.put(lane, joint);
+    leave(std::exchange(place_of(joint.type, joint.constraint).lane, lane));
+}
+
+void JointLanes::move(const BatchSet::Lane& from, const BatchSet::Lane& to)
+{
+    const Placement joint = batches_.placement_in(from);
+    batches_.put(to, joint);
+    place_of(joint.type, joint.constraint).lane = to;
+}
+
+/// Closes the gap among the joints of a class and colour that are swept.
+void JointLanes::leave(const BatchSet::Lane& lane)
+{
+    const BatchSet::Lane last = batches_.give_last_back(lane.constraint_class, lane.colour);
+    if (last != lane) move(last, lane);
+    batches_.end_block_at(last);
+}
+
+void JointLanes::drop_gone()
+{
+    for (const std::uint32_t slot : gone_) {
+        const BatchSet::Lane lane = std::exchange(places_[slot].lane, {});
+        if (lane != BatchSet::Lane{}) leave(lane);
+    }
+}
+
+/// Leaves the colours of the joints that a body still has.
+void JointLanes::clear_mask(const BodyStore& bodies, BodyRow body, ColourMasks& masks)
+{
+    std::uint32_t mask = 0;
+    joints_->for_each_on(first_end_of(bodies, body), [&](const JointStores::Slot& joint) {
+        const auto type = static_cast<std::size_t>(contact_type_count + joint.type);
+        const std::uint8_t colour = colours_[type][joint.index];
+        if (colour != no_colour) mask |= 1U << colour | JointIntake::start_rows_bit_of(type);
+    });
+    masks.set(body, mask);
+    intake_.note(body, mask != 0);
+}
+
+bool JointLanes::place_new(ColourMasks& masks)
+{
+    for (Placement& joint : come_) {
+        joint.colour = masks.take_first(joint.a, joint.b);
+        colours_[joint.type][joint.constraint] = joint.colour;
+        if (joint.colour == overflow_colour || !add(joint)) return false;
+        if (JointIntake::start_rows_bit_of(joint.type) != 0) masks.note_start_rows(joint.a, joint.b);
+        for (const BodyRow body : {joint.a, joint.b}) intake_.note(body, true);
+    }
+    return true;
+}
+
+/// Whether the joints that have stayed lead from one body to the other by a short way. No way leads over a fixed body.
+bool JointLanes::are_connected(const BodyStore& bodies, BodyRow from, BodyRow to)
+{
+    Array<BodyRow>& reached = component_.bodies;
+    reached.assign(1, from);
+    bool found = false;
+    const auto reach = [&](BodyRow body) {
+        if (body.kind() == BodyKind::fixed) return;
+        found = found || body == to;
+        if (std::find(reached.begin(), reached.end(), body) == reached.end()) reached.push_back(body);
+    };
+    for (std::size_t i = 0; i < reached.size() && reached.size() <= Figures::most_bodies && !found; ++i) {
+        joints_->for_each_on(first_end_of(bodies, reached[i]), [&](const JointStores::Slot& entry) {
+            const Place& place =
+                place_of(contact_type_count + entry.type, static_cast<std::int32_t>(entry.index));
+            if (place.is_new) return;
+            const Placement joint = batches_.placement_in(place.lane);
+            reach(joint.a);
+            reach(joint.b);
+        });
+    }
+    return found;
+}
+
+/// Finds the components of the bodies whose joints have changed. The small ones may be figures, and their bodies are new
+/// groups. Returns false if a large one may have lost or won bodies.
+bool JointLanes::find_components(const SceneCore& scene)
+{
+    for (const Change& change : changes_) {
+        for (const BodyRow body : {change.a, change.b}) {
+            if (body.kind() == BodyKind::fixed || size_of(body) == Size::small) continue;
+            if (size_of(body) == Size::unknown && gather(scene, body)) {
+                for (const BodyRow member : component_.bodies) groups_.dissolve(member);
+                groups_.add(component_.bodies, component_.joints);
+                if (!component_.joints.empty() &&
+                    !figures_.put_together(component_.joints, scene.bodies, kernels_, *this))
+                    return false;
+                continue;
+            }
+            if (!are_connected(scene.bodies, body, body == change.a ? change.b : change.a)) return false;
+            break;
+        }
+    }
+    for (const BodyRow body : small_) size_of(body) = Size::unknown;
+    small_.clear();
+    for (const Placement& joint : come_) place_of(joint.type, joint.constraint).is_new = false;
+    return true;
+}
+
+/// Lists a component, beginning at one of its bodies. Returns false if it is too large for a figure.
+bool JointLanes::gather(const SceneCore& scene, BodyRow from)
+{
+    auto& [bodies, joints] = component_;
+    bodies.clear();
+    joints.clear();
+    const auto see = [&](BodyRow body) {
+        if (body.kind() == BodyKind::fixed || size_of(body) == Size::small) return;
+        size_of(body) = Size::small;
+        bodies.push_back(body);
+    };
+    see(from);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const BodyRow body = bodies[i];
+        joints_->for_each_on(first_end_of(scene.bodies, body), [&](const JointStores::Slot& entry) {
+            const JointCandidate joint = JointIntake::candidate(scene, entry.type, entry.index);
+            const auto [a, b] = std::pair(joint.placement.a, joint.placement.b);
+            see(a);
+            see(b);
+            // A joint is on the lists of both bodies.
+            if (body == a || a.kind() == BodyKind::fixed) joints.push_back(joint);
+        });
+        if (bodies.size() <= Figures::most_bodies) continue;
+        for (const BodyRow large : bodies) size_of(large) = Size::large;
+        return false;
+    }
+    small_.insert(small_.end(), bodies.begin(), bodies.end());
+    return true;
+}
+
+}  // namespace motley
