@@ -59,7 +59,7 @@ struct SolverCommand {
             ->capture_default_str();
         app.add_flag("--exact", settings.exact_joints, "soft_step: joints solved all at once");
         app.add_flag("--exact-limits", settings.exact_limits,
-                     "with --exact: limits and motors too, while they act");
+                     "with --exact: limits, motors and springs too, while they act");
         app.add_flag("--exact-contacts", settings.exact_contacts,
                      "contacts of an island solved all at once, where it is sparse");
         app.add_option("--isa", isa,

@@ -297,16 +297,17 @@ struct Drive : ConstraintTraits {
     }
 
     /// The limit acts once it is touched, while it pushes inwards harder than the motor alone; the motor acts while it has
-    /// force left and does not arrive at the limit. One row bears both, so the impulse is all that of the one or of the other. A
-    /// rotor shares the impulses of its row with the bodies: drives with one are left to the sweeps.
-    template <class Real, class Row, class Impulse, class A, class B>
-    static ActingRow<Real> act(const StepConstants& step, const Row& row, Impulse& impulse, const A& a,
-                               const B& b)
+    /// force left and does not arrive at the limit; and else the spring does, while it has force left. One row bears all
+    /// three, so the impulse is all that of one; but sweeps solve a spring beside a limit that acts, or beside a motor, and a
+    /// limit beside a spring. A rotor shares the impulses of its row with the bodies: drives with one are left to the sweeps.
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static ActingRow<Real> act(const StepConstants& step, const Row& row, const Substep& substep,
+                               Impulse& impulse, const A& a, const B& b)
     {
         SubstepRow<Real, A::kind, B::kind> here;
         build<Real>(row, here, a, b);
         const auto& drive = row.in_sweep;
-        const Real none(0), one(1), limit(ActsBy::limit), motor(ActsBy::motor);
+        const Real none(0), one(1), limit(ActsBy::limit), motor(ActsBy::motor), spring(ActsBy::spring);
         const Bounds<Real> at = bounds_of(drive, here.value);
         const Real both = impulse.limit + impulse.motor, most = drive.motor_max_impulse;
         // Where the motor drives outwards and is there within a substep.
@@ -315,22 +316,37 @@ struct Drive : ConstraintTraits {
         const Real pushes = select(drive.lower < drive.upper, at.inwards * both - at.motor_alone, one);
         const Real of_limit = select(touches > none, select(pushes > none, limit, none), none);
         const Real of_motor = select(absolute(both) < most, select(left < none, none, motor), none);
+        const SoftRow<Real> soft{drive.spring_rate, here.spring_effective_mass, here.spring_kept};
+        const Real strength =
+            select(most > none, none, select(soft.effective_mass > none, drive.spring_max_impulse, none));
+        const Real of_spring = select(absolute(impulse.spring) < strength, spring, none);
         const Real usable = select(drive.armature > none, none, here.effective_mass);
-        const Real by = select(usable > none, select(of_limit > none, of_limit, of_motor), none);
+        const Real by =
+            select(usable > none, select(of_limit > none, of_limit, maximum(of_motor, of_spring)), none);
 
-        const auto acts = by > none, by_motor = by > limit;
-        // What does not act lets go: the motor keeps what it may push.
+        const auto is_usable = usable > none, by_spring = by > motor, by_motor = by > limit;
+        const auto acts = (by > none) & (spring > by);
+        // What does not act lets go: the motor and the spring keep what they may push.
         const Real kept = select(acts, both, maximum(minimum(both, most), -most));
         const Real by_limit = select(acts, select(by_motor, none, kept), none);
-        const auto is_usable = usable > none;
+        const Real of_soft =
+            maximum(minimum(impulse.spring, drive.spring_max_impulse), -drive.spring_max_impulse);
+        const Real taken_back = (kept - both) + (of_soft - impulse.spring);
         impulse.limit = select(is_usable, by_limit, impulse.limit);
         impulse.motor = select(is_usable, kept - by_limit, impulse.motor);
+        impulse.spring = select(is_usable, of_soft, impulse.spring);
         const Real error = select(drive.lower < drive.upper, at.inwards * error_of_limit(step, at.room),
                                   here.value - drive.lower);
-        ActingRow<Real> out{{{none, none, none}, here.axis, here.axis, error, drive.motor_speed},
+        const Real speed =
+            select(by_spring, -(soft.rate * (here.value - drive.spring_target)), drive.motor_speed);
+        const Real give = select(by_spring, soft.give(), none);
+        const Real given = give * impulse.spring - soft.rate * (here.value - substep.value);
+        ActingRow<Real> out{{{none, none, none}, here.axis, here.axis, error, speed},
                             by,
-                            select(is_usable, kept - both, none),
-                            here.effective_mass};
+                            select(is_usable, taken_back, none),
+                            here.effective_mass,
+                            give,
+                            select(by_spring, given, none)};
         if constexpr (slides) {
             out.row.linear = here.axis;
             out.row.lever_a = here.levers.a;
@@ -341,8 +357,10 @@ struct Drive : ConstraintTraits {
     template <class Real, class Row, class Impulse>
     static Real exceeds(const Row& row, const Impulse& impulse, const Real& by)
     {
-        const auto too_hard = absolute(impulse.motor) > row.in_sweep.motor_max_impulse;
-        return select(by > Real(ActsBy::limit), select(too_hard, Real(1), Real(0)), Real(0));
+        const auto by_spring = by > Real(ActsBy::motor);
+        const Real pushes = absolute(select(by_spring, impulse.spring, impulse.motor));
+        const Real most = select(by_spring, row.in_sweep.spring_max_impulse, row.in_sweep.motor_max_impulse);
+        return select(by > Real(ActsBy::limit), select(pushes > most, Real(1), Real(0)), Real(0));
     }
     template <class Real, class Row, class A, class B>
     static void project(const StepConstants&, const Row& row, A& a, B& b)

@@ -118,9 +118,9 @@ struct SwingLimit : ConstraintTraits {
     }
 
     /// Acts while it pushes inwards.
-    template <class Real, class Row, class Impulse, class A, class B>
-    static ActingRow<Real> act(const StepConstants& step, const Row& row, Impulse& impulse, const A& a,
-                               const B& b)
+    template <class Real, class Row, class Substep, class Impulse, class A, class B>
+    static ActingRow<Real> act(const StepConstants& step, const Row& row, const Substep&, Impulse& impulse,
+                               const A& a, const B& b)
     {
         SubstepRow<Real, A::kind, B::kind> here;
         build<Real>(row, here, a, b);
@@ -132,7 +132,9 @@ struct SwingLimit : ConstraintTraits {
         return {{{none, none, none}, along, along, error_of_limit(step, here.room)},
                 by,
                 impulse.limit - before,
-                here.effective_mass};
+                here.effective_mass,
+                none,
+                none};
     }
     template <class Real, class Row, class A, class B>
     static void project(const StepConstants&, const Row& row, A& a, B& b)

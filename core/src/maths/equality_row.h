@@ -1,10 +1,11 @@
-// The rows that the solver of exact joints (SolverSettings::exact_joints) holds: of locks, and of limits and motors that act.
+// The rows that the solver of exact joints (SolverSettings::exact_joints) holds: of locks, and of limits, motors and springs
+// that act.
 //
 // A sweep knows the response of the two bodies of a limit alone. Where these are links that bear tons, the response is a
 // hundred or a million times as large as that of the figure, and sweeps would take as many rounds to hold the load. So sweeps
 // only find out that a limit or a motor acts; from then on its row is one more row of the lock, until it would pull where
 // it can only push, or push harder than it may: an active set, changed whenever the figure is factored (J. Nocedal, S.
-// Wright, Numerical Optimization, 2006, section 16.5).
+// Wright, Numerical Optimization, 2006, section 16.5). So with springs, whose rows give way: J v + give lambda = speed.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +23,10 @@ struct EqualityRow {
     Vec3<Real> linear;
     Vec3<Real> lever_a, lever_b;
     Real error;            ///< C, m or rad
-    Real speed = Real(0);  ///< m/s or rad/s; other than 0 for motors only
+    Real speed = Real(0);  ///< m/s or rad/s; other than 0 for motors and springs only
 };
 
-/// The row of a limit or motor.
+/// The row of a limit, motor or spring.
 enum class ActiveRow : std::uint8_t {
     none,
     linear,  ///< it also pushes the bodies along a line
@@ -34,15 +35,20 @@ enum class ActiveRow : std::uint8_t {
 
 /// What acts on such a row: one of these, as a Real.
 struct ActsBy {
-    static constexpr float nothing = 0, limit = 1, motor = 2;
+    static constexpr float nothing = 0, limit = 1, motor = 2, spring = 3;
 };
 
 template <class Real>
 struct ActingRow {
-    EqualityRow<Real> row;  ///< with the error of the limit and the speed of the motor, whichever acts
-    Real by;                ///< ActsBy
+    EqualityRow<Real>
+        row;          ///< with the error of the limit and the speed of the motor or spring, whichever acts
+    Real by;          ///< ActsBy
     Real taken_back;  ///< N s or N m s, to be added along the row: what has pulled or pushed too hard lets go
     Real effective_mass;  ///< K^-1 of the two bodies alone, as in SubstepRow
+    Real give;            ///< of a spring: see SoftRow; else 0
+    /// m/s or rad/s, of a spring whose substep has begun: by how much `speed` is too high for what is left of it, because the
+    /// spring has pushed already, and because its law is that of C when the substep began.
+    Real given;
 };
 
 /// C of a limit that acts, without a correction faster than push_out_speed.

@@ -57,6 +57,13 @@ SpringSoftness<Real> spring_softness(const StepConstants& step, const Real& hert
 template <class Real>
 struct SoftRow {
     Real rate, effective_mass, kept;
+    /// The same law is J v + rate C + give lambda = 0, with the whole lambda: effective_mass = 1 / (K + give) for a stiffness,
+    /// and the give of a frequency is that which has the same quotient.
+    [[nodiscard]] Real give() const
+    {
+        const auto exists = effective_mass > Real(0);
+        return select(exists, kept / select(exists, effective_mass, Real(1)), Real(0));
+    }
 };
 /// `response` is K = J M^-1 J^T in the present poses, `effective_mass` its inverse, or 0 where nothing can move.
 template <class Real>

@@ -27,8 +27,8 @@ struct CopyBody {
     static constexpr int floats = 32 * block_lanes;
 };
 
-/// A node of a figure's tree: a child body and all locks between it and its parent body, and the limits and motors between
-/// these two that may act. Those of all nodes are solved at once, by factoring J M^-1 J^T along the tree without fill (J:
+/// A node of a figure's tree: a child body and all locks between it and its parent body, and the limits, motors and springs
+/// between these two that may act. Those of all nodes are solved at once, by factoring J M^-1 J^T along the tree without fill (J:
 /// their Jacobian, M: mass matrix).
 struct FigureNode {
     int body;         ///< the child body
@@ -49,7 +49,9 @@ struct FigureNode {
     std::int64_t pull;      ///< angular impulse of stiffened locks, applied at the first solve, three
     std::int64_t taken;     ///< impulse of what has let go, applied by the next solve, six
     std::int64_t in_use;    ///< see FigureBlock::rows_of() and for_each_acting(), one
-    std::int64_t acts_by;   ///< ActsBy of its limits and motors, one of each
+    std::int64_t acts_by;   ///< ActsBy of its limits, motors and springs, one of each
+    std::int64_t give, given,
+        speed;  ///< of ActingRow, one per row; `given` also of what the spring has pushed since
     std::int64_t
         tension;  ///< lambda of the last substep times its length, N s2; one per row of the locks. At `target` in
                   ///< figures whose nodes have no limits or motors
@@ -76,6 +78,14 @@ struct FigureNode {
     [[nodiscard]] std::int64_t arm_of_child() const { return jacobian; }
     [[nodiscard]] std::int64_t arm_of_parent() const { return jacobian + std::int64_t{3} * block_lanes; }
     static constexpr int row_floats = 11 * block_lanes;  ///< of an EqualityRow
+    /// Where the speed of a limit, motor or spring is, once the tree is factored: see PointRows::keep. `rows_in_use`: how many rows
+    /// the node has now.
+    [[nodiscard]] std::int64_t speed_left(int row, int rows_in_use) const
+    {
+        const int of_points = 6 + rows_in_use + 3 * (rows_in_use - 3);
+        const int field = hangs_by_point() ? of_points + (row - 3) : 11 * row + 10;
+        return jacobian + std::int64_t{field} * block_lanes;
+    }
 };
 
 /// A lock that closes a loop of the figure. It is solved exactly too, from the tree's response to it
@@ -154,7 +164,7 @@ struct FigureBlock {
 
     /// How many rows of a node are solved now: those of its locks, and of its limits and motors that act in any copy.
     [[nodiscard]] int rows_of(const FigureNode& node) const { return static_cast<int>(system[node.in_use]); }
-    /// Calls work(limit or motor, its row, its ActsBy in lanes) for each that acts in any copy.
+    /// Calls work(limit, motor or spring, its row, its ActsBy in lanes) for each that acts in any copy.
     template <class Work>
     void for_each_acting(const FigureNode& node, const Work& work) const
     {

@@ -77,8 +77,10 @@ void act(const KernelContext& context, const FigureBlock& block, const FigureNod
         node.parent_node < 0
             ? nullptr
             : block.system + block.shape->nodes[static_cast<std::size_t>(node.parent_node)].taken;
+    const auto at_row = [&](std::int64_t array) { return block.system + array + block_lanes * row; };
     kernels->act(context, streams, which, block.body(joint.a), block.body(joint.b),
                  block.system + node.jacobian + FigureNode::row_floats * row, by,
+                 {at_row(node.give), at_row(node.given), at_row(node.speed)},
                  active.reversed ? of_child : of_parent, active.reversed ? of_parent : of_child, only);
 }
 
@@ -106,7 +108,14 @@ void add_acting_rows(const KernelContext& context, const FigureBlock& block, con
     block.system[node.in_use] = static_cast<float>(rows);
 }
 
-/// Calls work(limit or motor, its ActsBy in lanes) for all that act.
+/// Locks do not give way. act() says so of the rows of limits, motors and springs.
+void make_locks_rigid(const FigureBlock& block)
+{
+    for (const FigureNode& node : block.shape->nodes)
+        std::fill_n(block.system + node.give, node.rows * block_lanes, 0.0F);
+}
+
+/// Calls work(limit, motor or spring, its ActsBy in lanes) for all that act.
 template <class Work>
 void for_each_acting(const FigureBlock& block, const Work& work)
 {
@@ -210,6 +219,7 @@ class CopiesRunner {
         switch (stage.operation) {
             case Operation::prepare:
                 transfer(context_, block_, data_, &ConstraintKernels::prepare);
+                make_locks_rigid(block_);
                 kernels_.load(context_, block_);
                 break;
             case Operation::stiffen:
@@ -289,6 +299,7 @@ void step_figure(const KernelContext& context, const FigureKernels& kernels, con
 void prepare_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
 {
     kernels.load(context, block);
+    make_locks_rigid(block);
     factor_tree(context, kernels, block);
 }
 
@@ -302,12 +313,24 @@ void begin_tree(const FigureBlock& block)
         float* impulses = block.joints[i].streams.impulses + block.joints[i].block * floats;
         std::fill(impulses, impulses + floats, 0.0F);
     }
-    for_each_acting(block, [&](const FigureNode::Active& active, const float* by) {
-        const FigureBlock::Joint& lanes = block.joints[active.joint];
-        float* impulses = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
-        for (int which = 0; which < lanes.kernels->active_impulses; ++which, impulses += block_lanes)
-            for (int i = 0; i < block_lanes; ++i) impulses[i] = by[i] != ActsBy::nothing ? 0.0F : impulses[i];
-    });
+    if (!block.shape->has_actives) return;
+    for (const FigureNode& node : block.shape->nodes) {
+        block.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float* by) {
+            const FigureBlock::Joint& lanes = block.joints[active.joint];
+            float* impulses = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
+            // A spring's is the third; sweeps solve one beside a limit or motor that acts.
+            for (int which = 0; which < lanes.kernels->active_impulses; ++which, impulses += block_lanes)
+                for (int i = 0; i < block_lanes; ++i)
+                    impulses[i] = by[i] > (which < 2 ? ActsBy::nothing : ActsBy::motor) ? 0.0F : impulses[i];
+            // No spring has pushed in this substep.
+            float* const speed_left = block.system + node.speed_left(row, block.rows_of(node));
+            for (int i = 0; i < block_lanes; ++i) {
+                const float speed = block.system[node.speed + block_lanes * row + i];
+                speed_left[i] = active.reversed ? -speed : speed;
+                block.system[node.given + block_lanes * row + i] = 0;
+            }
+        });
+    }
 }
 
 void lengthen_steps(const FigureBlock& block)

@@ -146,8 +146,13 @@ class TreeBuilder {
             node.response = take(6 * node.most_rows);
             node.factor = take(node.most_rows * (node.most_rows + 1) / 2);
             node.target = take(node.most_rows);
+            node.give = take(node.most_rows);
             node.tension = shape_.has_actives ? take(node.rows) : node.target;
             if (shape_.has_actives) node.taken = take(6);
+            if (shape_.has_actives) {
+                node.given = take(node.most_rows);
+                node.speed = take(node.most_rows);
+            }
             node.in_use = take(1);
             node.acts_by = take(static_cast<int>(node.actives.size()));
             node.change = node.pivots = take(6);

@@ -578,8 +578,9 @@ struct Kernels {
     }
 
     static void act(const KernelContext& context, const BlockStreams& streams, std::int32_t block,
-                    const float* body_a, const float* body_b, float* row, float* by, float* taken_a,
-                    float* taken_b, const float* only)
+                    const float* body_a, const float* body_b, float* row, float* by,
+                    const ConstraintKernels::SoftLanes& soft, float* taken_a, float* taken_b,
+                    const float* only)
     {
         for_each_bundle(context, streams, block, [&](const Bundle& bundle) {
             const int lane = bundle.lane;
@@ -587,13 +588,14 @@ struct Kernels {
             auto impulse = before;
             auto substep = load_row<Substep>(bundle.substep);
             ActingRow<Lanes> acting =
-                Type::template act<Lanes>(context.step, load_row<Row>(bundle.row), impulse,
+                Type::template act<Lanes>(context.step, load_row<Row>(bundle.row), substep, impulse,
                                           load_row<A>(body_a + lane), load_row<B>(body_b + lane));
             if (only != nullptr) {
                 const auto changes = load_lanes(only + lane) > Lanes(0);
                 keep_where_not(changes, before, impulse);
                 acting.by = select(changes, acting.by, load_lanes(by + lane));
                 acting.taken_back = select(changes, acting.taken_back, Lanes(0));
+                acting.given = select(changes, acting.given, load_lanes(soft.given + lane));
             }
             const auto has_mass = substep.effective_mass > Lanes(0);
             substep.effective_mass = select(has_mass, substep.effective_mass, acting.effective_mass);
@@ -604,11 +606,14 @@ struct Kernels {
             const Lanes none(0);
             const Lanes share = select(acting.by > none, Lanes(1), none);
             const auto by_motor = acting.by > Lanes(ActsBy::limit);
+            const Lanes speed = select(by_motor, whole.speed, none);
             store_row(EqualityRow<Lanes>{share * whole.linear, share * whole.lever_a, share * whole.lever_b,
-                                         select(by_motor, none, share * whole.error),
-                                         select(by_motor, whole.speed, none)},
+                                         select(by_motor, none, share * whole.error), speed - acting.given},
                       row + lane);
             store_lanes(acting.by, by + lane);
+            store_lanes(acting.give, soft.give + lane);
+            store_lanes(acting.given, soft.given + lane);
+            store_lanes(speed, soft.speed + lane);
             const auto take = [&](float* from, const Lanes& push, const Vec3<Lanes>& lever) {
                 if (from == nullptr) return;
                 float* const linear = from + lane;
@@ -620,10 +625,17 @@ struct Kernels {
             take(taken_b, acting.taken_back, whole.lever_b);
         });
     }
-    /// Without an effective mass, sweeps change neither the limit nor the motor.
+    /// Without an effective mass, sweeps change neither the limit nor the motor. A spring that acts leaves them to the sweeps.
     static void leave_to_tree(Substep& substep, const Lanes& by)
     {
-        substep.effective_mass = select(by > Lanes(0), Lanes(0), substep.effective_mass);
+        const Lanes none(0);
+        const auto by_spring = by > Lanes(ActsBy::motor);
+        substep.effective_mass =
+            select(by > none, select(by_spring, substep.effective_mass, none), substep.effective_mass);
+        if constexpr (Type::has_motor) {
+            substep.spring_effective_mass = select(by_spring, none, substep.spring_effective_mass);
+            substep.spring_kept = select(by_spring, none, substep.spring_kept);
+        }
     }
     template <class Mask, class Fields>
     static void keep_where_not(const Mask& changes, const Fields& before, Fields& now)
@@ -720,7 +732,7 @@ struct Kernels {
             kernels.act = act;
             kernels.set_aside = set_aside;
             if constexpr (Type::has_motor) kernels.exceeds = exceeds;
-            kernels.active_impulses = Type::has_motor ? 2 : 1;
+            kernels.active_impulses = Type::has_motor ? 3 : 1;
         }
         kernels.project = project;
     }

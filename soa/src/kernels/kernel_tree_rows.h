@@ -111,6 +111,8 @@ struct AnyRows {
     /// J on the parent is 0 in this row and in those before it.
     static constexpr int first_entry(int) { return 0; }
     static constexpr bool reaches_parent(int, int) { return true; }
+    /// Whether a row may be that of a spring.
+    static constexpr bool may_give(int) { return true; }
 
     void child_row(int i, Row6& out) const
     {
@@ -198,6 +200,7 @@ struct PointRows {
             [&](auto i) { store_lanes(speed[i], to + (6 + rows + 3 * turns + i) * block_lanes); });
     }
     static constexpr int first_entry(int row) { return row < 3 ? row : 3; }
+    static constexpr bool may_give(int row) { return row >= 3; }
     static constexpr bool reaches_parent(int row, int entry)
     {
         return entry < 3 ? entry <= row : row > 0 || entry != 3;

@@ -123,6 +123,7 @@ void factor_locks(const Mover& body, const FigureNode& node, int row_count, floa
         solve_in_place(Constant<6>{}, mass, response, Rows::first_entry(i));
         store_array(response, system + node.response + i * 6 * block_lanes);
         repeat(one_more(i), [&](auto m) { k.at(i, m) = j.along_child(m, response); });
+        if (Rows::may_give(i)) k.at(i, i) = k.at(i, i) + load_lanes(system + node.give + i * block_lanes);
         const Vec3<Lanes> linear{row[0], row[1], row[2]};
         const Vec3<Lanes> lever{row[3], row[4], row[5]};
         least[i] = Lanes(tree_rounding) *
@@ -214,6 +215,30 @@ inline void add_to_sum(const FigureBlock& figure, int joint, const Wrench<Lanes>
     store_row(Wrench<Lanes>{sum.push + more.push, sum.turn + more.turn}, at);
 }
 
+/// Adds what limits, motors and springs have just pushed to their impulses, which are in the order of ActsBy, and which
+/// add_up() adds to the sum of the step. The law of a spring's row is J v + give lambda = speed with the whole lambda: what it
+/// has pushed is taken from the speed.
+[[gnu::noinline]] inline void add_to_impulses(const FigureBlock& figure, const FigureNode& node,
+                                              const Lanes* lambda, int lane)
+{
+    float* const system = figure.system + lane;
+    figure.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float* by) {
+        const Lanes pushed = active.reversed ? -lambda[row] : lambda[row], acts_by = load_lanes(by + lane);
+        float* impulse = impulse_of(figure, active.joint) + lane;
+        const int impulses = figure.joints[active.joint].kernels->active_impulses;
+        for (int i = 0; i < impulses; ++i, impulse += block_lanes) {
+            const auto at_least = acts_by > Lanes(static_cast<float>(i)),
+                       more = acts_by > Lanes(static_cast<float>(i + 1));
+            const Lanes before = load_lanes(impulse);
+            store_lanes(select(at_least, select(more, before, before + pushed), before), impulse);
+        }
+        float* const given = system + node.given + row * block_lanes;
+        store_lanes(load_lanes(given) + load_lanes(system + node.give + row * block_lanes) * pushed, given);
+        const Lanes left = load_lanes(system + node.speed + row * block_lanes) - load_lanes(given);
+        store_lanes(active.reversed ? -left : left, system + node.speed_left(row, figure.rows_of(node)));
+    });
+}
+
 /// From parent to child: lambda = y - K^-1 J_p (velocity change of the parent), change = M'^-1 (f + J_c^T lambda).
 template <class Rows>
 void reach_down(const FigureBlock& figure, const FigureNode& node, float* system, const float* parent_change,
@@ -250,18 +275,10 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
         add_to_sum(figure, lock.joint,
                    lock.reversed ? Wrench<Lanes>{-on_child.push, -on_child.turn} : on_child, lane);
     }
-    // These stay in the impulses, which add_up() adds to the sum of the step.
-    figure.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float* by) {
-        const Lanes pushed = active.reversed ? -lambda[row] : lambda[row];
-        const auto by_motor = load_lanes(by + lane) > Lanes(ActsBy::limit);
-        float* impulse = impulse_of(figure, active.joint) + lane;
-        const Lanes limit = load_lanes(impulse);
-        store_lanes(select(by_motor, limit, limit + pushed), impulse);
-        if (figure.joints[active.joint].kernels->active_impulses == 1) return;
-        impulse += block_lanes;
-        const Lanes motor = load_lanes(impulse);
-        store_lanes(select(by_motor, motor + pushed, motor), impulse);
-    });
+    if (!figure.shape->has_actives) return;
+    Lanes of_rows[Rows::most];
+    repeat(rows, [&](auto i) { of_rows[i] = lambda[i]; });
+    add_to_impulses(figure, node, of_rows, lane);
 }
 
 /// Calls work with a null pointer whose type is the form of the node's rows: PointRows or AnyRows. Not for a body that hangs by

@@ -155,16 +155,20 @@ struct ConstraintKernels {
                                 const float* body_b, float* rows);
     CopiesRows equality_rows = nullptr;
     int equality_count = 0;
-    /// Finds out what acts on the row of a limit or motor, and writes its EqualityRow (0 where nothing does) and ActsBy, sixteen
-    /// floats a field. What lets go is added to `taken_a` and `taken_b`, the six impulses on the bodies; null of fixed ones.
+    /// Of ActingRow, sixteen floats each.
+    struct SoftLanes {
+        float *give, *given, *speed;
+    };
+    /// Finds out what acts on the row of a limit, motor or spring, and writes its EqualityRow (0 where nothing does), with the
+    /// speed that is left, its ActsBy and SoftLanes, sixteen floats a field. What lets go is added to `taken_a` and `taken_b`, the six impulses on the bodies; null of fixed ones.
     /// Given `only`, nothing but the row is changed in lanes where that is 0. Null for types without such a row.
     void (*act)(const KernelContext&, const BlockStreams&, std::int32_t block, const float* body_a,
-                const float* body_b, float* row, float* by, float* taken_a, float* taken_b,
-                const float* only) = nullptr;
+                const float* body_b, float* row, float* by, const SoftLanes& soft, float* taken_a,
+                float* taken_b, const float* only) = nullptr;
     /// After warm_start: leaves the rows on which something acts to the tree.
     void (*set_aside)(const BlockStreams&, std::int32_t block, const float* by) = nullptr;
-    /// After the tree has been solved: writes 1 into the lanes in which a motor has pushed harder than it may. Null for types
-    /// without motors.
+    /// After the tree has been solved: writes 1 into the lanes in which a motor or spring has pushed harder than it may. Null
+    /// for types without them.
     void (*exceeds)(const BlockStreams&, std::int32_t block, const float* by, float* exceeding) = nullptr;
     int active_impulses = 0;  ///< how many impulses such a row has: see ConstraintTraits::active_row
     /// After warm_start, where the two bodies are held together at the point with these arms (three fields of sixteen floats):
