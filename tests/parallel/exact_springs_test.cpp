@@ -73,7 +73,9 @@ TEST(ExactSprings, BearTonsAsStaticsSays)
     for (const int substeps : {1, 4}) {
         for (const bool turned : {false, true}) {
             for (const int links : {1, 3, 8}) {
-                for (const double mass : {1.0, 1e2, 1e4}) {
+                for (const double mass : {1e4, 1e2, 1.0}) {
+                    // Later ones access the same memory as earlier ones.
+                    if (testing::is_sanitized && (links > 3 || mass < 1e4)) continue;
                     testing::Arm arm = arm_of(links, mass, {}, turned);
                     const Statics rest = statics_of(arm, soften(arm, 0.01));
                     Solver solver(exact_limits(substeps));
@@ -118,7 +120,8 @@ std::vector<double> motion_of(double inertia, double moment, double stiffness, d
 
 TEST(ExactSprings, MoveAsTheirEquationOfMotion)
 {
-    for (const double mass : {1.0, 1e2, 1e4}) {
+    for (const double mass : {1e4, 1e2, 1.0}) {
+        if (testing::is_sanitized && mass < 1e4) continue;
         const double r = 2 * half_link;
         const double inertia = 0.021 + half_link * half_link + mass * r * r + 0.01 * mass;
         const double moment = g * (mass * r + half_link), stiffness = 40 * inertia, damping = inertia;

@@ -7,6 +7,7 @@
 
 #include "every_way.h"
 #include "motley/motley.h"
+#include "rig.h"
 
 namespace motley {
 namespace {
@@ -175,18 +176,18 @@ TEST(JointChanges, HaveTheBitsOfASolverThatHasNeverSeenTheScene)
 {
     for (const SolverSettings& settings : testing::every_way()) {
         if (settings.method == Method::direct) continue;  // too large for it
-        for (const std::uint32_t seed : {7U, 8U}) {
-            Restless restless(seed);
-            compare(restless, settings, {}, 1, 80);
+        for (int seed = 0; seed < testing::repeats(2); ++seed) {
+            Restless restless(static_cast<std::uint32_t>(7 + seed));
+            compare(restless, settings, {}, 1, testing::long_run(80));
         }
     }
 }
 
 TEST(JointChanges, HaveTheSameBitsManyAtOnceAndOnTwoThreads)
 {
-    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
-        Restless restless(seed);
-        compare(restless, {}, {.threads = 2}, static_cast<int>(1 + seed), 120);
+    for (int seed = 1; seed <= testing::repeats(6); ++seed) {
+        Restless restless(static_cast<std::uint32_t>(seed));
+        compare(restless, {}, {.threads = 2}, 1 + seed, testing::long_run(120, 20));
     }
 }
 

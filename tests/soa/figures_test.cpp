@@ -110,6 +110,7 @@ TEST(FigureTree, NumbersOfNodesDoNotOverlap)
             add(node.response, 6 * node.rows);
             add(node.factor, node.rows * (node.rows + 1) / 2);
             add(node.target, node.rows);
+            add(node.give, node.rows);
             add(node.change, 6);
             add(node.mass, 21);
             add(node.force, 6);

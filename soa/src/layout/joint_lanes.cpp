@@ -246,7 +246,8 @@ bool JointLanes::find_components(const SceneCore& scene)
 /// Lists a component, beginning at one of its bodies. Returns false if it is too large for a figure.
 bool JointLanes::gather(const SceneCore& scene, BodyRow from)
 {
-    auto& [bodies, joints] = component_;
+    Array<BodyRow>& bodies = component_.bodies;
+    Array<JointCandidate>& joints = component_.joints;
     bodies.clear();
     joints.clear();
     const auto see = [&](BodyRow body) {
@@ -259,7 +260,7 @@ bool JointLanes::gather(const SceneCore& scene, BodyRow from)
         const BodyRow body = bodies[i];
         joints_->for_each_on(first_end_of(scene.bodies, body), [&](const JointStores::Slot& entry) {
             const JointCandidate joint = JointIntake::candidate(scene, entry.type, entry.index);
-            const auto [a, b] = std::pair(joint.placement.a, joint.placement.b);
+            const BodyRow a = joint.placement.a, b = joint.placement.b;
             see(a);
             see(b);
             // A joint is on the lists of both bodies.
