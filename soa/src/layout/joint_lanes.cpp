@@ -61,9 +61,10 @@ void JointLanes::start_over(JointStores& joints)
     batches_.for_each_block([&](int constraint_class, std::uint8_t colour, std::int32_t block,
                                 const BlockBodies&, const BlockConstraints& constraints, int lanes) {
         const std::uint32_t* slots = slots_[static_cast<std::size_t>(type_of(constraint_class))];
-        for (std::uint8_t lane = 0; lane < lanes; ++lane) {
+        for (int lane = 0; lane < lanes; ++lane) {
             const std::uint32_t slot = slots[constraints.lane[lane]];
-            places_[slot] = {joints.slots[slot].generation, {constraint_class, block, lane, colour}};
+            places_[slot] = {joints.slots[slot].generation,
+                             {constraint_class, block, static_cast<std::uint8_t>(lane), colour}};
         }
     });
 }

@@ -112,8 +112,9 @@ std::span<const Placement> Layout::joint_placements()
         joint_placements_.clear();
         joints_.for_each_block([&](int constraint_class, std::uint8_t colour, std::int32_t block,
                                    const BlockBodies&, const BlockConstraints&, int lanes) {
-            for (std::uint8_t lane = 0; lane < lanes; ++lane)
-                joint_placements_.push_back(joints_.placement_in({constraint_class, block, lane, colour}));
+            for (int lane = 0; lane < lanes; ++lane)
+                joint_placements_.push_back(
+                    joints_.placement_in({constraint_class, block, static_cast<std::uint8_t>(lane), colour}));
         });
     }
     return joint_placements_;
