@@ -84,7 +84,8 @@ bool Figures::put_together(std::span<const JointCandidate> component, const Body
     const Copy copy{static_cast<std::int32_t>(block - blocks_.begin()), block->count++};
     alone_.clear();
     for (std::size_t body = 0; body < members.bodies.size(); ++body) place(copy, body, members.bodies[body]);
-    for (std::size_t joint = 0; joint < members.joints.size(); ++joint)
+    // The last first: where take_apart() has just put them behind all others, nothing has to be moved into their lanes.
+    for (std::size_t joint = members.joints.size(); joint-- > 0;)
         lanes.solve_in_copy(members.joints[joint]->placement, lane_of(copy, joint));
     return true;
 }

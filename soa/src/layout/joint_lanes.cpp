@@ -223,7 +223,8 @@ bool JointLanes::are_connected(const BodyStore& bodies, BodyRow from, BodyRow to
 /// groups. Returns false if a large one may have lost or won bodies.
 bool JointLanes::find_components(const SceneCore& scene)
 {
-    for (const Change& change : changes_) {
+    for (std::size_t i = changes_.size(); i-- > 0;) {  // see put_together()
+        const Change& change = changes_[i];
         for (const BodyRow body : {change.a, change.b}) {
             if (body.kind() == BodyKind::fixed || size_of(body) == Size::small) continue;
             if (size_of(body) == Size::unknown && gather(scene, body)) {
