@@ -154,8 +154,10 @@ void DiscStrips::restore(const SceneCore& scene)
     const std::uint32_t rows = scene.bodies.rows(BodyKind::planar).size();
     chunks_ = disc_chunks(rows);
     frame_ = discs.frame;
-    make_room_for(std::count_if(discs.found_at.begin(), discs.found_at.begin() + rows,
-                                [](const DiscAnchor& anchor) { return anchor.skin < INFINITY; }));
+    std::int64_t count_of_discs = 0;
+    for (std::int64_t chunk = 0; chunk < chunks_; ++chunk)
+        for_each_disc(scene, chunk, [&](std::uint32_t, const BodyRows&) { ++count_of_discs; });
+    make_room_for(count_of_discs);
     for (std::int64_t chunk = 0; chunk < chunks_; ++chunk) count(scene, chunk);
     open();
     for (std::int64_t chunk = 0; chunk < chunks_; ++chunk) place(scene, chunk);

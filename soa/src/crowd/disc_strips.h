@@ -198,7 +198,10 @@ class DiscStrips {
     static void for_each_disc(const SceneCore& scene, std::int64_t chunk, const Work& work)
     {
         const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
-        for_each_row_of_chunk(chunk, rows.size(), [&](std::uint32_t row) {
+        // Bodies without discs may have been added since the last search.
+        const auto known =
+            static_cast<std::uint32_t>(std::min<std::size_t>(rows.size(), scene.discs.found_at.size()));
+        for_each_row_of_chunk(chunk, known, [&](std::uint32_t row) {
             if (scene.discs.found_at[row].skin < INFINITY) work(row, rows);
         });
     }
