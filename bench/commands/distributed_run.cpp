@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/distributed_frames.h"
 #include "commands/distributed_trajectories.h"
 #include "measuring/clock.h"
 #include "measuring/median.h"
@@ -50,7 +51,7 @@ class DistributedOpenCrowd {
     {
         for (const Wall& wall : who_.walls()) {
             const std::array<Vec2<double>, 2> ends{wall.from, wall.to};
-            crowd.scene().add_wall({.points = ends, .friction = who_.friction});
+            walls_.push_back(crowd.scene().add_wall({.points = ends, .friction = who_.friction}));
         }
         if (restart.empty()) {
             add_share(rank, ranks);
@@ -61,6 +62,9 @@ class DistributedOpenCrowd {
     }
 
     DistributedCrowd crowd;
+
+    [[nodiscard]] const OpenCrowdPeople& who() const { return who_; }
+    [[nodiscard]] std::span<const WallId> walls() const { return walls_; }
 
     void steer(std::int64_t step)
     {
@@ -117,6 +121,7 @@ class DistributedOpenCrowd {
     }
 
     OpenCrowdPeople who_;
+    std::vector<WallId> walls_;
     std::int64_t searches_ = 0;
     std::vector<std::uint64_t> numbers_;
     std::vector<BodyId> bodies_;
@@ -151,9 +156,8 @@ const char* refusal_of(const std::string& scene, const RunOptions& options, cons
         return "--listed, --measures and --direct-every need all people in one process";
     if (options.steering != SteeringModel::plain || options.torsos)
         return "on several ranks people are discs with plain steering";
-    if (!outputs.frames.empty() || !outputs.recording.empty() || !outputs.problem.empty() ||
-        outputs.densities)
-        return "--frames, --record and --densities need all people in one process";
+    if (!outputs.recording.empty() || !outputs.problem.empty() || outputs.densities)
+        return "--record and --densities need all people in one process";
     return nullptr;
 }
 
@@ -239,10 +243,14 @@ void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Check
     std::optional<DistributedTrajectories> trajectories;
     if (!outputs.trajectories.empty())
         trajectories.emplace(outputs.trajectories, 1 / static_cast<double>(options.dt));
+    std::optional<DistributedFrames> frames;
+    if (!outputs.frames.empty()) frames.emplace(outputs, all.who(), all.walls());
     Measured run;
     for (std::int64_t step = all.crowd.figures().steps; step < last; ++step) {
         // As one process does, from where people are when the step begins.
         if (trajectories) trajectories->write(all.crowd, step);
+        const bool is_drawn = frames && step % outputs.frame_every == 0;
+        if (is_drawn) frames->note_places(all.crowd);
         const double began = now();
         all.steer(step);
         const double steered = now();
@@ -250,6 +258,7 @@ void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Check
         const double ended = now();
         if (report.status != StepStatus::done)
             throw std::runtime_error(fmt::format("step {} refused: {}", step, report.error));
+        if (is_drawn) frames->write(all.crowd);
         ++run.steps;
         run.step_seconds.push_back(ended - began);
         run.solver_seconds.push_back(ended - steered);
@@ -264,6 +273,7 @@ void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Check
             fmt::print(stderr, "crowd: {} %\n", 25 * ((step + 1) * 4 / last));
     }
     if (trajectories) trajectories->close();
+    if (frames) frames->close(all.crowd);
     if (run.steps == 0)
         throw std::runtime_error("--restart: the checkpoint is at or beyond the end of --seconds");
     const std::vector<Line> lines =

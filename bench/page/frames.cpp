@@ -159,44 +159,47 @@ void draw_bar(Picture& picture, int place, std::string_view unit, double full)
 
 }  // namespace
 
-FrameWriter::FrameWriter(std::string folder, FrameColour colour) : folder_(std::move(folder)), colour_(colour)
+PictureBounds bounds_of(const View& view)
 {
-    std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error) throw std::runtime_error(fmt::format("{}: {}", folder_, error.message()));
-}
-
-void FrameWriter::fit(const View& view)
-{
-    double max_x = -1e300, max_y = -1e300;
-    min_x_ = min_y_ = 1e300;
+    PictureBounds bounds{{1e300, 1e300}, {-1e300, -1e300}};
     const auto include = [&](const Vec2<double>& p) {
-        min_x_ = std::min(min_x_, p.x);
-        min_y_ = std::min(min_y_, p.y);
-        max_x = std::max(max_x, p.x);
-        max_y = std::max(max_y, p.y);
+        bounds.low = {std::min(bounds.low.x, p.x), std::min(bounds.low.y, p.y)};
+        bounds.high = {std::max(bounds.high.x, p.x), std::max(bounds.high.y, p.y)};
     };
     for (const Vec2<double>& p : view.people) include(p);
     for (const Wall& wall : view.walls) {
         include(wall.from);
         include(wall.to);
     }
-    if (max_x < min_x_) min_x_ = min_y_ = 0, max_x = max_y = 1;
-    min_x_ -= 0.5;
-    min_y_ -= 0.5;
-    const double wide = max_x + 0.5 - min_x_, high = max_y + 0.5 - min_y_;
-    scale_ = longest_side / std::max(wide, high);
-    width_ = static_cast<int>(wide * scale_) + 2 * margin + 2 * (bar_width + label_width);
-    height_ = static_cast<int>(high * scale_) + 2 * margin;
+    if (bounds.high.x < bounds.low.x) bounds = {};
+    constexpr Vec2<double> around{0.5, 0.5};
+    return {bounds.low - around, bounds.high + around};
+}
+
+FrameWriter::FrameWriter(std::string folder, FrameColour colour, int first, int every)
+    : folder_(std::move(folder)), colour_(colour), next_(first), every_(every)
+{
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw std::runtime_error(fmt::format("{}: {}", folder_, error.message()));
+}
+
+void FrameWriter::fit(const PictureBounds& bounds)
+{
+    low_ = bounds.low;
+    const Vec2<double> size = bounds.high - bounds.low;
+    scale_ = longest_side / std::max(size.x, size.y);
+    width_ = static_cast<int>(size.x * scale_) + 2 * margin + 2 * (bar_width + label_width);
+    height_ = static_cast<int>(size.y * scale_) + 2 * margin;
 }
 
 void FrameWriter::write(const View& view, Executor& executor)
 {
-    if (count_ == 0) fit(view);
+    if (width_ == 0) fit(bounds_of(view));
     Picture picture(width_, height_);
     const auto pixel = [&](const Vec2<double>& world) {
-        return Vec2<double>{margin + (world.x - min_x_) * scale_,
-                            height_ - margin - (world.y - min_y_) * scale_};
+        return Vec2<double>{margin + (world.x - low_.x) * scale_,
+                            height_ - margin - (world.y - low_.y) * scale_};
     };
     if (colour_ == FrameColour::density) {
         const DensityField field = density_field(view.people);
@@ -246,7 +249,8 @@ void FrameWriter::write(const View& view, Executor& executor)
         draw_bar(picture, 0, "/m2", full_density);
     }
     draw_bar(picture, 1, "kN/m", full_wall_pressure / 1000);
-    picture.save(fmt::format("{}/frame-{:05d}.png", folder_, count_++));
+    picture.save(fmt::format("{}/frame-{:05d}.png", folder_, next_));
+    next_ += every_;
 }
 
 }  // namespace motley::bench

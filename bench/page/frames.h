@@ -11,11 +11,22 @@ namespace motley::bench {
 /// itself; or the density of each person's Voronoi cell.
 enum class FrameColour { pressure, density, voronoi };
 
-/// Draws PNG files, all with the same view: `frame-00000.png` and so on in a folder it makes.
+/// The part of the plane that a picture shows, m.
+struct PictureBounds {
+    Vec2<double> low{}, high{1, 1};
+};
+/// All people and walls, and half a metre around them.
+PictureBounds bounds_of(const View& view);
+
+/// Draws PNG files, all of the same part of the plane: `frame-00000.png` and so on in a folder it makes.
 class FrameWriter {
   public:
-    /// Throws std::runtime_error when the folder cannot be made.
-    explicit FrameWriter(std::string folder, FrameColour colour = FrameColour::pressure);
+    /// The first picture has the number `first`, and each further one a number that is higher by `every`. Throws
+    /// std::runtime_error when the folder cannot be made.
+    explicit FrameWriter(std::string folder, FrameColour colour = FrameColour::pressure, int first = 0,
+                         int every = 1);
+    /// What all pictures show. Without this call it is bounds_of() the first view.
+    void fit(const PictureBounds& bounds);
     /// Colour runs from blue (free, or nobody) over yellow to red (`full_pressure` and more, or `full_density`; of walls
     /// `full_wall_pressure`, in bands of a metre). The bars at the right edge are the scales: of people, and left of it of
     /// walls.
@@ -28,11 +39,10 @@ class FrameWriter {
   private:
     std::string folder_;
     FrameColour colour_;
-    int count_ = 0;
-    double min_x_ = 0, min_y_ = 0, scale_ = 0;  ///< of the view, set by the first frame
-    int width_ = 0, height_ = 0;
-
-    void fit(const View& view);
+    int next_, every_;
+    Vec2<double> low_{};
+    double scale_ = 0;            ///< pixels a metre
+    int width_ = 0, height_ = 0;  ///< 0 until fit()
 };
 
 }  // namespace motley::bench

@@ -7,31 +7,6 @@
 namespace motley::bench {
 namespace {
 
-/// The force on each metre of a wall from its first point on, N/m. A person leans on the wall over the width of the
-/// shoulders and not at a point. The last band may be shorter.
-std::vector<double> pressures_on(std::int32_t wall, const Crowd& crowd, std::span<const Touch> touches)
-{
-    const Wall& segment = crowd.walls[static_cast<std::size_t>(wall)];
-    const Vec2<double> along = segment.to - segment.from;
-    const double length = std::max(std::sqrt(dot(along, along)), 1e-9);
-    std::vector<double> bands(static_cast<std::size_t>(std::ceil(length)), 0.0);
-    for (const Touch& touch : touches) {
-        if (touch.wall != wall) continue;
-        const auto person = static_cast<std::size_t>(touch.b);
-        const Vec3<double>& at = crowd.positions[person];
-        const double place = dot(along, Vec2<double>{at.x, at.y} - segment.from) / length;
-        const auto radius = static_cast<double>(crowd.agents[person].radius);
-        for (std::size_t band = 0; band < bands.size(); ++band) {
-            const double from = std::max(place - radius, static_cast<double>(band)),
-                         to = std::min({place + radius, static_cast<double>(band) + 1, length});
-            if (to > from) bands[band] += touch.force * (to - from) / (2 * radius);
-        }
-    }
-    const double rest = length - static_cast<double>(bands.size() - 1);
-    bands.back() /= std::max(rest, 0.1);
-    return bands;
-}
-
 /// From the centre of a torso to the end of its axis, m, world.
 Vec2<double> shoulder_of(const Agent& agent, double yaw)
 {
@@ -50,16 +25,40 @@ double circumference_of(const Agent& agent, bool is_torso)
 
 }  // namespace
 
+/// A person leans on the wall over the width of the shoulders and not at a point.
+std::vector<double> wall_pressures(const Wall& wall, const std::vector<PressOnWall>& presses)
+{
+    const Vec2<double> along = wall.to - wall.from;
+    const double length = std::max(std::sqrt(dot(along, along)), 1e-9);
+    std::vector<double> bands(static_cast<std::size_t>(std::ceil(length)), 0.0);
+    for (const auto& [at, radius, force] : presses) {
+        const double place = dot(along, at - wall.from) / length;
+        for (std::size_t band = 0; band < bands.size(); ++band) {
+            const double from = std::max(place - radius, static_cast<double>(band)),
+                         to = std::min({place + radius, static_cast<double>(band) + 1, length});
+            if (to > from) bands[band] += force * (to - from) / (2 * radius);
+        }
+    }
+    const double rest = length - static_cast<double>(bands.size() - 1);
+    bands.back() /= std::max(rest, 0.1);
+    return bands;
+}
+
 View view_of(const Crowd& crowd, const Scene& scene)
 {
     View view;
     view.walls = crowd.walls;
     view.period_y = crowd.period_y;
     std::vector<double> load(crowd.agents.size(), 0.0);
-    const std::vector<Touch> touches = crowd.touches(scene);
-    for (const Touch& touch : touches) {
+    std::vector<std::vector<PressOnWall>> presses(crowd.walls.size());
+    for (const Touch& touch : crowd.touches(scene)) {
+        const auto b = static_cast<std::size_t>(touch.b);
         if (touch.a >= 0) load[static_cast<std::size_t>(touch.a)] += touch.force;
-        load[static_cast<std::size_t>(touch.b)] += touch.force;
+        load[b] += touch.force;
+        if (touch.wall < 0) continue;
+        const Vec3<double>& at = crowd.positions[b];
+        presses[static_cast<std::size_t>(touch.wall)].push_back(
+            {{at.x, at.y}, static_cast<double>(crowd.agents[b].radius), touch.force});
     }
     for (std::size_t i = 0; i < std::min(crowd.positions.size(), load.size()); ++i) {
         const Agent& agent = crowd.agents[i];
@@ -73,7 +72,7 @@ View view_of(const Crowd& crowd, const Scene& scene)
              load[i] / circumference_of(agent, crowd.are_torsos), i});
     }
     for (std::size_t w = 0; w < crowd.walls.size(); ++w)
-        view.wall_pressures.push_back(pressures_on(static_cast<std::int32_t>(w), crowd, touches));
+        view.wall_pressures.push_back(wall_pressures(crowd.walls[w], presses[w]));
     return view;
 }
 

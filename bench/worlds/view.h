@@ -27,6 +27,15 @@ struct View {
     double period_y = 0;  ///< m, as Crowd::period_y
 };
 
+/// A person who leans on a wall.
+struct PressOnWall {
+    Vec2<double> at{};  ///< m, the person's centre
+    double radius = 0;  ///< m
+    double force = 0;   ///< N
+};
+/// View::wall_pressures of one wall.
+std::vector<double> wall_pressures(const Wall& wall, const std::vector<PressOnWall>& presses);
+
 /// The crowd as last observed, with the forces of the last step.
 View view_of(const Crowd& crowd, const Scene& scene);
 
