@@ -1,6 +1,8 @@
 // Settings for tests in which two scenes must step alike in every way.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <vector>
 
 #include "motley/motley.h"
@@ -20,6 +22,18 @@ inline std::vector<SolverSettings> every_way()
     ways[6].exact_contacts = true;
     ways[7].exact_joints = ways[7].exact_limits = true;
     return ways;
+}
+
+/// run(options) must return the same, such as hashes, for every instruction set and for one to three threads. Returns what it
+/// returns in scalar lanes.
+template <class Run>
+auto expect_same_bits(const Run& run)
+{
+    const auto scalar = run(SolverOptions{.isa = Isa::scalar});
+    for (const Isa isa : available_isas()) EXPECT_EQ(run(SolverOptions{.isa = isa}), scalar) << isa_name(isa);
+    for (const int threads : {2, 3})
+        EXPECT_EQ(run(SolverOptions{.threads = threads, .alone_below = 0}), scalar) << threads << " threads";
+    return scalar;
 }
 
 /// The same settings, but nothing is solved in lockstep: a step that measures itself sweeps everything by colour.

@@ -94,4 +94,26 @@ inline Arm arm_of(int count, double mass, const TwistDriveDefinition& drive, boo
     return arm;
 }
 
+/// The states of a body of these arms, which must be solved in lockstep, for a second.
+inline std::vector<BodyState> states_in_lockstep(Arm& arms, BodyId watched)
+{
+    Solver solver(exact_limits(4));
+    std::vector<BodyState> states;
+    for (int step = 0; step < 60; ++step) {
+        const StepReport report = solver.step(arms.scene, frame_time);
+        EXPECT_GT(report.joints_in_lockstep, 0);
+        states.push_back(arms.scene.state(watched));
+    }
+    return states;
+}
+/// The height and the speed of the body, to the bit.
+inline void expect_equal(const std::vector<BodyState>& one, const std::vector<BodyState>& other)
+{
+    ASSERT_EQ(one.size(), other.size());
+    for (std::size_t step = 0; step < one.size(); ++step) {
+        EXPECT_EQ(one[step].position.y, other[step].position.y) << step;
+        EXPECT_EQ(one[step].linear_velocity.y, other[step].linear_velocity.y) << step;
+    }
+}
+
 }  // namespace motley::testing

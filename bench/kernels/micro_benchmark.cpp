@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <random>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -105,7 +108,7 @@ void memory(benchmark::State& state)
 
 /// A step of 10,000 ball-sockets, in a net or in a thousand chains of eleven bodies, after `changed` of them were
 /// removed and added again.
-void changing_joints(benchmark::State& state, bool in_chains, int changed)
+void changing_joints(benchmark::State& state, bool in_chains, int changed, bool exact)
 {
     Scene scene;
     std::vector<BodyId> bodies;
@@ -121,7 +124,7 @@ void changing_joints(benchmark::State& state, bool in_chains, int changed)
     }
     std::vector<ConstraintId> joints;
     for (const BallSocketDefinition& definition : definitions) joints.push_back(scene.add_joint(definition));
-    Solver solver({.gravity = {0, -9.81F, 0}});
+    Solver solver({.exact_joints = exact, .gravity = {0, -9.81F, 0}});
     solver.step(scene, 1.0F / 60);
     std::uint32_t random = 1;
     for (auto _ : state) {
@@ -133,6 +136,73 @@ void changing_joints(benchmark::State& state, bool in_chains, int changed)
         }
         solver.step(scene, 1.0F / 60);
     }
+}
+
+/// A thousand ragdolls of eleven bodies, who hang on nothing.
+struct Ragdolls {
+    static constexpr std::array<int, 11> parents{-1, 0, 1, 1, 3, 1, 5, 0, 7, 0, 9};
+    Scene scene;
+    std::vector<std::array<BodyId, parents.size()>> figures{1000};
+    std::mt19937 random{1};
+
+    Ragdolls()
+    {
+        for (std::size_t figure = 0; figure < figures.size(); ++figure) add(figure);
+    }
+    std::size_t any() { return random() % figures.size(); }
+    void add(std::size_t figure)
+    {
+        for (std::size_t i = 0; i < parents.size(); ++i) {
+            BodyDefinition definition;
+            definition.position = {2.0 * static_cast<double>(figure), -static_cast<double>(i), 0};
+            definition.linear_damping = definition.angular_damping = 3;
+            figures[figure][i] = scene.add_body(definition);
+            if (i == 0) continue;
+            const auto parent = static_cast<std::size_t>(parents[i]);
+            const Vec3<float> half{0, 0.5F * (static_cast<float>(parent) - static_cast<float>(i)), 0};
+            scene.add_joint(BallSocketDefinition{figures[figure][parent], figures[figure][i], half, -half});
+        }
+    }
+};
+
+/// A step of them, after `changed` were removed, their bodies in any order, and as many added. The first thousand steps, in
+/// which every one may have been changed, are not timed.
+void changing_figures(benchmark::State& state, int changed, bool exact)
+{
+    Ragdolls ragdolls;
+    Solver solver({.exact_joints = exact, .gravity = {0, -9.81F, 0}});
+    const auto step = [&] {
+        for (int i = 0; i < changed; ++i) {
+            const std::size_t figure = ragdolls.any();
+            auto& bodies = ragdolls.figures[figure];
+            std::shuffle(bodies.begin(), bodies.end(), ragdolls.random);
+            for (const BodyId body : bodies) ragdolls.scene.remove_body(body);
+            ragdolls.add(figure);
+        }
+        return solver.step(ragdolls.scene, 1.0F / 60);
+    };
+    for (int i = 0; i < 1000; ++i) step();
+    StepReport report;
+    for (auto _ : state) report = step();
+    state.counters["in_lockstep"] =
+        static_cast<double>(report.joints_in_lockstep) / static_cast<double>(report.joints);
+}
+
+/// A step of them at rest without weight, after `pushed` got a push, of which they move for a second and fall asleep again.
+void resting_figures(benchmark::State& state, int pushed, bool exact)
+{
+    Ragdolls ragdolls;
+    Solver solver({.exact_joints = exact, .sleep_speed = 0.05F, .sleep_after = 0.3F});
+    const auto step = [&] {
+        for (int i = 0; i < pushed; ++i)
+            ragdolls.scene.set_velocity(ragdolls.figures[ragdolls.any()][0], {1, 0, 0.5F}, {0, 1, 0});
+        return solver.step(ragdolls.scene, 1.0F / 60);
+    };
+    for (int i = 0; i < 200; ++i) step();
+    std::int64_t asleep = 0;
+    for (auto _ : state) asleep += step().bodies_asleep;
+    state.counters["asleep"] = static_cast<double>(asleep) / static_cast<double>(state.iterations()) /
+                               static_cast<double>(ragdolls.scene.body_count());
 }
 
 /// A step of Method::direct at its default substeps: a standing wall of cubes with friction. Each cube has two
@@ -274,11 +344,25 @@ void enter_all()
     enter_order("memory_order/shuffled_and_renumbered", BodyOrder::shuffled, true);
     benchmark::RegisterBenchmark("memory/planar_crowd", memory)->Iterations(3)->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("hand_over/threads:2", hand_over);
-    for (const bool in_chains : {false, true}) {
-        for (const int changed : {0, 20}) {
-            benchmark::RegisterBenchmark(
-                fmt::format("joints_changed:{}/{}", changed, in_chains ? "chains" : "net").c_str(),
-                [in_chains, changed](benchmark::State& s) { changing_joints(s, in_chains, changed); })
+    for (const bool exact : {false, true}) {
+        const std::string_view joints = exact ? "/exact_joints" : "";
+        for (const bool in_chains : {false, true}) {
+            for (const int changed : {0, 20}) {
+                benchmark::RegisterBenchmark(
+                    fmt::format("joints_changed:{}/{}{}", changed, in_chains ? "chains" : "net", joints)
+                        .c_str(),
+                    [=](benchmark::State& s) { changing_joints(s, in_chains, changed, exact); })
+                    ->Unit(benchmark::kMillisecond);
+            }
+        }
+        for (const int changed : {0, 2}) {
+            benchmark::RegisterBenchmark(fmt::format("figures_changed:{}{}", changed, joints).c_str(),
+                                         [=](benchmark::State& s) { changing_figures(s, changed, exact); })
+                ->Unit(benchmark::kMillisecond);
+        }
+        for (const int pushed : {0, 1, 5}) {
+            benchmark::RegisterBenchmark(fmt::format("resting_figures/pushed:{}{}", pushed, joints).c_str(),
+                                         [=](benchmark::State& s) { resting_figures(s, pushed, exact); })
                 ->Unit(benchmark::kMillisecond);
         }
     }

@@ -305,20 +305,9 @@ TEST(ExactLimits, OfAFigureDoNotDependOnTheOtherLanes)
             add_arm(arms, 3, 100, motor(0, torque), false, 5.0 * i);
             if (i == 5) watched = arms.load;
         }
-        Solver solver(exact_limits(4));
-        std::vector<BodyState> states;
-        for (int step = 0; step < 60; ++step) {
-            const StepReport report = solver.step(arms.scene, frame_time);
-            EXPECT_GT(report.joints_in_lockstep, 0);
-            states.push_back(arms.scene.state(watched));
-        }
-        return states;
+        return testing::states_in_lockstep(arms, watched);
     };
-    const std::vector<BodyState> among_strong = run(1e6F), among_weak = run(50);
-    for (std::size_t step = 0; step < among_strong.size(); ++step) {
-        EXPECT_EQ(among_strong[step].position.y, among_weak[step].position.y) << step;
-        EXPECT_EQ(among_strong[step].linear_velocity.y, among_weak[step].linear_velocity.y) << step;
-    }
+    testing::expect_equal(run(1e6F), run(50));
 }
 
 /// Ragdolls that fall: on a floor, each a lane; and on a floor that moves, swept by colour.
@@ -336,10 +325,7 @@ TEST(ExactLimits, HaveTheSameBitsForEveryInstructionSetAndThreadCount)
             }
             return hashes;
         };
-        const std::vector<std::uint64_t> scalar = run({.isa = Isa::scalar});
-        for (const Isa isa : available_isas()) EXPECT_EQ(run({.isa = isa}), scalar) << isa_name(isa);
-        for (const int threads : {2, 3})
-            EXPECT_EQ(run({.threads = threads, .alone_below = 0}), scalar) << threads;
+        testing::expect_same_bits(run);
     }
 }
 

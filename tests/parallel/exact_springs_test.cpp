@@ -293,21 +293,11 @@ TEST(ExactSprings, OfAFigureDoNotDependOnTheOtherLanes)
             testing::add_arm(arms, 3, 100, drive, false, 5.0 * i);
             if (i == 5) watched = arms.load;
         }
-        Solver solver(exact_limits(4));
-        std::vector<BodyState> states;
-        for (int step = 0; step < 60; ++step) {
-            const StepReport report = solver.step(arms.scene, frame_time);
-            EXPECT_GT(report.joints_in_lockstep, 0);
-            states.push_back(arms.scene.state(watched));
-        }
-        return states;
+        return testing::states_in_lockstep(arms, watched);
     };
     const std::vector<BodyState> among_stiff = run(1e5F, 1e9F);
     for (const std::vector<BodyState>& among : {run(0, 1e9F), run(1e5F, 200)}) {
-        for (std::size_t step = 0; step < among.size(); ++step) {
-            EXPECT_EQ(among_stiff[step].position.y, among[step].position.y) << step;
-            EXPECT_EQ(among_stiff[step].linear_velocity.y, among[step].linear_velocity.y) << step;
-        }
+        testing::expect_equal(among_stiff, among);
     }
 }
 
@@ -330,9 +320,7 @@ TEST(ExactSprings, HaveTheSameBitsForEveryInstructionSetAndThreadCount)
             }
             return hashes;
         };
-        const std::vector<std::uint64_t> scalar = run({.isa = Isa::scalar});
-        for (const Isa isa : available_isas()) EXPECT_EQ(run({.isa = isa}), scalar) << isa_name(isa);
-        for (const int threads : {2, 3}) EXPECT_EQ(run({.threads = threads}), scalar) << threads;
+        testing::expect_same_bits(run);
     }
 }
 

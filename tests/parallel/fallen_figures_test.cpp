@@ -115,10 +115,7 @@ TEST(FallenFigures, EveryInstructionSetAndThreadCountHasTheSameBits)
             }
             return hashes;
         };
-        const std::vector<std::uint64_t> scalar = run({.isa = Isa::scalar});
-        for (const Isa isa : available_isas()) EXPECT_EQ(run({.isa = isa}), scalar) << isa_name(isa);
-        EXPECT_EQ(run({.threads = 2, .alone_below = 0}), scalar);
-        EXPECT_EQ(run({.threads = 3, .alone_below = 0}), scalar);
+        testing::expect_same_bits(run);
     }
 }
 

@@ -10,14 +10,15 @@
 
 namespace motley::testing {
 
-inline void lay_out(Layout& layout, Scene& host_scene, std::span<const Contact> contacts)
+inline void lay_out(Layout& layout, Scene& host_scene, std::span<const Contact> contacts,
+                    const FigureUse& figures = {})
 {
     SceneCore& scene = core_of(host_scene);
     const std::unique_ptr<Executor> executor = make_executor(1);
     StageRunner runner(executor.get());
     ContactPipeline pipeline(runner, layout);
     ASSERT_EQ(pipeline.take_in(scene, contacts, BadContacts::refuse), "");
-    ASSERT_EQ(pipeline.lay_out(scene, contacts, {.figures = {}, .adds_up = true}), "");
+    ASSERT_EQ(pipeline.lay_out(scene, contacts, {.figures = figures, .adds_up = true}), "");
     scene.contacts.accept_staged();
 }
 

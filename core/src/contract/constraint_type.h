@@ -47,9 +47,9 @@
 //   for SolverSettings::exact_joints, with equality_count
 //     equality_rows<Real>(row, a, b, rows*)                           J and C, row by row
 //   likewise, with an active_row
-//     act<Real>(step, row, substep, impulse&, a, b) -> ActingRow             what acts now; SubstepRow::effective_mass is 0 there, so that
-//                                                                     sweeps leave limit and motor alone, or of a spring
-//                                                                     spring_effective_mass and spring_kept
+//     act<Real>(step, row, substep, impulse&, a, b) -> ActingRow      what acts now: there SubstepRow::effective_mass, or of a
+//                                                                     spring spring_effective_mass and spring_kept, is 0,
+//                                                                     so that sweeps leave it alone
 //     exceeds<Real>(row, impulse, by) -> Real                         with has_motor: 1 where it has pushed harder than it may
 //   likewise, each substep, with turns_about_points
 //     lengthen_step<Real>(substep&, a, arm_a, b, arm_b)               where a point is locked: see locked_point.h
@@ -91,9 +91,9 @@ struct ConstraintTraits {
     static constexpr bool turns_about_points = false;
     /// Is defined by points of the world: has world_points(definition), and start.from_world_points().
     static constexpr bool has_world_points = false;
-    /// Of types with a limit or motor that exact joints may hold: see equality_row.h. Such a type has act(), SubstepRow::effective_mass, and
-    /// the first Real of Impulse is the impulse of the limit. With `has_motor` the second is that of the motor and the
-    /// third that of the spring, and SubstepRow has spring_effective_mass and spring_kept.
+    /// Of types with a limit or motor that exact joints may hold: see equality_row.h. Such a type has act() and
+    /// SubstepRow::effective_mass, and the first Real of Impulse is the impulse of the limit. With `has_motor` the second is that
+    /// of the motor and the third that of the spring, and SubstepRow has spring_effective_mass and spring_kept.
     static constexpr ActiveRow active_row = ActiveRow::none;
     static constexpr bool has_motor = false;
     /// Rows of J that exact joints may lock.

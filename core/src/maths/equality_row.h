@@ -3,9 +3,9 @@
 //
 // A sweep knows the response of the two bodies of a limit alone. Where these are links that bear tons, the response is a
 // hundred or a million times as large as that of the figure, and sweeps would take as many rounds to hold the load. So sweeps
-// only find out that a limit or a motor acts; from then on its row is one more row of the lock, until it would pull where
-// it can only push, or push harder than it may: an active set, changed whenever the figure is factored (J. Nocedal, S.
-// Wright, Numerical Optimization, 2006, section 16.5). So with springs, whose rows give way: J v + give lambda = speed.
+// only find out that a limit, a motor or a spring acts; from then on its row is one more row of the lock, until it would pull
+// where it can only push, or push harder than it may: an active set, changed whenever the figure is factored (J. Nocedal, S.
+// Wright, Numerical Optimization, 2006, section 16.5). The row of a spring gives way: J v + give lambda = speed.
 #pragma once
 
 #include <cstdint>
@@ -40,9 +40,8 @@ struct ActsBy {
 
 template <class Real>
 struct ActingRow {
-    EqualityRow<Real>
-        row;          ///< with the error of the limit and the speed of the motor or spring, whichever acts
-    Real by;          ///< ActsBy
+    EqualityRow<Real> row;  ///< with the error of a limit that acts, or the speed of a motor or spring
+    Real by;                ///< ActsBy
     Real taken_back;  ///< N s or N m s, to be added along the row: what has pulled or pushed too hard lets go
     Real effective_mass;  ///< K^-1 of the two bodies alone, as in SubstepRow
     Real give;            ///< of a spring: see SoftRow; else 0

@@ -165,6 +165,7 @@ struct SceneArchive {
         });
         archive(joints.slots);
         archive(joints.free_slots);
+        archive(joints.added);
         archive(joints.watched);
     }
     template <class Archive, class Store>

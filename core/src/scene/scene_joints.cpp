@@ -71,6 +71,7 @@ ConstraintId SceneCore::take_joint_slot(int type, std::size_t index)
     entry.watched = 0;
     entry.break_limit = {};
     entry.iterations = 0;
+    entry.number = ++joints->added;
     return {slot, entry.generation};
 }
 

@@ -18,6 +18,12 @@ void grow_to(Vector& values, std::size_t size)
 {
     if (values.size() < size) values.resize(with_room_to_grow(size));
 }
+/// The same with this value for the new elements. (An overload: a fill is more code, and most callers need none.)
+template <class Vector>
+void grow_to(Vector& values, std::size_t size, const typename Vector::value_type& value)
+{
+    if (values.size() < size) values.resize(with_room_to_grow(size), value);
+}
 /// values.resize(size), with room for twice as much: for what may grow much from one step to the next.
 template <class Vector>
 void resize_with_room(Vector& values, std::size_t size)

@@ -132,10 +132,12 @@ struct JointStores {
         BreakLimit break_limit{};
         std::uint16_t iterations =
             0;  ///< least number of sweeps of solve in a substep; 0: as SolverSettings says
+        std::uint64_t number = 0;  ///< of the joints that have been added, this was the last so far
     };
     typename StoresOf<JointTypes>::type stores;
     Array<Slot> slots{Slot{}};  ///< slot 0 is the null handle's
     Array<std::uint32_t> free_slots;
+    std::uint64_t added = 0;  ///< joints, also those that were removed since
     /// The joints on each body as a doubly linked list of joint ends: end 2 s is the end of the joint in slot s on its
     /// body a, end 2 s + 1 the one on its body b; 0 is no end. The list of a body begins at BodyStore::first_ends.
     struct End {
@@ -148,19 +150,25 @@ struct JointStores {
     /// A layout that holds the same token was made from the same joints.
     std::shared_ptr<const char> version;
     /// What has changed since the set had the token `since`, so that a layout that holds it need not start over: the slots
-    /// of joints that came, went or moved in their store, in any order, some of them twice.
+    /// of joints that came, went, moved in their store, or whose bodies fell asleep or woke, in any order, some of them twice.
     struct Changes {
         std::shared_ptr<const char> since;  ///< null when a list of joints would not do, or would be too long
         Array<std::uint32_t> slots;
     } changes;
-    /// The joint in this slot has come, gone or moved. Does not allocate.
+    /// The joint in this slot has come, gone or moved, or is solved no more, or again. Does not allocate: more changes than there is room for are no longer
+    /// followed one by one.
     void change(std::uint32_t slot)
     {
         if (version) changes.since = std::exchange(version, nullptr);
         if (changes.slots.size() == changes.slots.capacity()) changes.since.reset();
         if (changes.since) changes.slots.push_back(slot);
     }
-    /// The rows of bodies, or which joints are solved, have changed, or too many joints.
+    /// The same for all joints of the list that begins at `first`: their body has fallen asleep or woken.
+    void change_all_on(std::uint32_t first)
+    {
+        for (std::uint32_t end = first; end != 0; end = ends[end].next) change(end / 2);
+    }
+    /// The rows of bodies, or which joints are solved, have changed.
     void change_altogether()
     {
         version.reset();
@@ -173,6 +181,13 @@ struct JointStores {
         changes.slots.clear();
         changes.slots.reserve(64 + slots.size() / 16);
         if (!version) version = std::make_shared<const char>('\0');
+    }
+
+    /// Joints of one type get their colours in the order in which they were added, whatever was removed since: so figures that
+    /// are built alike get alike colours.
+    [[nodiscard]] std::uint64_t colouring_order(std::uint32_t slot) const
+    {
+        return std::uint64_t{slots[slot].type} << 56 | slots[slot].number;
     }
 
     /// Reserves room to give out one more handle and to take it back, so that neither can fail.

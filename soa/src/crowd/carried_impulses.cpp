@@ -72,7 +72,7 @@ void CarriedImpulses::open()
 
 void CarriedImpulses::make_room(std::size_t rows, std::size_t impulses)
 {
-    if (heads_.size() < rows) heads_.resize(with_room_to_grow(rows), none);
+    grow_to(heads_, rows, none);
     grow_to(entries_, used_ + impulses);
 }
 

@@ -28,8 +28,8 @@ struct CopyBody {
 };
 
 /// A node of a figure's tree: a child body and all locks between it and its parent body, and the limits, motors and springs
-/// between these two that may act. Those of all nodes are solved at once, by factoring J M^-1 J^T along the tree without fill (J:
-/// their Jacobian, M: mass matrix).
+/// between these two that may act. Those of all nodes are solved at once, by factoring J M^-1 J^T along the tree without fill
+/// (J: their Jacobian, M: mass matrix).
 struct FigureNode {
     int body;         ///< the child body
     int parent;       ///< the parent body, moving or fixed; -1 for a root that floats
@@ -50,8 +50,9 @@ struct FigureNode {
     std::int64_t taken;     ///< impulse of what has let go, applied by the next solve, six
     std::int64_t in_use;    ///< see FigureBlock::rows_of() and for_each_acting(), one
     std::int64_t acts_by;   ///< ActsBy of its limits, motors and springs, one of each
-    std::int64_t give, given,
-        speed;  ///< of ActingRow, one per row; `given` also of what the spring has pushed since
+    std::int64_t give;      ///< ActingRow::give, one per row; 0 of locks
+    std::int64_t given;  ///< ActingRow::given, and give times what the spring has pushed since; one per row
+    std::int64_t speed;  ///< EqualityRow::speed as act() found it; one per row
     std::int64_t
         tension;  ///< lambda of the last substep times its length, N s2; one per row of the locks. At `target` in
                   ///< figures whose nodes have no limits or motors
@@ -78,13 +79,13 @@ struct FigureNode {
     [[nodiscard]] std::int64_t arm_of_child() const { return jacobian; }
     [[nodiscard]] std::int64_t arm_of_parent() const { return jacobian + std::int64_t{3} * block_lanes; }
     static constexpr int row_floats = 11 * block_lanes;  ///< of an EqualityRow
-    /// Where the speed of a limit, motor or spring is, once the tree is factored: see PointRows::keep. `rows_in_use`: how many rows
-    /// the node has now.
+    /// Where the speed that a limit, motor or spring still has to reach is, once the tree is factored: in an EqualityRow, or
+    /// where PointRows::keep puts it. `rows_in_use`: how many rows the node has now.
     [[nodiscard]] std::int64_t speed_left(int row, int rows_in_use) const
     {
-        const int of_points = 6 + rows_in_use + 3 * (rows_in_use - 3);
-        const int field = hangs_by_point() ? of_points + (row - 3) : 11 * row + 10;
-        return jacobian + std::int64_t{field} * block_lanes;
+        const int of_points = 6 + rows_in_use + 3 * (rows_in_use - 3) + (row - 3);
+        return jacobian + (hangs_by_point() ? std::int64_t{of_points} * block_lanes
+                                            : std::int64_t{row} * row_floats + 10 * block_lanes);
     }
 };
 
@@ -138,6 +139,9 @@ struct FigureShape {
 /// Builds the tree of all locks of a shape and the closures of its loops. Returns false and builds neither when there
 /// are no locks or too many rows of closures.
 bool build_tree(FigureShape& shape);
+/// How many locks a shape, for which build_tree() has found too many closures, may lose and still have too many, whichever
+/// locks its tree took then. Below 0 when that cannot be told from the pairs of bodies that are locked to each other.
+std::int64_t spare_loops_of(const FigureShape& shape);
 
 /// A block of up to sixteen copies.
 struct FigureBlock {

@@ -1,5 +1,6 @@
 // Copies leave their blocks and come into them when a few joints come and go.
 #include <algorithm>
+#include <utility>
 
 #include "figures/figures.h"
 #include "figures/members.h"
@@ -32,6 +33,7 @@ bool Figures::take_apart(const Copy& copy, JointLanes& lanes)
 {
     FigureBlock& block = blocks_[static_cast<std::size_t>(copy.block)];
     const FigureShape& shape = *block.shape;
+    if (shape.bodies.size() > most_bodies) return false;
     const Copy last{copy.block, --block.count};
     alone_.clear();
     for (std::size_t joint = 0; joint < shape.joints.size(); ++joint) {
@@ -59,7 +61,8 @@ bool Figures::put_together(std::span<const JointCandidate> component, const Body
     if (!std::all_of(component.begin(), component.end(),
                      [&](const JointCandidate& joint) { return can_be_in_lanes(joint.placement, kernels); }))
         return true;
-    const Members members(component, bodies, names_);
+    const Members members(component, bodies, exact_, names_);
+    if (members.is_refused[0] != 0) return false;  // for refused()
     const std::span<const std::uint32_t> signature = members.signature_of(0);
     const auto fits = [&](const FigureBlock& block) {
         const Array<std::uint32_t>& of_shape = block.shape->signature;
@@ -71,6 +74,7 @@ bool Figures::put_together(std::span<const JointCandidate> component, const Body
         if ((block == blocks_.end() || other->count < block->count) && fits(*other)) block = other;
     }
     if (block == blocks_.end()) {
+        if (exact_ && build_tree(*members.shape_of(0))) return false;
         const std::uint64_t shape = members.hash_of(0);
         const auto waiting = std::find_if(waiting_.begin(), waiting_.end(),
                                           [&](const Waiting& other) { return other.shape == shape; });
@@ -79,7 +83,7 @@ bool Figures::put_together(std::span<const JointCandidate> component, const Body
         return waiting_.size() < most_waiting;
     }
     const std::size_t rows = bodies.rows(BodyKind::rigid).size();
-    if (block_of_row_.size() < rows) block_of_row_.resize(rows, none);
+    grow_to(block_of_row_, rows, none);
     grow_to(place_of_row_, rows);
     const Copy copy{static_cast<std::int32_t>(block - blocks_.begin()), block->count++};
     alone_.clear();
@@ -88,6 +92,17 @@ bool Figures::put_together(std::span<const JointCandidate> component, const Body
     for (std::size_t joint = members.joints.size(); joint-- > 0;)
         lanes.solve_in_copy(members.joints[joint]->placement, lane_of(copy, joint));
     return true;
+}
+
+bool Figures::are_full_enough() const
+{
+    const FigureShape* has_few = nullptr;
+    return std::all_of(blocks_.begin(), blocks_.end(), [&](const FigureBlock& block) {
+        if (block.count >= fewest_copies) return true;
+        // What is solved exactly has a block, however few copies there are, but one such block is enough.
+        return block.shape->has_tree() && block.count > 0 &&
+               std::exchange(has_few, block.shape) != block.shape;
+    });
 }
 
 }  // namespace motley

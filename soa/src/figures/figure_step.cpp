@@ -108,7 +108,8 @@ void add_acting_rows(const KernelContext& context, const FigureBlock& block, con
     block.system[node.in_use] = static_cast<float>(rows);
 }
 
-/// Locks do not give way. act() says so of the rows of limits, motors and springs.
+/// Locks do not give way. (act() says how far the rows of limits, motors and springs do.) Once a step, because the memory may
+/// have been that of another block.
 void make_locks_rigid(const FigureBlock& block)
 {
     for (const FigureNode& node : block.shape->nodes)

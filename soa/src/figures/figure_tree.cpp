@@ -1,4 +1,5 @@
 // The order in which the bodies and locks of a figure are eliminated.
+#include <algorithm>
 #include <utility>
 
 #include "figures/figure.h"
@@ -201,6 +202,19 @@ class TreeBuilder {
 bool build_tree(FigureShape& shape)
 {
     return TreeBuilder(shape).build();
+}
+
+std::int64_t spare_loops_of(const FigureShape& shape)
+{
+    Array<std::pair<int, int>> pairs;
+    for (const FigureShape::Joint& joint : shape.joints)
+        if (joint.equalities > 0) pairs.push_back(std::minmax(joint.a, joint.b));
+    std::sort(pairs.begin(), pairs.end());
+    const auto end = std::unique(pairs.begin(), pairs.end());
+    // A node takes all locks between one pair of bodies, and there are no more nodes than moving bodies. Every other pair has
+    // a row of a closure or more.
+    return (end - pairs.begin()) - std::count(shape.bodies.begin(), shape.bodies.end(), BodyKind::rigid) -
+           most_closure_rows;
 }
 
 }  // namespace motley

@@ -2,6 +2,7 @@
 #include "figures/figures.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -9,23 +10,6 @@
 
 namespace motley {
 namespace {
-
-std::unique_ptr<FigureShape> shape_of(const Members& members, std::size_t member)
-{
-    auto shape = std::make_unique<FigureShape>();
-    for (const BodyRow body : members.bodies_of(member)) shape->bodies.push_back(body.kind());
-    const std::span<const JointCandidate* const> joints = members.joints_of(member);
-    const std::span<const std::uint32_t> signature = members.signature_of(member);
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-        const Placement& p = joints[i]->placement;
-        shape->joints.push_back({p.type, p.a.kind(), p.b.kind(), p.colour,
-                                 static_cast<int>(signature[3 * i + 1]),
-                                 static_cast<int>(signature[3 * i + 2]), joints[i]->equalities,
-                                 joints[i]->locks_point, joints[i]->active_row});
-    }
-    shape->signature.assign(signature.begin(), signature.end());
-    return shape;
-}
 
 /// The members in an order in which copies follow each other. (If two shapes had the same hash, fewer copies would be
 /// found at once.)
@@ -61,7 +45,9 @@ void Figures::find(std::span<const JointCandidate> joints, const BodySets& sets,
                    const KernelTable& kernels, bool exact, Array<Placement>& placed)
 {
     const std::size_t rigid_rows = bodies.rows(BodyKind::rigid).size();
+    exact_ = exact;
     refused_ = {};
+    spare_loops_ = std::numeric_limits<std::int64_t>::max();
     shapes_.clear();
     blocks_.clear();
     waiting_.clear();
@@ -83,9 +69,12 @@ void Figures::find(std::span<const JointCandidate> joints, const BodySets& sets,
         copies = std::span(order).subspan(next, end - next);
         // Too few copies, and nothing to be solved exactly.
         if (!exact && copies.size() < std::size_t{fewest_copies}) continue;
-        std::unique_ptr<FigureShape> shape = shape_of(members, copies.front());
+        std::unique_ptr<FigureShape> shape = members.shape_of(copies.front());
         const bool has_tree = exact && members.is_refused[copies.front()] == 0 && build_tree(*shape);
-        if (!has_tree && shape->bodies.size() > most_bodies) continue;
+        if (!has_tree && shape->bodies.size() > most_bodies) {
+            spare_loops_ = std::min(spare_loops_, spare_loops_of(*shape));
+            continue;
+        }
         for (std::size_t first = 0; first < copies.size(); first += block_lanes) {
             const std::size_t count = std::min<std::size_t>(block_lanes, copies.size() - first);
             if (!has_tree && count < std::size_t{fewest_copies}) break;

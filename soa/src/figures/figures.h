@@ -40,7 +40,7 @@ class Figures {
     /// After `placed` has been filled into its blocks: looks up the blocks of the joints.
     void bind(BatchSet& batches, const KernelTable& kernels);
 
-    /// When a few joints come or go (see JointLanes). No tree may be involved.
+    /// When a few joints come or go (see JointLanes).
     /// A copy in its block, or {none} for a body of no figure.
     struct Copy {
         std::int32_t block = none, lane = 0;
@@ -51,20 +51,18 @@ class Figures {
         return block == none ? Copy{} : Copy{block, place_of_row_[body.row()] % block_lanes};
     }
     /// Takes a copy out of its block: its joints are swept by colour from now on. Returns false when there is no room for
-    /// them; then all must be laid out anew.
+    /// them, or it has so many bodies that put_together() does not look for its like; then all must be laid out anew.
     [[nodiscard]] bool take_apart(const Copy& copy, JointLanes& lanes);
     /// A component that is swept by colour becomes a copy in a block of its shape, if there is one with a free lane: in the
-    /// one with the fewest copies.
-    /// Returns false when there has been none for as many copies of a shape as are worth a block, or for many shapes; then
-    /// all should be laid out anew.
+    /// one with the fewest copies. Returns false when all should be laid out anew: there has been none for as many copies of
+    /// a shape as are worth a block, or for many shapes, or the component is to be solved exactly.
     [[nodiscard]] bool put_together(std::span<const JointCandidate> component, const BodyStore& bodies,
                                     const KernelTable& kernels, JointLanes& lanes);
-    /// Whether no block has too few copies left to be worth it.
-    [[nodiscard]] bool are_worth_it() const
-    {
-        return std::all_of(blocks_.begin(), blocks_.end(),
-                           [](const FigureBlock& block) { return block.count >= fewest_copies; });
-    }
+    /// A joint of a component that has more than most_bodies and no tree has come or gone. Returns false if it may have a
+    /// tree now.
+    [[nodiscard]] bool may_lose_a_loop() { return !exact_ || --spare_loops_ >= 0; }
+    /// Whether copies that have left leave no block so empty that its shape would better have fewer blocks, or none.
+    [[nodiscard]] bool are_full_enough() const;
 
     /// Makes room for as many contacts in a step.
     void make_room(std::size_t contacts);
@@ -106,7 +104,10 @@ class Figures {
     [[nodiscard]] std::int64_t lone_joints() const { return is_empty() ? 0 : lone_joints_; }
 
   private:
+    bool exact_ = false;  ///< see find()
     Refused refused_;
+    /// How many loops of any component that has more than most_bodies may go before it can have a tree.
+    std::int64_t spare_loops_ = 0;
     BodyNames names_;
     struct Waiting {
         std::uint64_t shape;  ///< hash of the signature

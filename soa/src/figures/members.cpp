@@ -7,6 +7,8 @@
 #include <map>
 #include <numeric>
 
+#include "figures/joint_order.h"
+
 namespace motley {
 namespace {
 
@@ -34,19 +36,6 @@ BodyId light_between_heavy(std::span<const JointCandidate* const> joints, const 
     return {};
 }
 
-/// No two joints of a colour share a moving body, so those of a component, by colour, type and slot of a rigid body, are
-/// in the same order in every copy, whatever was added and removed before: the slots of a figure's bodies are in the
-/// order in which these were added.
-struct InOrder {
-    const Array<std::uint32_t>& slots;  ///< of the rigid rows
-    [[nodiscard]] std::uint64_t number(const JointCandidate* joint) const
-    {
-        const Placement& p = joint->placement;
-        return std::uint64_t{p.colour} << 40 | std::uint64_t{p.type} << 32 | slots[rigid_row_of(p)];
-    }
-    bool operator()(const JointCandidate* x, const JointCandidate* y) const { return number(x) < number(y); }
-};
-
 /// Adds a member whose joints end at `end`: numbers its bodies and writes its signature.
 void add_member(Members& members, std::size_t end, BodyNames& names, bool is_refused)
 {
@@ -55,11 +44,7 @@ void add_member(Members& members, std::size_t end, BodyNames& names, bool is_ref
     for (std::size_t i = members.first_joint.back(); i < end; ++i) {
         const JointCandidate& joint = *members.joints[i];
         const Placement& p = joint.placement;
-        members.signatures.push_back(p.colour | std::uint32_t{p.type} << 8 |
-                                     static_cast<std::uint32_t>(p.a.kind()) << 16 |
-                                     static_cast<std::uint32_t>(p.b.kind()) << 18 |
-                                     static_cast<std::uint32_t>(joint.equalities) << 20 |
-                                     static_cast<std::uint32_t>(joint.locks_point) << 24);
+        members.signatures.push_back(kind_number_of(joint));
         members.signatures.push_back(names.name(p.a, members.bodies, first_body));
         members.signatures.push_back(names.name(p.b, members.bodies, first_body));
     }
@@ -74,7 +59,8 @@ void add_member(Members& members, std::size_t end, BodyNames& names, bool is_ref
 /// component. Returns where the joints of each end, by its root.
 Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, const BodySets& sets,
                                        const BodyStore& bodies, const KernelTable& kernels,
-                                       std::size_t largest, Array<const JointCandidate*>& sorted)
+                                       std::size_t largest, BodyNames& names,
+                                       Array<const JointCandidate*>& sorted)
 {
     const BodyRows& rigid = bodies.rows(BodyKind::rigid);
     const auto root_of = [&](BodyRow body) { return static_cast<std::size_t>(sets.root(body)); };
@@ -94,11 +80,11 @@ Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, c
     std::array<std::uint32_t, parallel_colours> places{};
     for (std::size_t i = 0; i < joints.size(); ++i) {
         const Placement& joint = joints[i].placement;
-        const std::size_t root =
-            can_be_in_lanes(joint, kernels) ? root_of({BodyKind::rigid, rigid_row_of(joint)}) : 0;
-        const bool fits = can_be_in_lanes(joint, kernels) && members[root] <= largest;
-        roots[i] = fits ? static_cast<std::uint32_t>(root) : no_root;
-        if (!fits) continue;
+        roots[i] = no_root;
+        if (!can_be_in_lanes(joint, kernels)) continue;
+        const std::size_t root = root_of({BodyKind::rigid, rigid_row_of(joint)});
+        if (members[root] > largest) continue;
+        roots[i] = static_cast<std::uint32_t>(root);
         ++ends[root];
         ++places[joint.colour];
     }
@@ -111,34 +97,38 @@ Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, c
     for (std::uint32_t i = 0; i < joints.size(); ++i)
         if (roots[i] != no_root) by_colour[places[joints[i].placement.colour]++] = i;
     for (const std::uint32_t i : by_colour) sorted[ends[roots[i]]++] = &joints[i];
-    auto begin = sorted.begin();
+    JointOrder order;
+    std::size_t begin = 0;
     for (const std::uint32_t end : ends) {
-        const auto own_end = sorted.begin() + static_cast<std::ptrdiff_t>(end);
-        if (own_end - begin > 1) std::sort(begin, own_end, InOrder{rigid.slot});
-        begin = own_end;
+        if (end - begin > 1) order.sort(std::span(sorted).subspan(begin, end - begin), rigid.slot, names);
+        begin = end;
     }
     return ends;
 }
 
 }  // namespace
 
-Members::Members(std::span<const JointCandidate> component, const BodyStore& store, BodyNames& names)
+Members::Members(std::span<const JointCandidate> component, const BodyStore& store, bool exact,
+                 BodyNames& names)
 {
     for (const JointCandidate& joint : component) joints.push_back(&joint);
-    std::sort(joints.begin(), joints.end(), InOrder{store.rows(BodyKind::rigid).slot});
+    std::sort(joints.begin(), joints.end(), [](const JointCandidate* x, const JointCandidate* y) {
+        return x->placement.colour < y->placement.colour;
+    });
     names.make_room(store);
-    add_member(*this, joints.size(), names, false);
+    JointOrder().sort(joints, store.rows(BodyKind::rigid).slot, names);
+    add_member(*this, joints.size(), names, exact && light_between_heavy(joints, store) != BodyId{});
 }
 
 Members::Members(std::span<const JointCandidate> candidates, const BodySets& sets, const BodyStore& store,
                  const KernelTable& kernels, bool exact, BodyNames& names, Figures::Refused& refused)
 {
+    names.make_room(store);
     const Array<std::uint32_t> ends =
         sort_by_component(candidates, sets, store, kernels,
-                          exact ? store.rows(BodyKind::rigid).size() : Figures::most_bodies, joints);
+                          exact ? store.rows(BodyKind::rigid).size() : Figures::most_bodies, names, joints);
     signatures.reserve(4 * joints.size());
     bodies.reserve(2 * joints.size());
-    names.make_room(store);
     for (const std::uint32_t end : ends) {
         const std::size_t begin = first_joint.back();
         if (begin == end) continue;
@@ -151,6 +141,23 @@ Members::Members(std::span<const JointCandidate> candidates, const BodySets& set
         }
         add_member(*this, end, names, light != BodyId{});
     }
+}
+
+std::unique_ptr<FigureShape> Members::shape_of(std::size_t member) const
+{
+    auto shape = std::make_unique<FigureShape>();
+    for (const BodyRow body : bodies_of(member)) shape->bodies.push_back(body.kind());
+    const std::span<const JointCandidate* const> own = joints_of(member);
+    const std::span<const std::uint32_t> signature = signature_of(member);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        const Placement& p = own[i]->placement;
+        shape->joints.push_back({p.type, p.a.kind(), p.b.kind(), p.colour,
+                                 static_cast<int>(signature[3 * i + 1]),
+                                 static_cast<int>(signature[3 * i + 2]), own[i]->equalities,
+                                 own[i]->locks_point, own[i]->active_row});
+    }
+    shape->signature.assign(signature.begin(), signature.end());
+    return shape;
 }
 
 }  // namespace motley

@@ -1,6 +1,7 @@
 // Components of joints that may be figures.
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "figures/figures.h"
@@ -25,7 +26,7 @@ namespace motley {
 /// Components that may be figures, in flat lists: the joints of member m are those from first_joint[m] to
 /// first_joint[m + 1], and likewise its bodies and its signature.
 struct Members {
-    Array<const JointCandidate*> joints;  ///< by colour, type and body
+    Array<const JointCandidate*> joints;  ///< see JointOrder
     Array<BodyRow> bodies;                ///< in the order in which the joints name them
     Array<std::uint32_t> signatures;      ///< the shapes, in numbers: members with equal ones are copies
     Array<std::size_t> first_joint{0}, first_body{0}, first_number{0};
@@ -36,8 +37,8 @@ struct Members {
     /// told of those whose locks must not be solved exactly.
     Members(std::span<const JointCandidate> candidates, const BodySets& sets, const BodyStore& store,
             const KernelTable& kernels, bool exact, BodyNames& names, Figures::Refused& refused);
-    /// A component whose joints can all be in lanes.
-    Members(std::span<const JointCandidate> component, const BodyStore& store, BodyNames& names);
+    /// A component whose joints can all be in lanes. `exact`: likewise.
+    Members(std::span<const JointCandidate> component, const BodyStore& store, bool exact, BodyNames& names);
     [[nodiscard]] std::size_t count() const { return first_joint.size() - 1; }
     [[nodiscard]] std::span<const JointCandidate* const> joints_of(std::size_t member) const
     {
@@ -52,6 +53,8 @@ struct Members {
         return std::span(signatures)
             .subspan(first_number[member], first_number[member + 1] - first_number[member]);
     }
+    /// Without a tree.
+    [[nodiscard]] std::unique_ptr<FigureShape> shape_of(std::size_t member) const;
     /// FNV-1a of the signature.
     [[nodiscard]] std::uint64_t hash_of(std::size_t member) const
     {

@@ -5,34 +5,32 @@
 
 namespace motley {
 
-std::int32_t BatchSet::constraint_in(const Lane& lane) const
+void BatchSet::set_constraint(const Lane& lane, std::int32_t constraint)
 {
-    return pool_of(lane).who[static_cast<std::size_t>(lane.block)].lane[lane.lane];
-}
-
-void BatchSet::name(const Lane& lane, std::int32_t constraint)
-{
+    Pool& pool = pools_[pool_of(lane.constraint_class)];
     const auto block = static_cast<std::size_t>(lane.block);
-    BlockConstraints& who = pool_of(lane).who[block];
+    BlockConstraints& who = pool.who[block];
     who.lane[lane.lane] = constraint;
     // Padding has the parameters of the first lane.
-    if (lane.lane == 0) std::fill(who.lane + pool_of(lane).counts[block], who.lane + block_lanes, constraint);
+    if (lane.lane == 0) std::fill(who.lane + pool.counts[block], who.lane + block_lanes, constraint);
 }
 
 Placement BatchSet::placement_in(const Lane& lane) const
 {
-    const BlockBodies& bodies = pool_of(lane).bodies[static_cast<std::size_t>(lane.block)];
+    const Pool& pool = pools_[pool_of(lane.constraint_class)];
+    const auto block = static_cast<std::size_t>(lane.block);
+    const BlockBodies& bodies = pool.bodies[block];
     return {row_at(kind_a_of(lane.constraint_class), bodies.a[lane.lane]),
-            row_at(kind_b_of(lane.constraint_class), bodies.b[lane.lane]), constraint_in(lane),
+            row_at(kind_b_of(lane.constraint_class), bodies.b[lane.lane]), pool.who[block].lane[lane.lane],
             static_cast<std::uint8_t>(type_of(lane.constraint_class)), lane.colour};
 }
 
 std::optional<BatchSet::Lane> BatchSet::take_free_lane(int constraint_class, std::uint8_t colour)
 {
     // Classes without constraints have no blocks.
-    if (occurs_[static_cast<std::size_t>(constraint_class - first_class_)] == 0) return std::nullopt;
+    if (occurs_[pool_of(constraint_class)] == 0) return std::nullopt;
     const Lane lane = end_of(constraint_class, colour);
-    Pool& pool = pool_of(lane);
+    Pool& pool = pools_[pool_of(lane.constraint_class)];
     if (lane.block >= pool.first_block[colour + 1U]) return std::nullopt;
     ++pool.constraints[colour];
     return lane;
@@ -40,13 +38,13 @@ std::optional<BatchSet::Lane> BatchSet::take_free_lane(int constraint_class, std
 
 BatchSet::Lane BatchSet::give_last_back(int constraint_class, std::uint8_t colour)
 {
-    --pools_[static_cast<std::size_t>(constraint_class - first_class_)].constraints[colour];
+    --pools_[pool_of(constraint_class)].constraints[colour];
     return end_of(constraint_class, colour);
 }
 
 BatchSet::Lane BatchSet::end_of(int constraint_class, std::uint8_t colour) const
 {
-    const Pool& pool = pools_[static_cast<std::size_t>(constraint_class - first_class_)];
+    const Pool& pool = pools_[pool_of(constraint_class)];
     const std::int32_t count = pool.constraints[colour];
     return {constraint_class, pool.first_block[colour] + count / block_lanes,
             static_cast<std::uint8_t>(count % block_lanes), colour};
@@ -54,7 +52,7 @@ BatchSet::Lane BatchSet::end_of(int constraint_class, std::uint8_t colour) const
 
 void BatchSet::put(const Lane& lane, const Placement& placement)
 {
-    Pool& pool = pool_of(lane);
+    Pool& pool = pools_[pool_of(lane.constraint_class)];
     const auto block = static_cast<std::size_t>(lane.block);
     pool.set_lane(block, lane.lane, placement);
     pool.pad(block, std::max<int>(pool.counts[block], lane.lane + 1), pool.who[block].lane[0]);
@@ -62,7 +60,7 @@ void BatchSet::put(const Lane& lane, const Placement& placement)
 
 void BatchSet::end_block_at(const Lane& lane)
 {
-    Pool& pool = pool_of(lane);
+    Pool& pool = pools_[pool_of(lane.constraint_class)];
     const auto block = static_cast<std::size_t>(lane.block);
     pool.pad(block, lane.lane, pool.who[block].lane[0]);
     if (lane.lane == 0) pool.skipped[block] = skip_altogether;

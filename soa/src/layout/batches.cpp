@@ -272,7 +272,7 @@ void BatchSet::finish_patch(std::int64_t chunk)
 
 BatchSet::Block BatchSet::block(int constraint_class, int colour, std::int32_t nth)
 {
-    const auto p = static_cast<std::size_t>(constraint_class - first_class_);
+    const std::size_t p = pool_of(constraint_class);
     Pool& pool = pools_[p];
     const std::int32_t index = pool.first_block[static_cast<std::size_t>(colour)] + nth;
     return {streams(p, false), index, &pool.skipped[static_cast<std::size_t>(index)]};

@@ -199,10 +199,9 @@ class BatchSet {
         friend bool operator==(const Lane&, const Lane&) = default;
     };
     [[nodiscard]] bool has_overflow() const;
-    [[nodiscard]] std::int32_t constraint_in(const Lane& lane) const;
     [[nodiscard]] Placement placement_in(const Lane& lane) const;
-    /// Says under which index the store has the constraint of a lane now.
-    void name(const Lane& lane, std::int32_t constraint);
+    /// The constraint in a lane has this index in its store now.
+    void set_constraint(const Lane& lane, std::int32_t constraint);
     /// The first lane of a class and colour that is free, for put(); none if there are no spare blocks left.
     [[nodiscard]] std::optional<Lane> take_free_lane(int constraint_class, std::uint8_t colour);
     /// The last lane that is not free, for end_block_at(), when what was in it has been put elsewhere.
@@ -304,13 +303,9 @@ class BatchSet {
     Array<std::int32_t> patch_places_, patch_blocks_;
     bool has_patches_ = false, adds_up_ = false;
 
-    [[nodiscard]] Pool& pool_of(const Lane& lane)
+    [[nodiscard]] std::size_t pool_of(int constraint_class) const
     {
-        return pools_[static_cast<std::size_t>(lane.constraint_class - first_class_)];
-    }
-    [[nodiscard]] const Pool& pool_of(const Lane& lane) const
-    {
-        return pools_[static_cast<std::size_t>(lane.constraint_class - first_class_)];
+        return static_cast<std::size_t>(constraint_class - first_class_);
     }
     [[nodiscard]] Lane end_of(int constraint_class, std::uint8_t colour) const;
     [[nodiscard]] std::size_t keys() const { return pools_.size() * colours; }

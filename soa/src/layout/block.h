@@ -155,13 +155,14 @@ struct ConstraintKernels {
                                 const float* body_b, float* rows);
     CopiesRows equality_rows = nullptr;
     int equality_count = 0;
-    /// Of ActingRow, sixteen floats each.
+    /// The fields of these names of an ActingRow and its row, sixteen floats each.
     struct SoftLanes {
         float *give, *given, *speed;
     };
     /// Finds out what acts on the row of a limit, motor or spring, and writes its EqualityRow (0 where nothing does), with the
-    /// speed that is left, its ActsBy and SoftLanes, sixteen floats a field. What lets go is added to `taken_a` and `taken_b`, the six impulses on the bodies; null of fixed ones.
-    /// Given `only`, nothing but the row is changed in lanes where that is 0. Null for types without such a row.
+    /// speed that is left (speed - given), its ActsBy and SoftLanes, sixteen floats a field. What lets go is added to `taken_a`
+    /// and `taken_b`, the six impulses on the bodies; null of fixed ones. Given `only`, nothing but the row is changed in lanes
+    /// where that is 0. Null for types without such a row.
     void (*act)(const KernelContext&, const BlockStreams&, std::int32_t block, const float* body_a,
                 const float* body_b, float* row, float* by, const SoftLanes& soft, float* taken_a,
                 float* taken_b, const float* only) = nullptr;

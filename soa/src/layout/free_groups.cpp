@@ -25,7 +25,11 @@ void FreeGroups::find(const JointIntake& intake)
     // Groups are numbered in the order of their first bodies; then their members are counted, and stored group by group, by
     // kind and row.
     group_of_root_.assign(sets.size(), none);
-    for (const BodyRow body : intake.held()) group_of_root_[static_cast<std::size_t>(sets.root(body))] = held;
+    constexpr std::int32_t held = -2;
+    for (const JointCandidate& joint : intake.joints()) {
+        const BodyRow body = joint.holds();
+        if (body.kind() != BodyKind::fixed) group_of_root_[static_cast<std::size_t>(sets.root(body))] = held;
+    }
     groups_.clear();
     in_groups_ = 0;
     for (const BodyKind kind : moving_kinds) {
@@ -86,8 +90,7 @@ void FreeGroups::add(std::span<BodyRow> members, std::span<const JointCandidate>
     members_.insert(members_.end(), members.begin(), members.end());
     for (const BodyRow member : members) {
         Array<std::int32_t>& group_of_row = group_of_body_[static_cast<std::size_t>(member.kind())];
-        if (member.row() >= group_of_row.size())
-            group_of_row.resize(with_room_to_grow(member.row() + 1), none);
+        grow_to(group_of_row, std::size_t{member.row()} + 1, none);
         group_of_row[member.row()] = static_cast<std::int32_t>(groups_.size());
     }
     groups_.push_back({begin, static_cast<std::uint32_t>(members_.size())});

@@ -43,7 +43,7 @@ class FreeGroups {
         return group_of_body_[static_cast<std::size_t>(body.kind())][body.row()];
     }
     [[nodiscard]] Sums sums_of(const KernelContext& context, std::int64_t group) const;
-    static constexpr std::int32_t none = -1, held = -2;
+    static constexpr std::int32_t none = -1;
     Array<std::int32_t> group_of_root_;  ///< while groups are found: by root in JointIntake::sets()
     struct Group {
         std::uint32_t begin = 0, end = 0;  ///< in members_

@@ -1,6 +1,7 @@
 // One pass over the stores; then the few joints that are new get their colours.
 #include "layout/joint_intake.h"
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -66,12 +67,6 @@ void JointIntake::grow(const BodyStore& bodies)
         grow_to(is_jointed_[static_cast<std::size_t>(kind)], bodies.rows(static_cast<BodyKind>(kind)).size());
 }
 
-void JointIntake::note_held(const JointCandidate& joint)
-{
-    const BodyRow body = joint.holds();
-    if (body.kind() != BodyKind::fixed) held_.push_back(body);
-}
-
 void JointIntake::take(SceneCore& scene, bool limits_exactly, ColourMasks& masks)
 {
     const BodyStore& bodies = scene.bodies;
@@ -83,7 +78,6 @@ void JointIntake::take(SceneCore& scene, bool limits_exactly, ColourMasks& masks
         [&](const auto& store, int type) { counts[static_cast<std::size_t>(type)] = store.size(); });
     joints_.resize(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
     uncoloured_.clear();
-    held_.clear();
     sets_.reset([&](BodyKind kind) { return bodies.rows(kind).size(); });
     JointCandidate* next = joints_.data();
     const auto list = [&](const JointCandidate& joint) {
@@ -97,7 +91,6 @@ void JointIntake::take(SceneCore& scene, bool limits_exactly, ColourMasks& masks
         note(a, true);
         note(b, true);
         sets_.tie(a, b);
-        note_held(joint);
         *next = joint;
         if (!limits_exactly) next->active_row = ActiveRow::none;
         ++next;
@@ -115,15 +108,23 @@ void JointIntake::take(SceneCore& scene, bool limits_exactly, ColourMasks& masks
 /// Colours that are in use are taken already, so a new joint gets one that is free on both of its bodies.
 void JointIntake::colour(JointStores& stores, ColourMasks& masks)
 {
-    auto next = uncoloured_.begin();
+    std::array<const std::uint32_t*, JointTypes::size> slots{};
+    std::array<std::uint8_t*, JointTypes::size> colours{};
     stores.for_each([&](auto& store, int type) {
-        for (; next != uncoloured_.end(); ++next) {
-            Placement& joint = joints_[*next].placement;
-            if (joint.type != contact_type_count + type) return;
-            joint.colour = masks.take_first(joint.a, joint.b);
-            store.colours[static_cast<std::size_t>(joint.constraint)] = joint.colour;
-        }
+        slots[static_cast<std::size_t>(type)] = store.slots.data();
+        colours[static_cast<std::size_t>(type)] = store.colours.data();
     });
+    const auto order_of = [&](std::uint32_t i) {
+        const Placement& joint = joints_[i].placement;
+        return stores.colouring_order(slots[joint.type - std::size_t{contact_type_count}][joint.constraint]);
+    };
+    std::sort(uncoloured_.begin(), uncoloured_.end(),
+              [&](std::uint32_t i, std::uint32_t j) { return order_of(i) < order_of(j); });
+    for (const std::uint32_t i : uncoloured_) {
+        Placement& joint = joints_[i].placement;
+        joint.colour = masks.take_first(joint.a, joint.b);
+        colours[joint.type - std::size_t{contact_type_count}][joint.constraint] = joint.colour;
+    }
 }
 
 }  // namespace motley

@@ -39,16 +39,15 @@ class JointIntake {
     void take(SceneCore& scene, bool limits_exactly, ColourMasks& masks);
     /// Bodies that were added since have no joints.
     void grow(const BodyStore& bodies);
+    /// Whether a body has joints, when some have come or gone.
     void note(BodyRow body, bool is_jointed)
     {
         is_jointed_[static_cast<std::size_t>(body.kind())][body.row()] = is_jointed ? 1 : 0;
     }
 
+    /// The joints, and what they connect, as of the last take(): they do not follow joints that come and go.
     [[nodiscard]] std::span<const JointCandidate> joints() const { return joints_; }
-    /// What the joints connect; valid until some of them come or go.
     [[nodiscard]] const BodySets& sets() const { return sets_; }
-    /// The moving bodies that a joint keeps from moving along some direction, with a fixed body; some of them twice.
-    [[nodiscard]] std::span<const BodyRow> held() const { return held_; }
     /// One for each row that has such a joint, else 0.
     [[nodiscard]] std::span<const std::uint8_t> is_jointed(BodyKind kind) const
     {
@@ -56,17 +55,16 @@ class JointIntake {
     }
     /// The joint of this type (from 0 on) and index.
     [[nodiscard]] static JointCandidate candidate(const SceneCore& scene, int type, std::size_t index);
-    /// ColourMasks::start_rows_bit if joints of this type have rows that are made once a step; else 0.
+    /// start_rows_bit (block.h) if joints of this type have rows that are made once a step; else 0. Types are numbered with
+    /// those of contacts before them.
     [[nodiscard]] static std::uint32_t start_rows_bit_of(std::size_t type);
 
   private:
     Array<JointCandidate> joints_;
     Array<std::uint32_t> uncoloured_;  ///< indices of joints
-    Array<BodyRow> held_;
     BodySets sets_;
     std::array<Array<std::uint8_t>, body_kind_count> is_jointed_;  ///< by kind and row
 
-    void note_held(const JointCandidate& joint);
     void colour(JointStores& stores, ColourMasks& masks);
 };
 

@@ -1,8 +1,8 @@
-// Follows changes joint by joint.
+// Follows changes joint by joint: first those that have gone give their lanes and colours back, then those that have come
+// get theirs, and at last the small components that have changed are looked at as figures and as free groups.
 #include "layout/joint_lanes.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "stores/growth.h"
 #include "stores/joint_store.h"
@@ -21,7 +21,7 @@ std::uint32_t first_end_of(const BodyStore& bodies, BodyRow body)
 bool JointLanes::follow(SceneCore& scene, ColourMasks& masks)
 {
     const BodyStore& bodies = scene.bodies;
-    if (bodies.contained_count > 0 || bodies.sleepers > 0 || batches_.has_overflow()) return false;
+    if (bodies.contained_count > 0 || batches_.has_overflow() || figures_.refused().joints > 0) return false;
     look_at(*scene.joints);
     masks.grow(bodies);
     intake_.grow(bodies);
@@ -31,8 +31,11 @@ bool JointLanes::follow(SceneCore& scene, ColourMasks& masks)
     note_changes(scene);
     if (!take_figures_apart()) return false;
     drop_gone();
-    for (const BodyRow body : touched_) clear_mask(bodies, body, masks);
-    return place_new(masks) && find_components(scene) && figures_.are_worth_it();
+    for (const Change& change : changes_) {
+        renew_mask(bodies, change.a, masks);
+        renew_mask(bodies, change.b, masks);
+    }
+    return place_new(masks) && find_components(scene) && figures_.are_full_enough();
 }
 
 JointLanes::Place& JointLanes::place_of(int type, std::int32_t constraint)
@@ -70,12 +73,12 @@ void JointLanes::start_over(JointStores& joints)
 }
 
 /// Sorts the changes: joints that have moved in their store get their new index, those that are gone are marked in their
-/// lanes, by the bitwise complement of their slot, and those that have come are listed in the order of the stores.
+/// lanes, by the bitwise complement of their slot, and those that have come are listed in the order in which they get colours.
+/// Joints of bodies that have fallen asleep are gone, and come when these wake.
 void JointLanes::note_changes(const SceneCore& scene)
 {
     gone_.clear();
     come_.clear();
-    touched_.clear();
     changes_.clear();
     Array<std::uint32_t>& slots = joints_->changes.slots;
     std::sort(slots.begin(), slots.end());
@@ -83,42 +86,48 @@ void JointLanes::note_changes(const SceneCore& scene)
     for (const std::uint32_t slot : slots) {
         const JointStores::Slot& joint = joints_->slots[slot];
         Place& place = places_[slot];
-        if (place.is_in_lane() && joint.live != 0 && joint.generation == place.generation) {
-            batches_.name(place.lane, static_cast<std::int32_t>(joint.index));
+        Placement now;
+        if (joint.live != 0) now = JointIntake::candidate(scene, joint.type, joint.index).placement;
+        const bool is_solved =
+            joint.live != 0 && !scene.bodies.is_asleep(now.a) && !scene.bodies.is_asleep(now.b);
+        if (place.is_in_lane() && is_solved && joint.generation == place.generation) {
+            batches_.set_constraint(place.lane, static_cast<std::int32_t>(joint.index));
             continue;
         }
         if (place.is_in_lane()) {
             const Placement was = batches_.placement_in(place.lane);
             touch(was);
-            batches_.name(place.lane, static_cast<std::int32_t>(~slot));
+            batches_.set_constraint(place.lane, static_cast<std::int32_t>(~slot));
             gone_.push_back(slot);
         }
-        if (joint.live == 0) continue;
-        come_.push_back(JointIntake::candidate(scene, joint.type, joint.index).placement);
+        if (!is_solved) continue;
+        come_.push_back(now);
         place.generation = joint.generation;
         place.is_new = true;
-        touch(come_.back());
+        touch(now);
     }
-    std::sort(come_.begin(), come_.end(), [](const Placement& x, const Placement& y) {
-        return std::tie(x.type, x.constraint) < std::tie(y.type, y.constraint);
-    });
+    const auto order_of = [&](const Placement& joint) {
+        return joints_->colouring_order(slots_[joint.type][joint.constraint]);
+    };
+    std::sort(come_.begin(), come_.end(),
+              [&](const Placement& x, const Placement& y) { return order_of(x) < order_of(y); });
 }
 
 void JointLanes::touch(const Placement& joint)
 {
     // What comes in the place of what is gone is often between the same bodies.
-    if (!changes_.empty() && changes_.back() == Change{joint.a, joint.b}) return;
-    changes_.push_back({joint.a, joint.b});
-    for (const BodyRow body : {joint.a, joint.b})
-        if (body.kind() != BodyKind::fixed) touched_.push_back(body);
+    const Change change{joint.a, joint.b};
+    if (changes_.empty() || !(changes_.back() == change)) changes_.push_back(change);
 }
 
 bool JointLanes::take_figures_apart()
 {
-    return std::all_of(touched_.begin(), touched_.end(), [&](BodyRow body) {
+    const auto take_apart = [&](BodyRow body) {
         const Figures::Copy copy = figures_.copy_of(body);
         return copy.block == Figures::none || figures_.take_apart(copy, *this);
-    });
+    };
+    return std::all_of(changes_.begin(), changes_.end(),
+                       [&](const Change& change) { return take_apart(change.a) && take_apart(change.b); });
 }
 
 bool JointLanes::sweep(const BatchSet::Lane& lane)
@@ -170,24 +179,32 @@ void JointLanes::drop_gone()
     }
 }
 
-/// Leaves the colours of the joints that a body still has.
-void JointLanes::clear_mask(const BodyStore& bodies, BodyRow body, ColourMasks& masks)
+/// A moving body keeps only the colours of the joints that it still has, also those of joints that are not solved now because
+/// the body sleeps.
+void JointLanes::renew_mask(const BodyStore& bodies, BodyRow body, ColourMasks& masks)
 {
+    if (body.kind() == BodyKind::fixed) return;
     std::uint32_t mask = 0;
+    bool is_jointed = false;
     joints_->for_each_on(first_end_of(bodies, body), [&](const JointStores::Slot& joint) {
         const auto type = static_cast<std::size_t>(contact_type_count + joint.type);
         const std::uint8_t colour = colours_[type][joint.index];
-        if (colour != no_colour) mask |= 1U << colour | JointIntake::start_rows_bit_of(type);
+        if (colour != no_colour) mask |= 1U << colour;
+        if (!place_of(joint).is_in_lane()) return;
+        mask |= JointIntake::start_rows_bit_of(type);
+        is_jointed = true;
     });
     masks.set(body, mask);
-    intake_.note(body, mask != 0);
+    intake_.note(body, is_jointed);
 }
 
 bool JointLanes::place_new(ColourMasks& masks)
 {
     for (Placement& joint : come_) {
-        joint.colour = masks.take_first(joint.a, joint.b);
-        colours_[joint.type][joint.constraint] = joint.colour;
+        if (joint.colour == no_colour) {  // else it slept
+            joint.colour = masks.take_first(joint.a, joint.b);
+            colours_[joint.type][joint.constraint] = joint.colour;
+        }
         if (joint.colour == overflow_colour || !add(joint)) return false;
         if (JointIntake::start_rows_bit_of(joint.type) != 0) masks.note_start_rows(joint.a, joint.b);
         for (const BodyRow body : {joint.a, joint.b}) intake_.note(body, true);
@@ -208,9 +225,8 @@ bool JointLanes::are_connected(const BodyStore& bodies, BodyRow from, BodyRow to
     };
     for (std::size_t i = 0; i < reached.size() && reached.size() <= Figures::most_bodies && !found; ++i) {
         joints_->for_each_on(first_end_of(bodies, reached[i]), [&](const JointStores::Slot& entry) {
-            const Place& place =
-                place_of(contact_type_count + entry.type, static_cast<std::int32_t>(entry.index));
-            if (place.is_new) return;
+            const Place& place = place_of(entry);
+            if (place.is_new || !place.is_in_lane()) return;
             const Placement joint = batches_.placement_in(place.lane);
             reach(joint.a);
             reach(joint.b);
@@ -220,7 +236,7 @@ bool JointLanes::are_connected(const BodyStore& bodies, BodyRow from, BodyRow to
 }
 
 /// Finds the components of the bodies whose joints have changed. The small ones may be figures, and their bodies are new
-/// groups. Returns false if a large one may have lost or won bodies.
+/// groups. Returns false if a large one may have lost or won bodies, or may be solved exactly now.
 bool JointLanes::find_components(const SceneCore& scene)
 {
     for (std::size_t i = changes_.size(); i-- > 0;) {  // see put_together()
@@ -235,7 +251,9 @@ bool JointLanes::find_components(const SceneCore& scene)
                     return false;
                 continue;
             }
-            if (!are_connected(scene.bodies, body, body == change.a ? change.b : change.a)) return false;
+            if (!are_connected(scene.bodies, body, body == change.a ? change.b : change.a) ||
+                !figures_.may_lose_a_loop())
+                return false;
             break;
         }
     }
@@ -261,6 +279,7 @@ bool JointLanes::gather(const SceneCore& scene, BodyRow from)
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const BodyRow body = bodies[i];
         joints_->for_each_on(first_end_of(scene.bodies, body), [&](const JointStores::Slot& entry) {
+            if (!place_of(entry).is_in_lane()) return;  // it sleeps
             const JointCandidate joint = JointIntake::candidate(scene, entry.type, entry.index);
             const BodyRow a = joint.placement.a, b = joint.placement.b;
             see(a);

@@ -27,7 +27,7 @@ class JointLanes {
     void start_over(JointStores& joints);
     /// Follows JointStores::changes. Returns false if it cannot; then all must be laid out anew. It cannot when colours do
     /// not suffice, when there are no free lanes left, when a component too large for a figure may have lost or won bodies,
-    /// or when bodies are contained or asleep, whose joints are in no lane. Joints must not be solved exactly.
+    /// when bodies are contained, or when what is solved exactly has to be found anew (see Figures).
     [[nodiscard]] bool follow(SceneCore& scene, ColourMasks& masks);
 
     /// For Figures. The joint in this lane of a copy gets a lane among those that are swept by colour. Returns false when
@@ -56,7 +56,6 @@ class JointLanes {
     Array<Place> places_;
     Array<std::uint32_t> gone_;  ///< slots
     Array<Placement> come_;      ///< not yet coloured
-    Array<BodyRow> touched_;     ///< moving bodies of joints that have come or gone
     struct Change {
         BodyRow a, b;
         friend bool operator==(const Change&, const Change&) = default;
@@ -80,7 +79,7 @@ class JointLanes {
     void note_changes(const SceneCore& scene);
     bool take_figures_apart();
     void drop_gone();
-    void clear_mask(const BodyStore& bodies, BodyRow body, ColourMasks& masks);
+    void renew_mask(const BodyStore& bodies, BodyRow body, ColourMasks& masks);
     bool place_new(ColourMasks& masks);
     [[nodiscard]] bool are_connected(const BodyStore& bodies, BodyRow from, BodyRow to);
     [[nodiscard]] bool find_components(const SceneCore& scene);
@@ -90,6 +89,12 @@ class JointLanes {
     }
     [[nodiscard]] bool gather(const SceneCore& scene, BodyRow from);
     [[nodiscard]] Place& place_of(int type, std::int32_t constraint);
+    /// Of a JointStores::Slot.
+    template <class Slot>
+    [[nodiscard]] Place& place_of(const Slot& joint)
+    {
+        return place_of(contact_type_count + joint.type, static_cast<std::int32_t>(joint.index));
+    }
     [[nodiscard]] bool add(const Placement& joint);
     void leave(const BatchSet::Lane& lane);
     void touch(const Placement& joint);

@@ -60,7 +60,8 @@ struct SolverSettings {
     /// exactly at any load, so that links of 1 kg hold and lift tons by them; sweeps alone let such limits and springs give way
     /// without bound. Springs of other joints, drives with an armature, a spring beside a motor or a limit that acts, and what
     /// is beyond six rows between two bodies are still swept, and so is all of this in nets. A row may begin to act, and a limit
-    /// let go, a substep late; no motor or spring pushes harder than it may. Ragdolls whose limits act take 1.4 times as long as with exact_joints alone at one substep, 1.8 times at four.
+    /// let go, a substep late; no motor or spring pushes harder than it may. Ragdolls whose limits act take 1.4 times as long
+    /// as with exact_joints alone at one substep, 1.8 times at four.
     bool exact_limits = false;
     /// soft_step and sequential_impulse: contacts of an island, which are bodies that contacts connect, are solved all at
     /// once after each sweep, rigidly and in double, so that towers, queues and presses are right in every step: 50 boxes
