@@ -95,10 +95,10 @@ SearchVote DiscPipeline::vote(const SceneCore& scene, bool must_search) const
 bool DiscPipeline::do_all_rest(const SceneCore& scene) const
 {
     if (region != nullptr && !region->anybody_sleeps()) return false;
-    const Array<std::uint32_t>& awake = scene.bodies.rows(BodyKind::planar).awake;
+    const Array<std::uint16_t>& awake = scene.bodies.rows(BodyKind::planar).awake;
     const bool all_rest_here =
         !scene.discs.is_stale &&
-        std::all_of(awake.begin(), awake.end(), [](std::uint32_t count) { return count == 0; });
+        std::all_of(awake.begin(), awake.end(), [](std::uint16_t rows) { return rows == 0; });
     return region == nullptr ? all_rest_here : region->is_so_everywhere(all_rest_here);
 }
 

@@ -2,6 +2,7 @@
 #include "sleep_pipeline.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "crowd/disc_strips.h"
 #include "scene/wall_ends.h"
@@ -38,12 +39,16 @@ template <class Work>
 void for_each_awake(const BodyStore& bodies, BodyKind kind, std::int64_t chunk, const Work& work)
 {
     const BodyRows& rows = bodies.rows(kind);
-    if (!rows.is_chunk_awake(chunk)) return;
-    for_each_row_of_chunk(chunk, rows.size(), [&](std::uint32_t row) {
-        const std::uint32_t slot = rows.slot[row];
-        if (slot != 0 && bodies.contained[slot] == 0 && !bodies.is_asleep(slot))
-            work(BodyRow(kind, row), slot);
-    });
+    constexpr std::size_t groups = BodyRows::rows_per_chunk / BodyRows::rows_per_group;
+    const std::size_t first = static_cast<std::size_t>(chunk) * groups;
+    for (std::size_t group = first; group < std::min(first + groups, rows.awake.size()); ++group) {
+        for (unsigned awake = rows.awake[group]; awake != 0; awake &= awake - 1) {
+            const auto row = static_cast<std::uint32_t>(group * BodyRows::rows_per_group +
+                                                        static_cast<std::size_t>(std::countr_zero(awake)));
+            const std::uint32_t slot = rows.slot[row];
+            if (bodies.contained[slot] == 0) work(BodyRow(kind, row), slot);
+        }
+    }
 }
 
 /// A body that may fall asleep, if its island does.
@@ -235,7 +240,6 @@ void SleepPipeline::put_to_sleep(const Step& step)
     SceneCore& scene = step.scene;
     BodyStore& bodies = scene.bodies;
     rings_.assign(islands_.size(), {});
-    std::size_t fell_asleep = 0;
     for (const BodyKind kind : moving_kinds) {
         const BodyRows& rows = bodies.rows(kind);
         const auto quads = static_cast<std::size_t>(quads_of(kind));
@@ -253,12 +257,11 @@ void SleepPipeline::put_to_sleep(const Step& step)
                 sleeper.acceleration = {a[0], a[1], a[2]};
                 if (quads == 2) std::copy_n(a + 4, 3, sleeper.acceleration.begin() + 3);
                 bodies.fall_asleep(slot);
-                ++fell_asleep;
+                scene.joints->change_all_on(bodies.first_ends[slot]);
+                scene.discs.is_divided = false;
             });
         }
     }
-    if (fell_asleep == 0) return;
-    scene.sleepers_changed();
 }
 
 }  // namespace motley

@@ -405,7 +405,9 @@ std::int64_t Sweeper::commit(BodyStore& bodies, std::uint32_t& first_slot)
             int count = 0;
             const auto begin = static_cast<std::int32_t>(chunk * rows_per_chunk);
             const auto end = static_cast<std::int32_t>(std::min((chunk + 1) * rows_per_chunk, rows));
+            static_assert(BodyRows::rows_per_group == block_lanes);
             for_each_piece(begin, end, block_lanes, [&](std::int32_t first, std::int32_t last) {
+                if (!own.is_awake_beside(static_cast<std::uint32_t>(first))) return;
                 // In lanes, or one at a time where the group has an unused row, is the last one, or has a body whose
                 // state is not finite.
                 if (in_lanes != nullptr && last - first == block_lanes && in_lanes(layout_.context, first))

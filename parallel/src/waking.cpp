@@ -41,7 +41,7 @@ void SleepPipeline::make_room(SceneCore& scene)
     std::size_t rows = 0;
     for (const BodyKind kind : moving_kinds) {
         rows += bodies.rows(kind).size();
-        grow_to(candidates_, bodies.rows(kind).awake.size());
+        grow_to(candidates_, static_cast<std::size_t>(disc_chunks(bodies.rows(kind).size())));
     }
     if (islands_.size() == rows) return;
     islands_.reset([&](BodyKind kind) { return bodies.rows(kind).size(); });

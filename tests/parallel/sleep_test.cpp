@@ -670,6 +670,49 @@ TEST(Sleep, WhoWakesGoesOnAsIfNothingHadBeen)
     for (const BodyId body : row.people) EXPECT_LT(std::abs(row.scene.state(body).linear_velocity.x), 0.01F);
 }
 
+/// Every third of 90 moves on, at its speed, between others who sleep and stay as they are. Evidence: x = v t. Of rigid bodies
+/// two are a figure, in lockstep or not.
+TEST(Sleep, SleepersAmongOthersStayPutAndTheseMoveOn)
+{
+    for (const BodyModel model : {BodyModel::particle, BodyModel::planar, BodyModel::rigid}) {
+        for (const bool in_lockstep : {false, true}) {
+            Scene scene;
+            std::vector<BodyId> bodies;
+            for (int i = 0; i < 90; ++i) {
+                BodyDefinition body;
+                body.model = model;
+                body.position = {0, 2.0 * i, 0};
+                if (i % 3 == 0) body.linear_velocity = {1, 0, 0};
+                bodies.push_back(scene.add_body(body));
+                if (model == BodyModel::rigid && i % 3 == 2)
+                    scene.add_joint(BallSocketDefinition{
+                        bodies[bodies.size() - 2], bodies.back(), {0, 1, 0}, {0, -1, 0}});
+            }
+            SolverSettings settings = sleepy();
+            settings.measures = !in_lockstep;  // what measures itself is swept by colour
+            Solver solver(settings);
+            step(solver, scene, 60);
+            std::vector<BodyState> before;
+            for (const BodyId body : bodies) before.push_back(scene.state(body));
+            // One wakes in each step, in the place of another that is still slow.
+            for (std::size_t i = 0; i < 60; ++i) {
+                scene.wake(bodies[i / 3 * 3 + 1]);
+                step(solver, scene);
+            }
+            for (std::size_t i = 0; i < bodies.size(); ++i) {
+                const BodyState now = scene.state(bodies[i]);
+                if (i % 3 == 0) {
+                    EXPECT_NEAR(now.position.x - before[i].position.x, 1, 1e-5) << i;
+                } else {
+                    EXPECT_EQ(now.position.x, before[i].position.x) << i;
+                    EXPECT_EQ(now.position.y, before[i].position.y) << i;
+                    EXPECT_EQ(now.orientation.w, before[i].orientation.w) << i;
+                }
+            }
+        }
+    }
+}
+
 TEST(Sleep, FiguresSleepInLockstepAndWithExactJoints)
 {
     for (const bool exact : {false, true}) {

@@ -146,8 +146,6 @@ struct SceneCore {
     /// Wakes the island of a body at once, if it sleeps; or all islands.
     void wake_island(std::uint32_t slot);
     void wake_all();
-    /// When others sleep than before: the next step sorts out their contacts and lays out the joints anew.
-    void sleepers_changed();
     /// After a step that has contained bodies: wakes the islands of sleepers that took part.
     void wake_contained();
     /// Wakes the islands of the bodies that joints connect with this one.

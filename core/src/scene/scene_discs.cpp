@@ -208,9 +208,11 @@ void SceneCore::sort_disc_rows()
         std::swap(discs.anchors[i], discs.anchors[j]);
         std::swap(discs.found_at[i], discs.found_at[j]);
     });
-    joints->for_each([&](const auto& store, int) {
-        if (store.size() > 0) joints->change_altogether();  // their blocks refer to rows
-    });
+    // Blocks of joints refer to rows.
+    const Array<std::uint32_t>& slots = bodies.rows(BodyKind::planar).slot;
+    if (std::any_of(slots.begin(), slots.end(),
+                    [&](std::uint32_t slot) { return bodies.first_ends[slot] != 0; }))
+        joints->change_altogether();
 }
 
 namespace {

@@ -25,17 +25,10 @@ void SceneCore::wake_island(std::uint32_t slot)
     if (!bodies.is_asleep(slot)) return;
     while (bodies.is_asleep(slot)) {
         bodies.wake(slot);
+        joints->change_all_on(bodies.first_ends[slot]);
         slot = std::exchange(sleep.sleepers[slot].next, 0);
     }
-    sleepers_changed();
-}
-
-void SceneCore::sleepers_changed()
-{
     discs.is_divided = false;
-    joints->for_each([&](const auto& store, int) {
-        if (store.size() > 0) joints->change_altogether();
-    });
 }
 
 void SceneCore::wake_all()

@@ -91,7 +91,7 @@ void BodyStore::change(BodyId body, const BodyChange& change)
     const auto kind = static_cast<BodyKind>(change.model);
     Content content = read(from);
     content.angular = convert<float>(angular_velocity_after(body, change));
-    --awake_beside(from);  // it is awake, and write() counts it anew
+    rows(from.kind()).set_awake(from.row(), false);  // it is awake, and write() notes it anew
     if (from.kind() != kind) {
         if (from.kind() == BodyKind::rigid) {
             const Quat<double> past = conjugate(upright(content.pose.yaw));

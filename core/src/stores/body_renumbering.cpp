@@ -96,7 +96,7 @@ void BodyStore::renumber()
         to.inertia = reordered(r.inertia, order, 1);
         to.inverse_inertia = reordered(r.inverse_inertia, order, 1);
         to.slot = reordered(r.slot, order, 1);
-        to.awake.reserve(r.awake.size());  // counted when all memory has been found
+        to.awake.reserve(r.awake.size());  // noted when all memory has been found
     }
     rows_ = std::move(renumbered);
     for (int k = 0; k < body_kind_count; ++k) enter_rows(static_cast<BodyKind>(k));
@@ -108,7 +108,7 @@ void BodyStore::enter_rows(BodyKind kind)
     for (std::uint32_t row = 1; row < slot.size(); ++row) {
         if (slot[row] != 0) slots_[slot[row]].row = BodyRow(kind, row);
     }
-    count_awake(kind);
+    note_awake(kind);
 }
 
 void BodyStore::swap_planar(std::uint32_t i, std::uint32_t j)

@@ -42,7 +42,8 @@ void BodyStore::fall_asleep(std::uint32_t slot)
 {
     sleep[slot] = Sleep::asleep;
     ++sleepers;
-    --awake_beside(slots_[slot].row);
+    const BodyRow where = slots_[slot].row;
+    rows(where.kind()).set_awake(where.row(), false);
     freeze(slot);
 }
 
@@ -51,7 +52,8 @@ void BodyStore::wake(std::uint32_t slot)
     sleep[slot] = Sleep::awake;
     slow_for[slot] = 0;
     --sleepers;
-    ++awake_beside(slots_[slot].row);
+    const BodyRow where = slots_[slot].row;
+    rows(where.kind()).set_awake(where.row(), true);
     if (contained[slot] == 0) thaw(slot);
 }
 

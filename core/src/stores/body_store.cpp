@@ -92,7 +92,7 @@ void BodyStore::make_room_in_rows(BodyKind kind, std::size_t wanted)
         make_room_for(*values, more * 4 * static_cast<std::size_t>(quads_of(kind)));
     make_room_for(r.pose, more);
     make_room_for(r.slot, more);
-    make_room_for(r.awake, more / BodyRows::rows_per_chunk + 1);
+    make_room_for(r.awake, more / BodyRows::rows_per_group + 1);
     if (quads_of(kind) == 2) {
         make_room_for(r.orientation, more);
         make_room_for(r.world_inverse_inertia, 8 * more);
@@ -120,7 +120,7 @@ std::uint32_t BodyStore::take_row(BodyKind kind)
         row = r.size();
         const std::size_t floats = static_cast<std::size_t>(quads_of(kind)) * 4 * (row + 1);
         r.slot.push_back(0);
-        if (row % BodyRows::rows_per_chunk == 0) r.awake.push_back(0);
+        if (row % BodyRows::rows_per_group == 0) r.awake.push_back(0);
         r.velocity.resize(floats);
         r.delta.resize(floats);
         r.unpushed.resize(floats);
@@ -199,7 +199,7 @@ void BodyStore::write(std::uint32_t slot, BodyRow where, const Content& content,
     BodyRows& r = rows(kind);
     slots_[slot].row = where;
     r.slot[row] = slot;
-    ++awake_beside({kind, row});
+    r.set_awake(row, true);
     r.pose[row] = content.pose;
     const float inverse_mass = inverse_masses[slot];
     inverse_inertias[slot] = kind == BodyKind::planar ? 1 / inertia.zz : 0.0F;
@@ -269,11 +269,8 @@ void BodyStore::remove(BodyId body)
     free_row(row_of(body));
     if (contained[body.slot] != 0) --contained_count;
     contained[body.slot] = 0;
-    if (is_asleep(body.slot)) {
-        --sleepers;
-    } else {
-        --awake_beside(row_of(body));
-    }
+    if (is_asleep(body.slot)) --sleepers;
+    rows(row_of(body).kind()).set_awake(row_of(body).row(), false);
     sleep[body.slot] = Sleep::awake;
     set_damping(body.slot, {});
     live_[body.slot] = 0;
@@ -317,12 +314,12 @@ void BodyStore::refresh_world_inertia(std::uint32_t row)
     }
 }
 
-void BodyStore::count_awake(BodyKind kind)
+void BodyStore::note_awake(BodyKind kind)
 {
     BodyRows& r = rows(kind);
-    r.awake.assign((r.size() - 1) / BodyRows::rows_per_chunk + 1, 0);
+    r.awake.assign((r.size() - 1) / BodyRows::rows_per_group + 1, 0);
     for (std::uint32_t row = 1; row < r.size(); ++row) {
-        if (r.slot[row] != 0 && !is_asleep(r.slot[row])) ++r.awake[row / BodyRows::rows_per_chunk];
+        if (r.slot[row] != 0 && !is_asleep(r.slot[row])) r.set_awake(row, true);
     }
 }
 
@@ -338,7 +335,7 @@ void BodyStore::derive()
         const auto kind = static_cast<BodyKind>(k);
         BodyRows& r = rows(kind);
         const auto quads = static_cast<std::size_t>(quads_of(kind));
-        count_awake(kind);
+        note_awake(kind);
         r.delta.assign(r.velocity.size(), 0);
         r.unpushed.assign(r.velocity.size(), 0);
         if (quads == 2) r.world_inverse_inertia.assign(r.velocity.size(), 0);

@@ -11,6 +11,7 @@
 // one step.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -83,12 +84,27 @@ struct BodyRows {
     AlignedVector<Sym3<float>> inverse_inertia;  ///< rigid only, body frame
     Array<std::uint32_t> slot;                   ///< the handle slot of each row, 0 for a free one
     Array<std::uint32_t> free_rows;              ///< the last one is reused first
-    /// For each chunk of rows the number of bodies in it that do not sleep. Steps skip chunks without any.
-    Array<std::uint32_t> awake;
+    /// A bit for each row, which is 1 if there is a body that does not sleep, in words of a group of rows. Steps skip groups
+    /// without any: small ones, because the rows of those who are awake lie among those of sleepers.
+    Array<std::uint16_t> awake;
+    static constexpr std::uint32_t rows_per_group = 16;
     static constexpr std::uint32_t rows_per_chunk = 1024;
+    /// Whether the group of this row has a body that is awake.
+    [[nodiscard]] bool is_awake_beside(std::uint32_t row) const { return awake[row / rows_per_group] != 0; }
+    void set_awake(std::uint32_t row, bool is_awake)
+    {
+        const auto bit = static_cast<std::uint16_t>(1U << row % rows_per_group);
+        std::uint16_t& group = awake[row / rows_per_group];
+        group = static_cast<std::uint16_t>(is_awake ? group | bit : group & ~bit);
+    }
     [[nodiscard]] bool is_chunk_awake(std::int64_t chunk) const
     {
-        return awake[static_cast<std::size_t>(chunk)] > 0;
+        constexpr std::size_t groups = rows_per_chunk / rows_per_group;
+        const std::size_t first = static_cast<std::size_t>(chunk) * groups;
+        return std::any_of(
+            awake.begin() + static_cast<std::ptrdiff_t>(first),
+            awake.begin() + static_cast<std::ptrdiff_t>(std::min(first + groups, awake.size())),
+            [](std::uint16_t rows) { return rows != 0; });
     }
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot.size()); }
 };
@@ -238,12 +254,8 @@ class BodyStore {
     /// Takes the inverse mass and inertia from a row, so that nothing moves it; or gives them back.
     void freeze(std::uint32_t slot);
     void thaw(std::uint32_t slot);
-    /// Counts the bodies of a kind in each chunk of rows that are awake.
-    void count_awake(BodyKind kind);
-    [[nodiscard]] std::uint32_t& awake_beside(BodyRow where)
-    {
-        return rows(where.kind()).awake[where.row() / BodyRows::rows_per_chunk];
-    }
+    /// Notes which bodies of a kind are awake.
+    void note_awake(BodyKind kind);
     void swap_planar(std::uint32_t i, std::uint32_t j);
     /// Enters the rows of a kind into the table of slots.
     void enter_rows(BodyKind kind);

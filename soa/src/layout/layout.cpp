@@ -63,10 +63,10 @@ void Layout::begin(SceneCore& scene, std::size_t contact_count, const FigureUse&
         // The old layout is marked invalid until all of the new one is made, because an allocation may fail in
         // between.
         const std::shared_ptr<const char> before = std::exchange(joint_version_, nullptr);
-        const bool may_follow =
-            before && !joints.version && joints.changes.since == before && !use_.exactly && !plants_trees;
+        const bool may_follow = before && !joints.version && joints.changes.since == before && !plants_trees;
         cut_.reset();
-        if (!may_follow || !follow_changes(scene)) place_joints(scene);
+        has_placements_ = false;
+        if (!may_follow || !joint_lanes_.follow(scene, joint_masks_)) place_joints(scene);
         joints.close_changes();
         joint_version_ = joints.version;
     }
@@ -96,14 +96,8 @@ void Layout::place_joints(SceneCore& scene)
     joints_.open(kernels_, true, true);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.fill(chunk);
     figures.bind(joints_, kernels_);
-    if (!use_.exactly) joint_lanes_.start_over(*scene.joints);
+    joint_lanes_.start_over(*scene.joints);
     has_placements_ = true;
-}
-
-bool Layout::follow_changes(SceneCore& scene)
-{
-    has_placements_ = false;
-    return joint_lanes_.follow(scene, joint_masks_);
 }
 
 std::span<const Placement> Layout::joint_placements()
@@ -196,20 +190,20 @@ void Layout::cut(SceneCore& scene, std::span<const Contact> list, bool tells_apa
     if (may_keep) cut_ = wanted;
 }
 
-/// Notes which chunks of rows have a body that is awake. Returns whether they are those of the last call.
+/// Notes which bodies are awake. Returns whether they are those of the last call.
 bool Layout::note_awake(const BodyStore& bodies)
 {
     bool same = true;
     for (std::size_t kind = 0; kind < body_kind_count; ++kind) {
         const BodyRows& rows = bodies.rows(static_cast<BodyKind>(kind));
         const bool may_skip = bodies.sleepers > 0 && static_cast<BodyKind>(kind) != BodyKind::fixed;
-        Array<std::uint8_t>& noted = awake_[kind];
+        Array<std::uint16_t>& noted = awake_[kind];
         same = same && noted.size() == rows.awake.size();
         noted.resize(rows.awake.size());
-        for (std::size_t chunk = 0; chunk < noted.size(); ++chunk) {
-            const std::uint8_t now = !may_skip || rows.awake[chunk] > 0 ? 1 : 0;
-            same = same && noted[chunk] == now;
-            noted[chunk] = now;
+        for (std::size_t group = 0; group < noted.size(); ++group) {
+            const std::uint16_t now = may_skip ? rows.awake[group] : std::uint16_t{0xFFFF};
+            same = same && noted[group] == now;
+            noted[group] = now;
         }
     }
     return same;
@@ -231,19 +225,27 @@ void Layout::list_rows(const SceneCore& scene)
                                                  ranges.push_back({begin, end});
                                              });
         };
+        constexpr auto a_group = static_cast<std::int32_t>(BodyRows::rows_per_group);
+        const Array<std::uint16_t>& awake = awake_[static_cast<std::size_t>(kind)];
+        // Whole groups fill lanes, but where lone figures leave gaps, sleepers need not fill these.
         const auto add_unless_alone = [&](std::int32_t first, std::int32_t last) {
             if (!has_lone) return add(first, last);
             for_each_run(
                 first, last,
-                [&](std::int32_t row) { return !figures.is_alone(static_cast<std::size_t>(row)); }, add);
+                [&](std::int32_t row) {
+                    return (awake[static_cast<std::size_t>(row / a_group)] >> row % a_group & 1) != 0 &&
+                           !figures.is_alone(static_cast<std::size_t>(row));
+                },
+                add);
         };
-        const Array<std::uint8_t>& awake = awake_[static_cast<std::size_t>(kind)];
-        constexpr auto a_chunk = static_cast<std::int32_t>(BodyRows::rows_per_chunk);
+        // Room for as many runs as those who sleep may ever leave, so that it is not sought when they do.
+        const std::int32_t least_run = has_lone ? 1 : a_group;
+        ranges.reserve(static_cast<std::size_t>(size / (2 * least_run) + 5 * (size / rows_per_range) + 6));
         for_each_run(
             0, static_cast<std::int32_t>(awake.size()),
-            [&](std::int32_t chunk) { return awake[static_cast<std::size_t>(chunk)] != 0; },
+            [&](std::int32_t group) { return awake[static_cast<std::size_t>(group)] != 0; },
             [&](std::int32_t first, std::int32_t last) {
-                add_unless_alone(first * a_chunk, std::min(last * a_chunk, size));
+                add_unless_alone(first * a_group, std::min(last * a_group, size));
             });
     }
 }

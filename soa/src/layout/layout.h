@@ -70,7 +70,7 @@ class Layout {
     [[nodiscard]] bool is_overloaded() const { return overloaded_; }
 
     [[nodiscard]] const SweepLists& sweeps() const { return sweeps_; }
-    /// The joints that are solved, with gaps.
+    /// The joints that are solved, with gaps among them (Placement::is_gap). Listed anew where joints have come or gone.
     [[nodiscard]] std::span<const Placement> joint_placements();
     [[nodiscard]] std::span<const Placement> contact_placements() const { return contacts.placements(); }
     /// The figures of the scene, and which of them are solved on their own.
@@ -135,7 +135,8 @@ class Layout {
     std::array<AlignedVector<float>, body_kind_count> start_along_;  ///< see Flight
     std::array<AlignedVector<float>, body_kind_count> decay_;        ///< see BodyArrays
     std::atomic<bool> overloaded_ = false, turned_far_ = false;
-    std::array<Array<std::uint8_t>, body_kind_count> awake_;  ///< by chunk of rows: whether a step visits it
+    std::array<Array<std::uint16_t>, body_kind_count>
+        awake_;  ///< BodyRows::awake, or all where nobody sleeps
     std::array<Array<RowRange>, body_kind_count> rows_;
     std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< in no patch; at the range's first row
     ColourMasks joint_masks_, masks_;
@@ -146,7 +147,6 @@ class Layout {
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(SceneCore& scene);
-    [[nodiscard]] bool follow_changes(SceneCore& scene);
     void keep_impulses(ContactCache& cache, std::uint32_t i);
     bool find_decay(const BodyStore& bodies, BodyKind kind, float h);
     bool note_awake(const BodyStore& bodies);
