@@ -132,12 +132,12 @@ struct JointStores {
         BreakLimit break_limit{};
         std::uint16_t iterations =
             0;  ///< least number of sweeps of solve in a substep; 0: as SolverSettings says
-        std::uint64_t number = 0;  ///< of the joints that have been added, this was the last so far
+        std::uint64_t number = 0;  ///< how many joints had been added to the scene with this one
     };
     typename StoresOf<JointTypes>::type stores;
     Array<Slot> slots{Slot{}};  ///< slot 0 is the null handle's
     Array<std::uint32_t> free_slots;
-    std::uint64_t added = 0;  ///< joints, also those that were removed since
+    std::uint64_t added = 0;  ///< how many joints, with those that were removed since
     /// The joints on each body as a doubly linked list of joint ends: end 2 s is the end of the joint in slot s on its
     /// body a, end 2 s + 1 the one on its body b; 0 is no end. The list of a body begins at BodyStore::first_ends.
     struct End {
