@@ -14,7 +14,8 @@
 namespace motley::bench {
 
 /// Writes the files that FrameWriter writes of the crowd in one process. Picture n is drawn by rank n modulo their number, as soon
-/// as every rank has one. Every call but note_places() is made by all ranks, and what fails on one of them is thrown on all.
+/// as every rank has one. Every call but note_places() is made by all ranks. A picture that one of them cannot write is an error
+/// on all.
 class DistributedFrames {
   public:
     /// `walls`: in the scene of every rank, those of `people`. Throws std::runtime_error when the folder cannot be made.
@@ -44,7 +45,7 @@ class DistributedFrames {
     const OpenCrowdPeople& people_;
     std::vector<WallId> walls_;
     int rank_ = 0, ranks_ = 1;
-    int gathered_ = 0;  ///< pictures
+    int gathered_ = 0;  ///< how many pictures, on any rank
     std::optional<FrameWriter> writer_;
     std::vector<Place> places_;  ///< of the people of this rank
     std::optional<View> view_;   ///< the picture that this rank is to draw
@@ -52,7 +53,7 @@ class DistributedFrames {
     [[nodiscard]] View view_of(std::vector<Place> places, std::vector<Pressed> pressed,
                                const std::vector<Leaning>& leaning) const;
     void draw(Executor& executor);
-    /// Does something that may fail on this rank.
+    /// Does something on each rank. What it throws on one of them is thrown on all.
     template <class Work>
     void try_on_all(const Work& work) const;
 };

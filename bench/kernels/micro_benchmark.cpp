@@ -188,7 +188,7 @@ void changing_figures(benchmark::State& state, int changed, bool exact)
         static_cast<double>(report.joints_in_lockstep) / static_cast<double>(report.joints);
 }
 
-/// A step of them at rest without weight, after `pushed` got a push, of which they move for a second and fall asleep again.
+/// A step of them at rest without weight, after `pushed` of them got a push, from which each moves for a second.
 void resting_figures(benchmark::State& state, int pushed, bool exact)
 {
     Ragdolls ragdolls;

@@ -39,15 +39,15 @@ template <class Work>
 void for_each_awake(const BodyStore& bodies, BodyKind kind, std::int64_t chunk, const Work& work)
 {
     const BodyRows& rows = bodies.rows(kind);
-    constexpr std::size_t groups = BodyRows::rows_per_chunk / BodyRows::rows_per_group;
-    const std::size_t first = static_cast<std::size_t>(chunk) * groups;
-    for (std::size_t group = first; group < std::min(first + groups, rows.awake.size()); ++group) {
-        for (unsigned awake = rows.awake[group]; awake != 0; awake &= awake - 1) {
-            const auto row = static_cast<std::uint32_t>(group * BodyRows::rows_per_group +
-                                                        static_cast<std::size_t>(std::countr_zero(awake)));
+    auto first = static_cast<std::uint32_t>(chunk) * BodyRows::rows_per_chunk;
+    for (const std::uint16_t group : rows.awake_in_chunk(chunk)) {
+        // Of a copy of the word, because work() may put the body to sleep.
+        for (unsigned awake = group; awake != 0; awake &= awake - 1) {
+            const std::uint32_t row = first + static_cast<std::uint32_t>(std::countr_zero(awake));
             const std::uint32_t slot = rows.slot[row];
             if (bodies.contained[slot] == 0) work(BodyRow(kind, row), slot);
         }
+        first += BodyRows::rows_per_group;
     }
 }
 

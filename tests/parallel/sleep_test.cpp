@@ -694,7 +694,7 @@ TEST(Sleep, SleepersAmongOthersStayPutAndTheseMoveOn)
             step(solver, scene, 60);
             std::vector<BodyState> before;
             for (const BodyId body : bodies) before.push_back(scene.state(body));
-            // One wakes in each step, in the place of another that is still slow.
+            // In each step a sleeper is woken, who falls asleep again half a second later.
             for (std::size_t i = 0; i < 60; ++i) {
                 scene.wake(bodies[i / 3 * 3 + 1]);
                 step(solver, scene);

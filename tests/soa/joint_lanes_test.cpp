@@ -100,7 +100,7 @@ TEST(JointLanes, FiguresWithATreeComeAndGoWithoutANewLayout)
     --expected[block];
     EXPECT_EQ(chains.copies(), expected);
     for (int i = 0; i < 3; ++i) chains.bodies.push_back(chains.scene.add_body({}));
-    for (int i = 0; i < 2; ++i) chains.add(118 + static_cast<std::size_t>(i) + 2);
+    for (std::size_t i = 0; i < 2; ++i) chains.add(120 + i);
     chains.lay_out();
     expected.back() = 9;
     EXPECT_EQ(chains.copies(), expected);
@@ -132,7 +132,8 @@ TEST(JointLanes, AFigureOfANewShapeGetsATreeAtOnce)
     }
 }
 
-/// Figures that take the place of others at once, from whose slots and rows they are mixed, are copies of the rest.
+/// Several figures are replaced at once. The new ones get the slots and rows of the old ones in another order, and are copies
+/// of the rest.
 TEST(JointLanes, FiguresThatAreReplacedAtOnceAreCopiesOfTheRest)
 {
     Chains chains(true);

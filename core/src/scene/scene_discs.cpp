@@ -208,10 +208,11 @@ void SceneCore::sort_disc_rows()
         std::swap(discs.anchors[i], discs.anchors[j]);
         std::swap(discs.found_at[i], discs.found_at[j]);
     });
-    // Blocks of joints refer to rows.
+    // Blocks of joints refer to rows. (The null handle has a slot, too.)
     const Array<std::uint32_t>& slots = bodies.rows(BodyKind::planar).slot;
-    if (std::any_of(slots.begin(), slots.end(),
-                    [&](std::uint32_t slot) { return bodies.first_ends[slot] != 0; }))
+    const bool has_joints = joints->slots.size() > joints->free_slots.size() + 1;
+    if (has_joints && std::any_of(slots.begin(), slots.end(),
+                                  [&](std::uint32_t slot) { return bodies.first_ends[slot] != 0; }))
         joints->change_altogether();
 }
 

@@ -97,14 +97,17 @@ struct BodyRows {
         std::uint16_t& group = awake[row / rows_per_group];
         group = static_cast<std::uint16_t>(is_awake ? group | bit : group & ~bit);
     }
-    [[nodiscard]] bool is_chunk_awake(std::int64_t chunk) const
+    /// The words of `awake` of a chunk of rows.
+    [[nodiscard]] std::span<const std::uint16_t> awake_in_chunk(std::int64_t chunk) const
     {
         constexpr std::size_t groups = rows_per_chunk / rows_per_group;
-        const std::size_t first = static_cast<std::size_t>(chunk) * groups;
-        return std::any_of(
-            awake.begin() + static_cast<std::ptrdiff_t>(first),
-            awake.begin() + static_cast<std::ptrdiff_t>(std::min(first + groups, awake.size())),
-            [](std::uint16_t rows) { return rows != 0; });
+        const auto from = std::span(awake).subspan(static_cast<std::size_t>(chunk) * groups);
+        return from.first(std::min(groups, from.size()));
+    }
+    [[nodiscard]] bool is_chunk_awake(std::int64_t chunk) const
+    {
+        const std::span<const std::uint16_t> groups = awake_in_chunk(chunk);
+        return std::any_of(groups.begin(), groups.end(), [](std::uint16_t rows) { return rows != 0; });
     }
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot.size()); }
 };

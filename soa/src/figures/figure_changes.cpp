@@ -62,7 +62,7 @@ bool Figures::put_together(std::span<const JointCandidate> component, const Body
                      [&](const JointCandidate& joint) { return can_be_in_lanes(joint.placement, kernels); }))
         return true;
     const Members members(component, bodies, exact_, names_);
-    if (members.is_refused[0] != 0) return false;  // for refused()
+    if (members.is_refused[0] != 0) return false;  // refused() counts them when all are laid out anew
     const std::span<const std::uint32_t> signature = members.signature_of(0);
     const auto fits = [&](const FigureBlock& block) {
         const Array<std::uint32_t>& of_shape = block.shape->signature;

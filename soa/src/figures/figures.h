@@ -40,7 +40,8 @@ class Figures {
     /// After `placed` has been filled into its blocks: looks up the blocks of the joints.
     void bind(BatchSet& batches, const KernelTable& kernels);
 
-    /// When a few joints come or go (see JointLanes).
+    // What follows, up to are_full_enough(), is for JointLanes, when a few joints come or go.
+
     /// A copy in its block, or {none} for a body of no figure.
     struct Copy {
         std::int32_t block = none, lane = 0;
@@ -58,9 +59,9 @@ class Figures {
     /// a shape as are worth a block, or for many shapes, or the component is to be solved exactly.
     [[nodiscard]] bool put_together(std::span<const JointCandidate> component, const BodyStore& bodies,
                                     const KernelTable& kernels, JointLanes& lanes);
-    /// A joint of a component that has more than most_bodies and no tree has come or gone. Returns false if it may have a
-    /// tree now.
-    [[nodiscard]] bool may_lose_a_loop() { return !exact_ || --spare_loops_ >= 0; }
+    /// Counts a loop as lost, because a joint of a component that has more than most_bodies and no tree has come or gone.
+    /// Returns false if the component may have a tree now.
+    [[nodiscard]] bool lose_a_loop() { return !exact_ || --spare_loops_ >= 0; }
     /// Whether copies that have left leave no block so empty that its shape would better have fewer blocks, or none.
     [[nodiscard]] bool are_full_enough() const;
 

@@ -39,6 +39,26 @@ void forget_impulse(JointStores& stores, int type, std::size_t index)
 
 }  // namespace
 
+JointColumns::JointColumns(JointStores& stores) : stores_(&stores)
+{
+    auto type = static_cast<std::size_t>(contact_type_count);
+    stores.for_each([&](auto& store, int) {
+        slots_[type] = store.slots.data();
+        colours_[type++] = store.colours.data();
+    });
+}
+
+std::uint64_t JointColumns::order_of(const Placement& joint) const
+{
+    return stores_->colouring_order(slot_of(joint.type, joint.constraint));
+}
+
+void JointColumns::give_colour(Placement& joint, ColourMasks& masks) const
+{
+    joint.colour = masks.take_first(joint.a, joint.b);
+    colours_[joint.type][joint.constraint] = joint.colour;
+}
+
 JointCandidate JointIntake::candidate(const SceneCore& scene, int type, std::size_t index)
 {
     using Call = JointCandidate (*)(const JointStores&, std::size_t, const BodyStore&);
@@ -108,23 +128,11 @@ void JointIntake::take(SceneCore& scene, bool limits_exactly, ColourMasks& masks
 /// Colours that are in use are taken already, so a new joint gets one that is free on both of its bodies.
 void JointIntake::colour(JointStores& stores, ColourMasks& masks)
 {
-    std::array<const std::uint32_t*, JointTypes::size> slots{};
-    std::array<std::uint8_t*, JointTypes::size> colours{};
-    stores.for_each([&](auto& store, int type) {
-        slots[static_cast<std::size_t>(type)] = store.slots.data();
-        colours[static_cast<std::size_t>(type)] = store.colours.data();
+    const JointColumns columns(stores);
+    std::sort(uncoloured_.begin(), uncoloured_.end(), [&](std::uint32_t i, std::uint32_t j) {
+        return columns.order_of(joints_[i].placement) < columns.order_of(joints_[j].placement);
     });
-    const auto order_of = [&](std::uint32_t i) {
-        const Placement& joint = joints_[i].placement;
-        return stores.colouring_order(slots[joint.type - std::size_t{contact_type_count}][joint.constraint]);
-    };
-    std::sort(uncoloured_.begin(), uncoloured_.end(),
-              [&](std::uint32_t i, std::uint32_t j) { return order_of(i) < order_of(j); });
-    for (const std::uint32_t i : uncoloured_) {
-        Placement& joint = joints_[i].placement;
-        joint.colour = masks.take_first(joint.a, joint.b);
-        colours[joint.type - std::size_t{contact_type_count}][joint.constraint] = joint.colour;
-    }
+    for (const std::uint32_t i : uncoloured_) columns.give_colour(joints_[i].placement, masks);
 }
 
 }  // namespace motley

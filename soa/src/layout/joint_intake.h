@@ -31,6 +31,31 @@ struct JointCandidate {
     }
 };
 
+/// The handles and the colours of joints in their stores, by type of constraint, and how new joints get colours.
+class JointColumns {
+  public:
+    JointColumns() = default;
+    /// Valid until joints are added or removed.
+    explicit JointColumns(JointStores& stores);
+    [[nodiscard]] std::uint32_t slot_of(int type, std::int32_t constraint) const
+    {
+        return slots_[static_cast<std::size_t>(type)][constraint];
+    }
+    [[nodiscard]] std::uint8_t colour_of(int type, std::int32_t constraint) const
+    {
+        return colours_[static_cast<std::size_t>(type)][constraint];
+    }
+    /// New joints get colours in the order of this: see JointStores::colouring_order().
+    [[nodiscard]] std::uint64_t order_of(const Placement& joint) const;
+    /// The first colour that is free on both bodies of the joint.
+    void give_colour(Placement& joint, ColourMasks& masks) const;
+
+  private:
+    const JointStores* stores_ = nullptr;
+    std::array<const std::uint32_t*, constraint_type_count> slots_{};
+    std::array<std::uint8_t*, constraint_type_count> colours_{};
+};
+
 class JointIntake {
   public:
     /// Starts over with the joints of the scene. Gives a colour to those that have none, and takes the colours of all in

@@ -41,17 +41,13 @@ bool JointLanes::follow(SceneCore& scene, ColourMasks& masks)
 JointLanes::Place& JointLanes::place_of(int type, std::int32_t constraint)
 {
     return places_[constraint < 0 ? static_cast<std::uint32_t>(~constraint)
-                                  : slots_[static_cast<std::size_t>(type)][constraint]];
+                                  : columns_.slot_of(type, constraint)];
 }
 
 void JointLanes::look_at(JointStores& joints)
 {
     joints_ = &joints;
-    auto type = static_cast<std::size_t>(contact_type_count);
-    joints.for_each([&](auto& store, int) {
-        slots_[type] = store.slots.data();
-        colours_[type++] = store.colours.data();
-    });
+    columns_ = JointColumns(joints);
 }
 
 void JointLanes::start_over(JointStores& joints)
@@ -63,9 +59,8 @@ void JointLanes::start_over(JointStores& joints)
     small_.clear();
     batches_.for_each_block([&](int constraint_class, std::uint8_t colour, std::int32_t block,
                                 const BlockBodies&, const BlockConstraints& constraints, int lanes) {
-        const std::uint32_t* slots = slots_[static_cast<std::size_t>(type_of(constraint_class))];
         for (int lane = 0; lane < lanes; ++lane) {
-            const std::uint32_t slot = slots[constraints.lane[lane]];
+            const std::uint32_t slot = columns_.slot_of(type_of(constraint_class), constraints.lane[lane]);
             places_[slot] = {joints.slots[slot].generation,
                              {constraint_class, block, static_cast<std::uint8_t>(lane), colour}};
         }
@@ -106,11 +101,9 @@ void JointLanes::note_changes(const SceneCore& scene)
         place.is_new = true;
         touch(now);
     }
-    const auto order_of = [&](const Placement& joint) {
-        return joints_->colouring_order(slots_[joint.type][joint.constraint]);
-    };
-    std::sort(come_.begin(), come_.end(),
-              [&](const Placement& x, const Placement& y) { return order_of(x) < order_of(y); });
+    std::sort(come_.begin(), come_.end(), [&](const Placement& x, const Placement& y) {
+        return columns_.order_of(x) < columns_.order_of(y);
+    });
 }
 
 void JointLanes::touch(const Placement& joint)
@@ -187,11 +180,11 @@ void JointLanes::renew_mask(const BodyStore& bodies, BodyRow body, ColourMasks& 
     std::uint32_t mask = 0;
     bool is_jointed = false;
     joints_->for_each_on(first_end_of(bodies, body), [&](const JointStores::Slot& joint) {
-        const auto type = static_cast<std::size_t>(contact_type_count + joint.type);
-        const std::uint8_t colour = colours_[type][joint.index];
+        const int type = contact_type_count + joint.type;
+        const std::uint8_t colour = columns_.colour_of(type, static_cast<std::int32_t>(joint.index));
         if (colour != no_colour) mask |= 1U << colour;
         if (!place_of(joint).is_in_lane()) return;
-        mask |= JointIntake::start_rows_bit_of(type);
+        mask |= JointIntake::start_rows_bit_of(static_cast<std::size_t>(type));
         is_jointed = true;
     });
     masks.set(body, mask);
@@ -201,10 +194,7 @@ void JointLanes::renew_mask(const BodyStore& bodies, BodyRow body, ColourMasks& 
 bool JointLanes::place_new(ColourMasks& masks)
 {
     for (Placement& joint : come_) {
-        if (joint.colour == no_colour) {  // else it slept
-            joint.colour = masks.take_first(joint.a, joint.b);
-            colours_[joint.type][joint.constraint] = joint.colour;
-        }
+        if (joint.colour == no_colour) columns_.give_colour(joint, masks);  // else it slept
         if (joint.colour == overflow_colour || !add(joint)) return false;
         if (JointIntake::start_rows_bit_of(joint.type) != 0) masks.note_start_rows(joint.a, joint.b);
         for (const BodyRow body : {joint.a, joint.b}) intake_.note(body, true);
@@ -252,7 +242,7 @@ bool JointLanes::find_components(const SceneCore& scene)
                 continue;
             }
             if (!are_connected(scene.bodies, body, body == change.a ? change.b : change.a) ||
-                !figures_.may_lose_a_loop())
+                !figures_.lose_a_loop())
                 return false;
             break;
         }

@@ -55,7 +55,7 @@ class JointLanes {
     };
     Array<Place> places_;
     Array<std::uint32_t> gone_;  ///< slots
-    Array<Placement> come_;      ///< not yet coloured
+    Array<Placement> come_;      ///< with a colour only if they slept
     struct Change {
         BodyRow a, b;
         friend bool operator==(const Change&, const Change&) = default;
@@ -72,8 +72,7 @@ class JointLanes {
         Array<BodyRow> bodies;
         Array<JointCandidate> joints;
     } component_;
-    std::array<const std::uint32_t*, constraint_type_count> slots_{};  ///< of the stores, by type
-    std::array<std::uint8_t*, constraint_type_count> colours_{};       ///< likewise
+    JointColumns columns_;  ///< of joints_
 
     void look_at(JointStores& joints);
     void note_changes(const SceneCore& scene);

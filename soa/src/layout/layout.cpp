@@ -238,7 +238,8 @@ void Layout::list_rows(const SceneCore& scene)
                 },
                 add);
         };
-        // Room for as many runs as those who sleep may ever leave, so that it is not sought when they do.
+        // Room for as many ranges as those who sleep may ever leave, so that it is not sought when they do: at most every
+        // second of the least runs, and of those longer than a range four pieces more than ranges.
         const std::int32_t least_run = has_lone ? 1 : a_group;
         ranges.reserve(static_cast<std::size_t>(size / (2 * least_run) + 5 * (size / rows_per_range) + 6));
         for_each_run(
