@@ -23,6 +23,14 @@ Block limit_block(const Jacobian& jacobian, double value, double lower, double u
     return block;
 }
 
+/// Both impulses of a locked point act midway between the anchors.
+Block::Point midway(const Body& a, const Body& b, const Eigen::Vector3d& local_a,
+                    const Eigen::Vector3d& local_b)
+{
+    const Eigen::Vector3d half = point_error(a, b, local_a, local_b) / 2;
+    return {a.orientation * local_a + half, b.orientation * local_b - half};
+}
+
 class BallSocketModel : public JointModel {
   public:
     explicit BallSocketModel(const BallSocketDefinition& j)
@@ -34,7 +42,8 @@ class BallSocketModel : public JointModel {
     {
         const Eigen::Index rows = in_plane ? 2 : 3;
         return {{.jacobian = lock_jacobian(a, b, local_a_, local_b_).topRows(rows),
-                 .error = point_error(a, b, local_a_, local_b_).head(rows)}};
+                 .error = point_error(a, b, local_a_, local_b_).head(rows),
+                 .point = midway(a, b, local_a_, local_b_)}};
     }
 
   private:
@@ -85,10 +94,12 @@ class FrameModel : public JointModel {
     }
     [[nodiscard]] std::vector<Block> blocks(const Body& a, const Body& b, bool, double) const override
     {
-        return {{.jacobian = frame_jacobian(a, b, frame_a_, frame_b_, linear_, angular_),
-                 .error = frame_error(a, b, frame_a_, frame_b_, linear_, angular_),
-                 .hertz = stiffness_.hertz,
-                 .damping_ratio = stiffness_.damping_ratio}};
+        Block block{.jacobian = frame_jacobian(a, b, frame_a_, frame_b_, linear_, angular_),
+                    .error = frame_error(a, b, frame_a_, frame_b_, linear_, angular_),
+                    .hertz = stiffness_.hertz,
+                    .damping_ratio = stiffness_.damping_ratio};
+        if (linear_ == LinearLock::point) block.point = midway(a, b, frame_a_.position, frame_b_.position);
+        return {block};
     }
 
   private:

@@ -158,9 +158,40 @@ void World::solve_block(BlockRow& row, double h, const SolverSettings& settings,
     peak = std::max(peak, wanted(0));
 }
 
+/// Carries the arms of the blocks of a joint along with the bodies, which have moved for h since: carried_arms.h.
+void World::carry_arms(std::span<BlockRow> rows, double h) const
+{
+    if (!rows.front().block.point) return;
+    const Body &body_a = bodies[static_cast<std::size_t>(rows.front().joint->a)],
+               &body_b = bodies[static_cast<std::size_t>(rows.front().joint->b)];
+    const Vector6 &a = body_a.velocity, &b = body_b.velocity;
+    const Eigen::Matrix<double, 12, 12> inverse_mass = pair_inverse_mass(body_a, body_b);
+    const double mass = 1 / (inverse_mass(0, 0) + inverse_mass(6, 6)),
+                 weight_a = mass * inverse_mass.block<3, 3>(3, 3).trace(),
+                 weight_b = mass * inverse_mass.block<3, 3>(9, 9).trace();
+    auto [arm_a, arm_b] = *rows.front().block.point;
+    const Eigen::Vector3d middle =
+        (a.head<3>() + a.tail<3>().cross(arm_a) + b.head<3>() + b.tail<3>().cross(arm_b)) / 2;
+    const Eigen::Vector3d by_a = h * (middle - a.head<3>()), by_b = h * (middle - b.head<3>());
+    if (weight_a * by_a.squaredNorm() + weight_b * by_b.squaredNorm() < 0.25) {
+        arm_a += by_a;
+        arm_b += by_b;
+    }
+    for (BlockRow& row : rows) {
+        Jacobian& jacobian = row.block.jacobian;
+        for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
+            const Eigen::Vector3d along = jacobian.row(i).segment<3>(6);
+            if (along.isZero(0)) continue;  // an angular row
+            jacobian.row(i).segment<3>(3) = -arm_a.cross(along);
+            jacobian.row(i).segment<3>(9) = arm_b.cross(along);
+        }
+    }
+}
+
 void World::solve_blocks(std::vector<BlockRow>& rows, double h, const SolverSettings& settings, bool relax)
 {
     for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (relax && rows[i].index == 0) carry_arms({&rows[i], rows[i].joint->impulses.size()}, h);
         solve_block(rows[i], h, settings, relax);
         // After the last contact of a joint: what its contacts, pressing less, cannot hold any more is taken back.
         Joint& joint = *rows[i].joint;

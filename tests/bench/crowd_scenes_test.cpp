@@ -106,12 +106,12 @@ TEST(LevelOfDetail, ChangesKeepMomentaAndHaveTheSameBitsOnTwoThreads)
     RunOptions options{.agents = 400, .seconds = 12};
     const RunResult one = run("level-of-detail", options);
     expect_all_marks(one);
-    // Twenty of each in every second but the first. Two fall, unless one whose turn it is lies already, and rise eight
-    // seconds later.
+    // Twenty of each in every second but the first. Two fall, unless one whose turn it is lies already, which one does, and rise
+    // eight seconds later.
     EXPECT_EQ(figure(one, "people promoted"), 220);
     EXPECT_EQ(figure(one, "people demoted"), 220);
-    EXPECT_EQ(figure(one, "people who fell"), 22);
-    EXPECT_EQ(figure(one, "people who rose"), 6);
+    EXPECT_EQ(figure(one, "people who fell"), 21);
+    EXPECT_EQ(figure(one, "people who rose"), 5);
     EXPECT_GT(figure(one, "price of a figure"), figure(one, "price of a particle"));
     options.solver = {.threads = 2, .alone_below = 0};
     EXPECT_EQ(run("level-of-detail", options).state_hash, one.state_hash);

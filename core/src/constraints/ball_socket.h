@@ -10,6 +10,7 @@
 
 #include "contract/constraint_type.h"
 #include "contract/type_list.h"
+#include "maths/carried_arms.h"
 #include "motley/core/constraints/ball_socket_definition.h"
 #include "motley/core/invalid_input.h"
 
@@ -34,6 +35,7 @@ struct BallSocket : ConstraintTraits {
     struct Row {
         PairVector<Real, a, b> start_arm_a, start_arm_b;  ///< when the step began
         PairVector<Real, a, b> start_error;
+        ArmWeights<Real> in_sweep;  ///< what a sweep reads of a row
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -60,7 +62,7 @@ struct BallSocket : ConstraintTraits {
 
     template <class Start, class Real, class A, class B>
     static auto prepare(const Start& start, const Parameters<Real>& joint, const Memory<Real>& memory,
-                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
+                        const A& a, const B& b, Impulse<Real, A::kind, B::kind>& impulse)
     {
         const StepConstants& step = start.step();
         const JointPose<Real, A::kind, B::kind> pose = start.pose();
@@ -69,7 +71,7 @@ struct BallSocket : ConstraintTraits {
         const Vec3<Real> arm_b = to_world(pose.orientation_b, joint.anchor_b);
         impulse.push = Real(step.warm_start_scale) * to_space<Vector>(memory.push);
         return Row<Real, A::kind, B::kind>{to_space<Vector>(arm_a), to_space<Vector>(arm_b),
-                                           to_space<Vector>(pose.between + arm_b - arm_a)};
+                                           to_space<Vector>(pose.between + arm_b - arm_a), arm_weights(a, b)};
     }
 
     template <class Real, class Row, class Impulse>
@@ -100,16 +102,18 @@ struct BallSocket : ConstraintTraits {
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
-    static void solve(const StepConstants& step, const Row&, const Substep& substep, Impulse& impulse, A& a,
-                      B& b)
+    static void solve(const StepConstants& step, const Row& weights, const Substep& substep, Impulse& impulse,
+                      A& a, B& b)
     {
-        const auto speed = velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a) +
-                           Real(step.joint.rate) * substep.error;
+        auto arm_a = substep.arm_a, arm_b = substep.arm_b;
+        if (step.moved_for > 0) carry_arms(step, weights, arm_a, arm_b, a, b);
+        const auto speed =
+            velocity_at(b, arm_b) - velocity_at(a, arm_a) + Real(step.joint.rate) * substep.error;
         const auto change = Real(step.joint.mass_scale) * -(substep.effective_mass * speed) -
                             Real(step.joint.impulse_scale) * impulse.push;
         impulse.push = impulse.push + change;
-        apply_impulse(a, substep.arm_a, -change);
-        apply_impulse(b, substep.arm_b, change);
+        apply_impulse(a, arm_a, -change);
+        apply_impulse(b, arm_b, change);
     }
 
     /// For exact joints, which are between rigid and fixed bodies only.

@@ -16,6 +16,7 @@
 
 #include "contract/constraint_type.h"
 #include "contract/type_list.h"
+#include "maths/carried_arms.h"
 #include "maths/lane_softness.h"
 #include "maths/small_system.h"
 #include "motley/core/constraints/frame_joint_definition.h"
@@ -74,13 +75,18 @@ struct FrameJoint : ConstraintTraits {
     struct Axes {
         Vec3<Real> axis[count];
     };
+    /// What a sweep reads of a row.
+    template <class Real>
+    struct InSweep : LaneSoftness<Real> {
+        [[no_unique_address]] IfNeeded<locks_point, ArmWeights<Real>> weights;
+    };
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
         // When the step began, in the world.
         [[no_unique_address]] IfNeeded<has_arms, Anchors<Real>> start;
         [[no_unique_address]] IfNeeded<has_axes || has_turns, Quat<Real>, 1> start_frame_a;
         [[no_unique_address]] IfNeeded<has_turns, Quat<Real>, 2> start_frame_b;
-        LaneSoftness<Real> in_sweep;  ///< what a sweep reads of a row
+        InSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
@@ -111,7 +117,7 @@ struct FrameJoint : ConstraintTraits {
 
     template <class Start, class Real, class A, class B>
     static auto prepare(const Start& start, const Parameters<Real>& joint, const Memory<Real>& memory,
-                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
+                        const A& a, const B& b, Impulse<Real, A::kind, B::kind>& impulse)
     {
         const StepConstants& step = start.step();
         const JointPose<Real, A::kind, B::kind> pose = start.pose();
@@ -124,7 +130,8 @@ struct FrameJoint : ConstraintTraits {
         if constexpr (has_axes || has_turns)
             row.start_frame_a = to_world(pose.orientation_a, joint.rotation_a);
         if constexpr (has_turns) row.start_frame_b = to_world(pose.orientation_b, joint.rotation_b);
-        row.in_sweep = softness_or(step, joint.hertz, joint.damping_ratio, step.joint);
+        row.in_sweep = {softness_or(step, joint.hertz, joint.damping_ratio, step.joint), {}};
+        if constexpr (locks_point) row.in_sweep.weights = arm_weights(a, b);
         for (int i = 0; i < rows; ++i) impulse.lambda[i] = Real(step.warm_start_scale) * memory.lambda[i];
         return row;
     }
@@ -169,9 +176,9 @@ struct FrameJoint : ConstraintTraits {
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
     {
-        push(substep, impulse.lambda, a, b, [](auto& body, const auto& linear, const auto& angular) {
-            apply_wrench(body, linear, angular);
-        });
+        push(
+            substep, substep.arm, impulse.lambda, a, b,
+            [](auto& body, const auto& linear, const auto& angular) { apply_wrench(body, linear, angular); });
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
@@ -179,8 +186,12 @@ struct FrameJoint : ConstraintTraits {
                       Impulse& impulse, A& a, B& b)
     {
         const LaneSoftness<Real> soft = softness_in(step, in_sweep);
+        auto arm = substep.arm;
+        if constexpr (locks_point) {
+            if (step.moved_for > 0) carry_arms(step, in_sweep.weights, arm.a, arm.b, a, b);
+        }
         Real change[rows];
-        speeds(substep, a, b, change);
+        speeds(substep, arm, a, b, change);
         for (int i = 0; i < rows; ++i) change[i] = -(change[i] + soft.rate * substep.error[i]);
         solve_in_place(substep.factors, change);
         for (int i = 0; i < rows; ++i) {
@@ -188,7 +199,7 @@ struct FrameJoint : ConstraintTraits {
             impulse.lambda[i] = held + (soft.mass_scale * change[i] - soft.impulse_scale * held);
             change[i] = impulse.lambda[i] - held;  // as rounded: bodies get exactly what lambda gains
         }
-        push(substep, change, a, b, [](auto& body, const auto& linear, const auto& angular) {
+        push(substep, arm, change, a, b, [](auto& body, const auto& linear, const auto& angular) {
             apply_wrench(body, linear, angular);
         });
     }
@@ -217,7 +228,7 @@ struct FrameJoint : ConstraintTraits {
         Real change[rows];
         for (int i = 0; i < rows; ++i) change[i] = select(own, Real(0), -now.error[i]);
         solve_in_place(now.factors, change);
-        push(now, change, a, b,
+        push(now, now.arm, change, a, b,
              [](auto& body, const auto& linear, const auto& angular) { displace(body, linear, angular); });
     }
 
@@ -345,13 +356,13 @@ struct FrameJoint : ConstraintTraits {
         substep.factors = factor(k, floor);
     }
 
-    /// J v.
-    template <class Real, class Substep, class A, class B>
-    static void speeds(const Substep& substep, const A& a, const B& b, Real (&speed)[rows])
+    /// J v, with these arms.
+    template <class Real, class Substep, class Arm, class A, class B>
+    static void speeds(const Substep& substep, const Arm& arm, const A& a, const B& b, Real (&speed)[rows])
     {
         if constexpr (has_arms) {
-            const Vec3<Real> v = (linear_of(b) + cross(angular_of(b), substep.arm.b)) -
-                                 (linear_of(a) + cross(angular_of(a), substep.arm.a));
+            const Vec3<Real> v =
+                (linear_of(b) + cross(angular_of(b), arm.b)) - (linear_of(a) + cross(angular_of(a), arm.a));
             if constexpr (has_axes) {
                 for (int i = 0; i < linear_rows; ++i) speed[i] = dot(substep.linear.axis[i], v);
             } else {
@@ -385,15 +396,16 @@ struct FrameJoint : ConstraintTraits {
         }
         return wrench;
     }
-    /// Applies J^T lambda to both bodies, by `apply(body, linear, angular)`.
-    template <class Real, class Substep, class A, class B, class Apply>
-    static void push(const Substep& substep, const Real (&lambda)[rows], A& a, B& b, const Apply& apply)
+    /// Applies J^T lambda to both bodies, with these arms, by `apply(body, linear, angular)`.
+    template <class Real, class Substep, class Arm, class A, class B, class Apply>
+    static void push(const Substep& substep, const Arm& arm, const Real (&lambda)[rows], A& a, B& b,
+                     const Apply& apply)
     {
         const Wrench<Real> wrench = wrench_of(substep, lambda);
         Vec3<Real> angular_a = wrench.turn, angular_b = wrench.turn;
         if constexpr (has_arms) {
-            angular_a = angular_a + cross(substep.arm.a, wrench.push);
-            angular_b = angular_b + cross(substep.arm.b, wrench.push);
+            angular_a = angular_a + cross(arm.a, wrench.push);
+            angular_b = angular_b + cross(arm.b, wrench.push);
         }
         apply(a, -wrench.push, -angular_a);
         apply(b, wrench.push, angular_b);

@@ -82,6 +82,7 @@ StepConstants relaxing(StepConstants step)
     step.joint = step.contact = step.static_contact = Softness{};
     // Above any speed, and no overflow when multiplied by the largest inertia that is accepted, 1e20 kg m2.
     step.push_out_speed = 1e17F;
+    step.moved_for = step.substep;
     return step;
 }
 

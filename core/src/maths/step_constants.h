@@ -25,6 +25,7 @@ struct StepConstants {
     float substep = 0;          ///< s
     float inverse_substep = 0;  ///< 1/s
     float seconds = 0;          ///< s, all substeps together
+    float moved_for = 0;  ///< s: for how long bodies have moved since rows were built: see carried_arms.h
     /// h dt / 2, s2: under a constant acceleration a, v += h a, x += h v moves a body by a times this too far in a
     /// step.
     float flight_excess = 0;

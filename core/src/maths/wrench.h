@@ -103,6 +103,11 @@ Real linear_size(const LaneBody<Real, BodyKind::fixed>&)
     return Real(0);
 }
 template <class Real>
+Real angular_size(const LaneBody<Real, BodyKind::particle>&)
+{
+    return Real(0);
+}
+template <class Real>
 Real angular_size(const LaneBody<Real, BodyKind::rigid>& body)
 {
     return trace(body.inverse_inertia);

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,10 @@ namespace motley::reference {
 
 /// Rows of one kind that are solved together.
 struct Block {
+    /// From the centres of a and b to the point where the impulses of linear rows act, m, world.
+    struct Point {
+        Eigen::Vector3d arm_a, arm_b;
+    };
     enum class Kind {
         equality,  ///< C = 0; with a frequency, stiffness or damping a spring
         limit,     ///< one row: C >= 0 with side * lambda >= 0; `error` is C, the room that is left
@@ -31,6 +36,8 @@ struct Block {
     double most_per_contact = -1;
     double restitution = 0;  ///< of a contact
     double armature = 0;     ///< kg or kg m2: inertia of a rotor that is geared to the block's one row
+    /// Of locks of a point, whose arms bodies carry along before relaxation.
+    std::optional<Point> point{};
 
     [[nodiscard]] bool is_spring() const { return hertz > 0 || stiffness > 0 || damping > 0; }
     [[nodiscard]] bool is_one_sided() const { return kind == Kind::limit || kind == Kind::contact; }

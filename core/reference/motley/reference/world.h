@@ -88,6 +88,7 @@ class World {
     [[nodiscard]] Eigen::MatrixXd mass_of(const Joint& joint, const Block& block) const;
     void aim(BlockRow& row, const Eigen::VectorXd& error, double h, const SolverSettings& settings) const;
     void solve_block(BlockRow& row, double h, const SolverSettings& settings, bool relax);
+    void carry_arms(std::span<BlockRow> rows, double h) const;
     void solve_blocks(std::vector<BlockRow>& rows, double h, const SolverSettings& settings, bool relax);
     void shorten(Joint& joint, const Block& block, std::size_t index, double push);
     void shorten(ContactRow& row);
