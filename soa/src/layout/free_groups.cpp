@@ -54,7 +54,7 @@ void FreeGroups::find(const JointIntake& intake)
         members += std::exchange(group.end, members);
     }
     members_.resize(members);
-    start_momenta_.resize(groups_.size());
+    start_.resize(groups_.size());
     for (const BodyKind kind : moving_kinds) {
         const Array<std::int32_t>& group_of_row = group_of_body_[static_cast<std::size_t>(kind)];
         for (std::uint32_t row = 0; row < group_of_row.size(); ++row) {
@@ -95,7 +95,7 @@ void FreeGroups::add(std::span<BodyRow> members, std::span<const JointCandidate>
     }
     groups_.push_back({begin, static_cast<std::uint32_t>(members_.size())});
     in_groups_ += members.size();
-    start_momenta_.resize(groups_.size());
+    start_.resize(groups_.size());
 }
 
 void FreeGroups::close_gaps()
@@ -136,28 +136,38 @@ FreeGroups::Sums FreeGroups::sums_of(const KernelContext& context, std::int64_t 
     return sums;
 }
 
+Vec3<double> FreeGroups::momentum_of(const KernelContext& context, std::int64_t group) const
+{
+    Vec3<double> momentum{};
+    for (const BodyRow body : members(group)) {
+        const float* v = context.bodies[static_cast<int>(body.kind())].velocity + row_offset(body);
+        momentum = momentum + 1 / double{v[3]} * Vec3<double>{v[0], v[1], v[2]};
+    }
+    return momentum;
+}
+
 void FreeGroups::begin(const KernelContext& context, std::int64_t group)
 {
-    start_momenta_[static_cast<std::size_t>(group)] = sums_of(context, group).momentum;
+    start_[static_cast<std::size_t>(group)] = sums_of(context, group);
 }
 
 void FreeGroups::land(const KernelContext& context, std::int64_t group) const
 {
     const StepConstants& step = context.step;
-    const Sums sums = sums_of(context, group);
-    if (sums.is_damped) return;  // it does not fly on a parabola
-    Vec3<double> a = 1 / sums.mass * sums.force + convert<double>(step.gravity);
-    if (sums.in_plane) a.z = 0;
-    const auto along = [&](const Vec3<double>& momentum) { return dot(1 / sums.mass * momentum, a); };
-    if (!flew_freely(along(start_momenta_[static_cast<std::size_t>(group)]), along(sums.momentum),
-                     double{step.seconds} * dot(a, a)))
-        return;
+    const Sums& start = start_[static_cast<std::size_t>(group)];
+    if (start.is_damped) return;  // it does not fly on a parabola
+    Vec3<double> a = 1 / start.mass * start.force + convert<double>(step.gravity);
+    if (start.in_plane) a.z = 0;
+    const auto along = [&](const Vec3<double>& momentum) { return dot(1 / start.mass * momentum, a); };
+    Vec3<double> momentum = momentum_of(context, group);
+    if (start.in_plane) momentum.z = 0;
+    if (!flew_freely(along(start.momentum), along(momentum), double{step.seconds} * dot(a, a))) return;
     const Vec3<float> back = convert<float>(double{step.flight_excess} * a);
     for (const BodyRow body : members(group)) {
         float* delta = context.bodies[static_cast<int>(body.kind())].delta + row_offset(body);
         delta[0] -= back.x;
         delta[1] -= back.y;
-        if (!sums.in_plane) delta[2] -= back.z;  // of a planar body this is its yaw
+        if (!start.in_plane) delta[2] -= back.z;  // of a planar body this is its yaw
     }
 }
 

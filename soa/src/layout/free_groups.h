@@ -22,7 +22,7 @@ class FreeGroups {
     void add(std::span<BodyRow> members, std::span<const JointCandidate> joints);
     [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(groups_.size()); }
 
-    /// At the beginning of a step: stores the momentum of a group.
+    /// At the beginning of a step: stores the momentum of a group, its mass, and the force on it.
     void begin(const KernelContext& context, std::int64_t group);
     /// At the end of a step: if forces alone changed the momentum of a group, moves it back by the distance that
     /// v += h a, x += h v has moved its centre of mass too far (v: velocity, a: acceleration, x: position, h:
@@ -43,6 +43,7 @@ class FreeGroups {
         return group_of_body_[static_cast<std::size_t>(body.kind())][body.row()];
     }
     [[nodiscard]] Sums sums_of(const KernelContext& context, std::int64_t group) const;
+    [[nodiscard]] Vec3<double> momentum_of(const KernelContext& context, std::int64_t group) const;
     static constexpr std::int32_t none = -1;
     Array<std::int32_t> group_of_root_;  ///< while groups are found: by root in JointIntake::sets()
     struct Group {
@@ -52,7 +53,7 @@ class FreeGroups {
     Array<BodyRow> members_;  ///< by kind and row within a group, with gaps where groups were dissolved
     std::size_t in_groups_ = 0;
     std::array<Array<std::int32_t>, body_kind_count> group_of_body_;  ///< by kind and row: its index, or none
-    Array<Vec3<double>> start_momenta_;                               ///< by group
+    Array<Sums> start_;                                               ///< by group
 };
 
 }  // namespace motley
