@@ -58,8 +58,11 @@ struct SolverCommand {
                        "soft_step: stiffness of joints, as far as a substep can follow")
             ->capture_default_str();
         app.add_flag("--exact", settings.exact_joints, "soft_step: joints solved all at once");
+        app.add_option("--exact-above-ratio", settings.exact_above_ratio,
+                       "soft_step: joints solved all at once where a body hangs on one so many times lighter")
+            ->capture_default_str();
         app.add_flag("--exact-limits", settings.exact_limits,
-                     "with --exact: limits, motors and springs too, while they act");
+                     "limits, motors and springs too, where joints are and while they act");
         app.add_flag("--exact-contacts", settings.exact_contacts,
                      "contacts of an island solved all at once, where it is sparse");
         app.add_option("--isa", isa,

@@ -322,7 +322,7 @@ void Solver::Impl::lay_out(SceneCore& scene, std::span<const Contact> contacts, 
 /// Plans what this step does, in which order, and what of it is fused.
 void Solver::Impl::plan_step(const SceneCore& scene)
 {
-    const StepNeeds needs{.solves_trees = use_of_figures(scene).exactly,
+    const StepNeeds needs{.solves_trees = layout.figures.have_trees(),
                           .bounces = anything_bounces(scene),
                           .picks_islands = picks_islands(scene),
                           .measures = settings.tolerance > 0 || settings.measures || settings.budget_ms > 0};
@@ -381,8 +381,9 @@ FigureUse Solver::Impl::use_of_figures(const SceneCore& scene) const
     // Nor in lockstep with many sweeps: velocities of copies are not computed anew (Renewal).
     const bool in_lockstep = !tells_blocks_apart(scene) && !settings.exact_contacts &&
                              (settings.exact_joints || !PlanRunner::sweeps_long(settings));
-    const bool exactly = possible && settings.exact_joints;
-    return {possible && in_lockstep, exactly, exactly && settings.exact_limits};
+    ExactFigures exact{.all = possible && settings.exact_joints};
+    if (settings.method == Method::soft_step && !exact.all) exact.above_ratio = settings.exact_above_ratio;
+    return {possible && in_lockstep, exact, exact.any() && settings.exact_limits};
 }
 
 /// Whether visit_patches_once() may rewrite the plan. Not where residuals are measured, by island or of the whole

@@ -385,9 +385,11 @@ TEST(CStructs, HostsOfTheFirstReleaseHaveDefaultsForWhatTheyDoNotKnow)
     ASSERT_EQ(motley_solver_create(settings, nullptr, &solver), MOTLEY_DONE);
     motley_solver_settings now = motley_default_solver_settings();
     now.exact_limits = 1;
+    now.exact_above_ratio = 7;
     ASSERT_EQ(motley_solver_read_settings(solver, &now), MOTLEY_DONE);
     EXPECT_EQ(now.substeps, 3);
     EXPECT_EQ(now.exact_limits, 0);
+    EXPECT_EQ(now.exact_above_ratio, 10);
     motley_solver_destroy(solver);
 }
 

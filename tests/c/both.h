@@ -44,6 +44,7 @@ class Both {
         c.method = static_cast<motley_method>(settings.method);
         c.exact_joints = settings.exact_joints;
         c.exact_limits = settings.exact_limits;
+        c.exact_above_ratio = settings.exact_above_ratio;
         c.exact_contacts = settings.exact_contacts;
         c.measures = settings.measures;
         c.sleep_speed = settings.sleep_speed;

@@ -86,6 +86,7 @@ static void check_defaults(void)
     DEMAND(settings.projections == 2 && settings.penetration_slop == 0.0005F && settings.sleep_after == 0.5F);
     DEMAND(settings.gravity.y == 0 && settings.tolerance == 0 && settings.budget_ms == 0 &&
            settings.sleep_speed == 0);
+    DEMAND(settings.exact_above_ratio == 10);
     DEMAND(options.threads == 1 && options.isa == MOTLEY_ISA_DEFAULT && options.alone_below == 8192);
     DEMAND(options.executor == NULL && executor.concurrency == 1 && executor.run == NULL &&
            executor.user == NULL);

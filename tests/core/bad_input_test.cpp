@@ -778,6 +778,8 @@ TEST(BadInput, EverySettingIsChecked)
         s.sleep_speed = 0.01F;
         s.method = Method::direct;
     });
+    refused("exact_above_ratio", [](auto& s) { s.exact_above_ratio = 0.9F; });
+    refused("exact_above_ratio", [](auto& s) { s.exact_above_ratio = nan; });
     refused("sleep_after", [](auto& s) { s.sleep_after = -1; });
     refused("sleep_after", [](auto& s) { s.sleep_after = infinity; });
     refused("gravity.x", [](auto& s) { s.gravity.x = nan; });

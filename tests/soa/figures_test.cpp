@@ -173,7 +173,7 @@ TEST(Figures, EveryJointIsPlacedOnceAndEveryLaneIsItsOwnCopys)
         for (const bool exact : {false, true}) {
             Figures figures;
             Array<Placement> placed;
-            figures.find(joints, sets, bodies, kernels, exact, placed);
+            figures.find(joints, sets, bodies, kernels, {.all = exact}, placed);
             std::vector<int> seen(joints.size(), 0);
             for (const Placement& placement : placed) {
                 if (!placement.is_gap()) ++seen[static_cast<std::size_t>(placement.constraint)];

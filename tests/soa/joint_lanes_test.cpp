@@ -18,7 +18,7 @@ struct Chains {
     FigureUse use;
     Layout layout{kernel_table(Isa::scalar)};
 
-    explicit Chains(bool exactly = false) : use{.exactly = exactly}
+    explicit Chains(bool exactly = false) : use{.exact = {.all = exactly}}
     {
         for (int i = 0; i < 120; ++i) {
             bodies.push_back(scene.add_body({}));

@@ -46,7 +46,7 @@ std::vector<int> blocks_of_copies(const Plan& plan, int copies, bool exactly, st
     Scene scene;
     for (int i = 0; i < copies; ++i) add_copy(scene, plan, random);
     Layout layout(kernel_table(Isa::scalar));
-    testing::lay_out(layout, scene, {}, {.exactly = exactly});
+    testing::lay_out(layout, scene, {}, {.exact = {.all = exactly}});
     std::vector<int> counts;
     for (const FigureBlock& block : layout.figures.blocks()) {
         EXPECT_EQ(block.shape, layout.figures.blocks().front().shape);

@@ -179,6 +179,8 @@ struct Drive : ConstraintTraits {
         return parameters;
     }
 
+    static bool has_rotor(const Definition& drive) { return drive.armature > 0; }
+
     template <class Start, class Real, class A, class B>
     static auto prepare(const Start& start, const Parameters<Real>& drive, const Memory<Real>& memory,
                         const A& a, const B& b, Impulse<Real, A::kind, B::kind>& impulse)

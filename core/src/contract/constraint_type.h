@@ -107,6 +107,12 @@ struct ConstraintTraits {
     {
         return false;
     }
+    /// Whether a joint of this definition has a rotor, which sweeps must solve: see act() of drive.h.
+    template <class Definition>
+    static bool has_rotor(const Definition&)
+    {
+        return false;
+    }
     /// Whether a body that it ties to the world can never fly freely.
     template <class Definition>
     static bool locks_place(const Definition&)

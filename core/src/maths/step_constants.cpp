@@ -36,6 +36,8 @@ void SolverSettings::validate() const
     check("SolverSettings.relaxations", relaxations, 0, 10000, "0 to 10000");
     check("SolverSettings.projections", projections, 0, 10000, "0 to 10000");
     constexpr double big = 1e9;
+    if (!(exact_above_ratio >= 1))
+        refuse("SolverSettings.exact_above_ratio", exact_above_ratio, "1 or more, or infinite");
     check("SolverSettings.tolerance", tolerance, 0, big, "0 to 1e9 (m/s)");
     check("SolverSettings.budget_ms", budget_ms, 0, 1e6, "0 to 1e6 (ms)");
     check("SolverSettings.gravity.x", gravity.x, -big, big, "a finite value from -1e9 to 1e9 (m/s2)");

@@ -301,8 +301,10 @@ void Scene::set_joint(ConstraintId joint, const Definition& definition)
     Type::validate(definition, core_->check_joint_bodies(type, definition.body_a, definition.body_b));
     core_->wake_island(definition.body_a.slot);
     core_->wake_island(definition.body_b.slot);
-    // Locks and other joints are laid out differently.
-    if (Type::is_equality(definition) != Type::is_equality(now)) core_->joints->change_altogether();
+    // Locks and other joints are laid out differently, and so are rotors.
+    if (Type::is_equality(definition) != Type::is_equality(now) ||
+        Type::has_rotor(definition) != Type::has_rotor(now))
+        core_->joints->change_altogether();
     store.define(index, definition);
 }
 

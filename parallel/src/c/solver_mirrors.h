@@ -43,7 +43,7 @@ struct Mirror<motley_solver_settings, SolverSettings> : Pair<motley_solver_setti
         MOTLEY_FIELD(push_out_speed), MOTLEY_FIELD(joint_hertz), MOTLEY_FIELD(joint_damping_ratio),
         MOTLEY_FIELD(restitution_threshold), MOTLEY_FIELD(drift_correction), MOTLEY_FIELD(baumgarte),
         MOTLEY_FIELD(projections), MOTLEY_FIELD(penetration_slop), MOTLEY_FIELD(sleep_speed),
-        MOTLEY_FIELD(sleep_after), MOTLEY_FIELD(exact_limits));
+        MOTLEY_FIELD(sleep_after), MOTLEY_FIELD(exact_limits), MOTLEY_FIELD(exact_above_ratio));
 };
 template <>
 inline constexpr std::size_t first_size<motley_solver_settings> = offsetof(motley_solver_settings,

@@ -62,7 +62,8 @@ bool Figures::put_together(std::span<const JointCandidate> component, const Body
                      [&](const JointCandidate& joint) { return can_be_in_lanes(joint.placement, kernels); }))
         return true;
     const Members members(component, bodies, exact_, names_);
-    if (members.is_refused[0] != 0) return false;  // refused() counts them when all are laid out anew
+    if (exact_.all && members.is_exact[0] == 0)
+        return false;  // refused() counts them when all are laid out anew
     const std::span<const std::uint32_t> signature = members.signature_of(0);
     const auto fits = [&](const FigureBlock& block) {
         const Array<std::uint32_t>& of_shape = block.shape->signature;
@@ -74,7 +75,7 @@ bool Figures::put_together(std::span<const JointCandidate> component, const Body
         if ((block == blocks_.end() || other->count < block->count) && fits(*other)) block = other;
     }
     if (block == blocks_.end()) {
-        if (exact_ && build_tree(*members.shape_of(0))) return false;
+        if (members.is_exact[0] != 0 && build_tree(*members.shape_of(0))) return false;
         const std::uint64_t shape = members.hash_of(0);
         const auto waiting = std::find_if(waiting_.begin(), waiting_.end(),
                                           [&](const Waiting& other) { return other.shape == shape; });

@@ -42,7 +42,7 @@ Placement gap_beside(Placement placement)
 }  // namespace
 
 void Figures::find(std::span<const JointCandidate> joints, const BodySets& sets, const BodyStore& bodies,
-                   const KernelTable& kernels, bool exact, Array<Placement>& placed)
+                   const KernelTable& kernels, const ExactFigures& exact, Array<Placement>& placed)
 {
     const std::size_t rigid_rows = bodies.rows(BodyKind::rigid).size();
     exact_ = exact;
@@ -67,11 +67,15 @@ void Figures::find(std::span<const JointCandidate> joints, const BodySets& sets,
         std::size_t end = next + 1;
         while (end < order.size() && are_copies(members, order[next], order[end])) ++end;
         copies = std::span(order).subspan(next, end - next);
+        const bool is_exact = members.is_exact[copies.front()] != 0;
+        const bool is_large = members.bodies_of(copies.front()).size() > most_bodies;
+        // A change of a joint may make a large figure bear a heavy load.
+        if (!is_exact && is_large) spare_loops_ = 0;
         // Too few copies, and nothing to be solved exactly.
-        if (!exact && copies.size() < std::size_t{fewest_copies}) continue;
+        if (!is_exact && (is_large || copies.size() < std::size_t{fewest_copies})) continue;
         std::unique_ptr<FigureShape> shape = members.shape_of(copies.front());
-        const bool has_tree = exact && members.is_refused[copies.front()] == 0 && build_tree(*shape);
-        if (!has_tree && shape->bodies.size() > most_bodies) {
+        const bool has_tree = is_exact && build_tree(*shape);
+        if (!has_tree && is_large) {
             spare_loops_ = std::min(spare_loops_, spare_loops_of(*shape));
             continue;
         }

@@ -3,6 +3,8 @@
 // own from then on, and one that touches something that moves is swept by colour like everything else.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -15,6 +17,14 @@ namespace motley {
 
 class JointLanes;
 
+/// Which figures have their locks solved exactly, by trees: all, or those that bear heavy loads.
+struct ExactFigures {
+    bool all = false;
+    float above_ratio = std::numeric_limits<float>::infinity();  ///< see bears_heavy_load()
+    [[nodiscard]] bool any() const { return all || above_ratio < std::numeric_limits<float>::infinity(); }
+    friend bool operator==(const ExactFigures&, const ExactFigures&) = default;
+};
+
 class Figures {
   public:
     static constexpr std::int32_t none = -1;
@@ -26,11 +36,11 @@ class Figures {
     static constexpr int fewest_copies = 8;
     /// Sorts the joints into `placed`. Those of figures come first, sixteen consecutive copies of each joint, with
     /// gaps where a block has fewer copies, so that each joint of a block of copies has a block of its own. The rest
-    /// follow in their old order. `exact`: the locks of figures are solved by trees, however few copies there are,
-    /// except for the locks that refused() counts. `sets`: what the joints connect.
+    /// follow in their old order. `exact`: whose locks are solved by trees, however few copies there are, except those
+    /// between light bodies and heavy ones: see light_between_heavy() and refused(). `sets`: what the joints connect.
     void find(std::span<const JointCandidate> joints, const BodySets& sets, const BodyStore& bodies,
-              const KernelTable& kernels, bool exact, Array<Placement>& placed);
-    /// Locks that are not solved exactly, because their figure has no fixed body and has a body too light for the
+              const KernelTable& kernels, const ExactFigures& exact, Array<Placement>& placed);
+    /// With ExactFigures::all: locks that are not solved exactly, because their figure has no fixed body and has a body too light for the
     /// other bodies; see StepReport::exact_joints_refused.
     struct Refused {
         std::int64_t joints = 0;
@@ -61,7 +71,7 @@ class Figures {
                                     const KernelTable& kernels, JointLanes& lanes);
     /// Counts a loop as lost, because a joint of a component that has more than most_bodies and no tree has come or gone.
     /// Returns false if the component may have a tree now.
-    [[nodiscard]] bool lose_a_loop() { return !exact_ || --spare_loops_ >= 0; }
+    [[nodiscard]] bool lose_a_loop() { return !exact_.any() || --spare_loops_ >= 0; }
     /// Whether copies that have left leave no block so empty that its shape would better have fewer blocks, or none.
     [[nodiscard]] bool are_full_enough() const;
 
@@ -91,6 +101,12 @@ class Figures {
     [[nodiscard]] std::span<const std::int32_t> places() const { return place_of_row_; }
 
     [[nodiscard]] bool is_empty() const { return blocks_.empty(); }
+    /// Whether any locks are solved exactly.
+    [[nodiscard]] bool have_trees() const
+    {
+        return std::any_of(shapes_.begin(), shapes_.end(),
+                           [](const std::unique_ptr<FigureShape>& shape) { return shape->has_tree(); });
+    }
     [[nodiscard]] std::span<const FigureBlock> blocks() const { return blocks_; }
     /// Blocks that are alone in this step, and those with a tree that are not.
     [[nodiscard]] std::span<const std::int32_t> lone() const { return lone_; }
@@ -105,7 +121,7 @@ class Figures {
     [[nodiscard]] std::int64_t lone_joints() const { return is_empty() ? 0 : lone_joints_; }
 
   private:
-    bool exact_ = false;  ///< see find()
+    ExactFigures exact_;  ///< see find()
     Refused refused_;
     /// How many loops of any component that has more than most_bodies may go before it can have a tree.
     std::int64_t spare_loops_ = 0;

@@ -4,40 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <map>
 #include <numeric>
 
 #include "figures/joint_order.h"
+#include "figures/light_bodies.h"
 
 namespace motley {
 namespace {
 
-/// A body with two locks or more, in a figure without a fixed body and with a body more than 2,000 times as heavy;
-/// {} if there is none. The mass that its joints see is made of both and keeps too few digits of the light one: the
-/// joints hold, but their impulses do not cancel. Momentum changes by 3e-6 per second at 1 : 1,000 and by 3e-5 at
-/// 1 : 10,000 (light_between_heavy_test.cpp).
-BodyId light_between_heavy(std::span<const JointCandidate* const> joints, const BodyStore& bodies)
-{
-    constexpr double most_mass_ratio = 2000;
-    std::map<std::uint32_t, int> locks_on;  // by slot
-    for (const JointCandidate* joint : joints) {
-        if (joint->equalities == 0) continue;
-        for (const BodyRow body : {joint->placement.a, joint->placement.b}) {
-            if (!is_rigid(body)) return {};
-            ++locks_on[bodies.rows(BodyKind::rigid).slot[body.row()]];
-        }
-    }
-    const auto inverse_mass = [&](std::uint32_t slot) { return double{bodies.inverse_masses[slot]}; };
-    double of_heaviest = std::numeric_limits<double>::infinity();
-    for (const auto& [slot, locks] : locks_on) of_heaviest = std::min(of_heaviest, inverse_mass(slot));
-    for (const auto& [slot, locks] : locks_on) {
-        if (locks > 1 && inverse_mass(slot) > most_mass_ratio * of_heaviest) return bodies.id_of_slot(slot);
-    }
-    return {};
-}
-
 /// Adds a member whose joints end at `end`: numbers its bodies and writes its signature.
-void add_member(Members& members, std::size_t end, BodyNames& names, bool is_refused)
+void add_member(Members& members, std::size_t end, BodyNames& names, bool is_exact)
 {
     const std::size_t first_body = members.bodies.size();
     names.start_figure();
@@ -48,18 +24,43 @@ void add_member(Members& members, std::size_t end, BodyNames& names, bool is_ref
         members.signatures.push_back(names.name(p.a, members.bodies, first_body));
         members.signatures.push_back(names.name(p.b, members.bodies, first_body));
     }
-    members.signatures.push_back(is_refused ? 1 : 0);
-    members.is_refused.push_back(is_refused ? 1 : 0);
+    members.signatures.push_back(is_exact ? 1 : 0);
+    members.is_exact.push_back(is_exact ? 1 : 0);
     members.first_joint.push_back(end);
     members.first_body.push_back(members.bodies.size());
     members.first_number.push_back(members.signatures.size());
 }
 
-/// Sorts the joints of all components that may be figures and have at most `largest` moving bodies, component after
-/// component. Returns where the joints of each end, by its root.
+/// By root of a component: whether it may be solved exactly although it has more than Figures::most_bodies moving bodies.
+Array<std::uint8_t> find_large_exact(std::span<const JointCandidate> joints, const BodySets& sets,
+                                     const BodyStore& bodies, const ExactFigures& exact)
+{
+    Array<std::uint8_t> may_be_exact(sets.size(), exact.all ? 1 : 0);
+    if (exact.all || !exact.any()) return may_be_exact;
+    // A necessary condition of bears_heavy_load().
+    struct Span {
+        float least = std::numeric_limits<float>::infinity(), most = 0;
+    };
+    Array<Span> inverse_masses(sets.size());
+    const BodyRows& rigid = bodies.rows(BodyKind::rigid);
+    for (const JointCandidate& joint : joints) {
+        for (const BodyRow body : {joint.placement.a, joint.placement.b}) {
+            if (!is_rigid(body)) continue;
+            const float own = bodies.inverse_masses[rigid.slot[body.row()]];
+            Span& of_all = inverse_masses[static_cast<std::size_t>(sets.root(body))];
+            of_all = {std::min(of_all.least, own), std::max(of_all.most, own)};
+        }
+    }
+    std::transform(inverse_masses.begin(), inverse_masses.end(), may_be_exact.begin(),
+                   [&](const Span& span) { return span.most > exact.above_ratio * span.least ? 1 : 0; });
+    return may_be_exact;
+}
+
+/// Sorts the joints of all components that may be figures, component after component. Returns where the joints of each
+/// end, by its root.
 Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, const BodySets& sets,
                                        const BodyStore& bodies, const KernelTable& kernels,
-                                       std::size_t largest, BodyNames& names,
+                                       const ExactFigures& exact, BodyNames& names,
                                        Array<const JointCandidate*>& sorted)
 {
     const BodyRows& rigid = bodies.rows(BodyKind::rigid);
@@ -72,6 +73,7 @@ Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, c
         for (const BodyRow body : {joint.placement.a, joint.placement.b})
             if (is_rigid(body)) members[root_of(body)] = excluded;
     }
+    const Array<std::uint8_t> may_be_large = find_large_exact(joints, sets, bodies, exact);
     // Joints are counted by colour and by component. Then they are sorted by colour, and from there put into their
     // components, in which little is left to be sorted.
     constexpr std::uint32_t no_root = excluded;
@@ -83,7 +85,8 @@ Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, c
         roots[i] = no_root;
         if (!can_be_in_lanes(joint, kernels)) continue;
         const std::size_t root = root_of({BodyKind::rigid, rigid_row_of(joint)});
-        if (members[root] > largest) continue;
+        if (members[root] == excluded) continue;
+        if (members[root] > Figures::most_bodies && may_be_large[root] == 0) continue;
         roots[i] = static_cast<std::uint32_t>(root);
         ++ends[root];
         ++places[joint.colour];
@@ -106,9 +109,16 @@ Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, c
     return ends;
 }
 
+bool is_to_be_exact(std::span<const JointCandidate* const> joints, const BodyStore& bodies,
+                    const ExactFigures& exact)
+{
+    const bool is_wanted = exact.all || (exact.any() && bears_heavy_load(joints, bodies, exact.above_ratio));
+    return is_wanted && light_between_heavy(joints, bodies) == BodyId{};
+}
+
 }  // namespace
 
-Members::Members(std::span<const JointCandidate> component, const BodyStore& store, bool exact,
+Members::Members(std::span<const JointCandidate> component, const BodyStore& store, const ExactFigures& exact,
                  BodyNames& names)
 {
     for (const JointCandidate& joint : component) joints.push_back(&joint);
@@ -117,29 +127,29 @@ Members::Members(std::span<const JointCandidate> component, const BodyStore& sto
     });
     names.make_room(store);
     JointOrder().sort(joints, store.rows(BodyKind::rigid).slot, names);
-    add_member(*this, joints.size(), names, exact && light_between_heavy(joints, store) != BodyId{});
+    add_member(*this, joints.size(), names, is_to_be_exact(joints, store, exact));
 }
 
 Members::Members(std::span<const JointCandidate> candidates, const BodySets& sets, const BodyStore& store,
-                 const KernelTable& kernels, bool exact, BodyNames& names, Figures::Refused& refused)
+                 const KernelTable& kernels, const ExactFigures& exact, BodyNames& names,
+                 Figures::Refused& refused)
 {
     names.make_room(store);
     const Array<std::uint32_t> ends =
-        sort_by_component(candidates, sets, store, kernels,
-                          exact ? store.rows(BodyKind::rigid).size() : Figures::most_bodies, names, joints);
+        sort_by_component(candidates, sets, store, kernels, exact, names, joints);
     signatures.reserve(4 * joints.size());
     bodies.reserve(2 * joints.size());
     for (const std::uint32_t end : ends) {
         const std::size_t begin = first_joint.back();
         if (begin == end) continue;
         const auto own = std::span<const JointCandidate* const>(joints).subspan(begin, end - begin);
-        const BodyId light = exact ? light_between_heavy(own, store) : BodyId{};
+        const BodyId light = exact.all ? light_between_heavy(own, store) : BodyId{};
         if (light != BodyId{}) {
             refused.joints += std::count_if(
                 own.begin(), own.end(), [](const JointCandidate* joint) { return joint->equalities > 0; });
             refused.light_body = light;
         }
-        add_member(*this, end, names, light != BodyId{});
+        add_member(*this, end, names, is_to_be_exact(own, store, exact));
     }
 }
 

@@ -30,15 +30,16 @@ struct Members {
     Array<BodyRow> bodies;                ///< in the order in which the joints name them
     Array<std::uint32_t> signatures;      ///< the shapes, in numbers: members with equal ones are copies
     Array<std::size_t> first_joint{0}, first_body{0}, first_number{0};
-    Array<std::uint8_t>
-        is_refused;  ///< light_between_heavy() has found a body, so its locks are not solved exactly
+    Array<std::uint8_t> is_exact;  ///< its locks are to be solved exactly, if it has a tree
 
-    /// Finds the components. `exact`: see Figures::find(); then figures may have any number of bodies, and `refused` is
-    /// told of those whose locks must not be solved exactly.
+    /// Finds the components. `exact`: see Figures::find(); such figures may have any number of bodies. With ExactFigures::all
+    /// `refused` is told of those in which light_between_heavy() has found a body.
     Members(std::span<const JointCandidate> candidates, const BodySets& sets, const BodyStore& store,
-            const KernelTable& kernels, bool exact, BodyNames& names, Figures::Refused& refused);
+            const KernelTable& kernels, const ExactFigures& exact, BodyNames& names,
+            Figures::Refused& refused);
     /// A component whose joints can all be in lanes. `exact`: likewise.
-    Members(std::span<const JointCandidate> component, const BodyStore& store, bool exact, BodyNames& names);
+    Members(std::span<const JointCandidate> component, const BodyStore& store, const ExactFigures& exact,
+            BodyNames& names);
     [[nodiscard]] std::size_t count() const { return first_joint.size() - 1; }
     [[nodiscard]] std::span<const JointCandidate* const> joints_of(std::size_t member) const
     {

@@ -27,7 +27,8 @@ JointCandidate candidate_of(const JointStore<Type>& store, int type, std::size_t
         Type::is_equality(definition) ? Type::equality_count : 0,
         Type::locks_point,
         Type::active_row,
-        Type::locks_place(definition)};
+        Type::locks_place(definition),
+        Type::has_rotor(definition)};
 }
 
 void forget_impulse(JointStores& stores, int type, std::size_t index)

@@ -89,7 +89,7 @@ void Layout::place_joints(SceneCore& scene)
     joint_masks_.reset(scene.bodies);
     joint_intake_.take(scene, use_.limits_exactly, joint_masks_);
     groups.find(joint_intake_);
-    figures.find(joint_intake_.joints(), joint_intake_.sets(), scene.bodies, kernels_, use_.exactly,
+    figures.find(joint_intake_.joints(), joint_intake_.sets(), scene.bodies, kernels_, use_.exact,
                  joint_placements_);
     joints_.begin(joint_placements_, false);
     for (std::int64_t chunk = 0; chunk < joints_.chunk_count(); ++chunk) joints_.count(chunk);

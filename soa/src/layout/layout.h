@@ -30,12 +30,12 @@ struct RowRange {
 /// How joints may be solved in this step.
 struct FigureUse {
     bool in_lockstep = false;     ///< figures that touch no other moving body are solved on their own
-    bool exactly = false;         ///< all locks of a figure are solved at once, by its tree
+    ExactFigures exact;           ///< whose locks are solved at once, by a tree
     bool limits_exactly = false;  ///< and with them limits and motors
     /// Whether trees are those of `other`.
     [[nodiscard]] bool has_trees_of(const FigureUse& other) const
     {
-        return exactly == other.exactly && limits_exactly == other.limits_exactly;
+        return exact == other.exact && limits_exactly == other.limits_exactly;
     }
 };
 

@@ -2,6 +2,8 @@
 // costs.
 #pragma once
 
+#include <limits>
+
 #include "motley/core/vector.h"
 
 #pragma GCC visibility push(default)
@@ -56,7 +58,12 @@ struct SolverSettings {
     /// springs and contacts are still swept. Costs about one to two sweeps more a substep. `joint_hertz` then applies
     /// to the other joints only.
     bool exact_joints = false;
-    /// With exact_joints: limits, motors and springs of drives, and swing limits, are solved with the locks while they act,
+    /// soft_step: as `exact_joints`, but only in figures in which locks hang a heavy body on a light one: a
+    /// body has, behind one lock, a body more than this many times as heavy, and behind another lock also such a body or a
+    /// static or kinematic one. Sweeps pass so little of such a load on that its joints part. Not in figures with an
+    /// armature. 1 or more; infinite: never. Ignored with `exact_joints`.
+    float exact_above_ratio = 10;
+    /// Where locks are solved exactly: limits, motors and springs of drives, and swing limits, are solved with them while they act,
     /// exactly at any load, so that links of 1 kg hold and lift tons by them; sweeps alone let such limits and springs give way
     /// without bound. Springs of other joints, drives with an armature, a spring beside a motor or a limit that acts, and what
     /// is beyond six rows between two bodies are still swept, and so is all of this in nets. A row may begin to act, and a limit

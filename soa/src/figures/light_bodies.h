@@ -1,0 +1,25 @@
+// Light bodies between heavy ones: where sweeps do not converge, and where float is too coarse to solve exactly.
+#pragma once
+
+#include <span>
+
+#include "layout/joint_intake.h"
+#include "motley/core/ids.h"
+
+namespace motley {
+
+/// A body with two locks or more, in a figure without a fixed body and with a body more than 2,000 times as heavy;
+/// {} if there is none. The mass that its joints see is made of both and keeps too few digits of the light one: the
+/// joints hold, but their impulses do not cancel. Momentum changes by 3e-6 per second at 1 : 1,000 and by 3e-5 at
+/// 1 : 10,000 (light_between_heavy_test.cpp).
+[[nodiscard]] BodyId light_between_heavy(std::span<const JointCandidate* const> joints,
+                                         const BodyStore& bodies);
+
+/// Whether locks hang a heavy body on a light one: some body has, behind one of its locks, a body more than `ratio` times
+/// as heavy as itself, and behind another one also such a body, or a fixed one. A sweep passes only about 1 / ratio of
+/// such a load on. Loops of locks are cut open where a search of the bodies closes them. Never true of a figure with a rotor: a
+/// sweep beside exact locks throws a light body that turns a heavier rotor.
+[[nodiscard]] bool bears_heavy_load(std::span<const JointCandidate* const> joints, const BodyStore& bodies,
+                                    float ratio);
+
+}  // namespace motley
