@@ -149,7 +149,7 @@ TEST(DampingOfBodies, LetsMomentaOfAFigureDecayAndReportsSay)
                 ASSERT_NEAR(measures.after.momentum[i], decay * measures.before.momentum[i], 2e-5) << step;
         }
         // As without damping: sweeps and exact joints lose what rounding does.
-        EXPECT_LT(length(spin() - std::pow(decay, 120) * start), (exact ? 1e-5 : 1e-3) * length(start));
+        EXPECT_LT(length(spin() - std::pow(decay, 120) * start), 1e-5 * length(start));
     }
 }
 

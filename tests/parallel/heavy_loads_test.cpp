@@ -1,7 +1,6 @@
 // Which figures are solved exactly by default: those in which light bodies bear heavy ones. Independent evidence: statics (the
 // pull of a joint is the weight of all below it), conservation of momenta, and the bits of settings that say the same.
 #include <limits>
-#include <memory>
 
 #include "level_arm.h"
 #include "loaded_chain.h"
@@ -191,7 +190,8 @@ TEST(HeavyLoads, AreSweptInFiguresWithRotors)
     }
 }
 
-/// A large net, to which a load is hung and from which it is taken again, follows as if laid out anew.
+/// A rope of 51 links with a load at its end, which becomes longer than most_bodies and loses its hook and its load, is followed as
+/// if it were laid out anew each time.
 TEST(HeavyLoads, ComeAndGo)
 {
     Scene scene;

@@ -73,10 +73,9 @@ class Chain {
         return settings_.substeps *
                testing::stores_of(2, settings_.iterations + (relaxes ? settings_.relaxations : 0));
     }
-    /// The most that a step changes L because something acts on bodies that have turned since its lever arms were
-    /// computed. While bodies turn by h w their arms r end h w r elsewhere, and the velocities of a joint's anchors part
-    /// by h w^2 r. The impulse that makes them equal again, of at most the reduced mass times that, then turns the pair
-    /// by h w r times itself. A projection that moves bodies back by h^2 w^2 r, past momenta m w r, changes L likewise.
+    /// The most that a step changes L because it projects positions. While bodies turn by h w their arms r end h w r
+    /// elsewhere, and the anchors of a joint part by h^2 w^2 r. A projection moves the bodies back by that, as far as the
+    /// reduced mass says, past momenta m w r.
     [[nodiscard]] double drift() const
     {
         const double h = static_cast<double>(testing::frame_time) / settings_.substeps;

@@ -2,7 +2,8 @@
 // kinds that makes sense, in random scenes of one constraint, step after step; and a chain, solved in the same order.
 // Independent evidence: core/reference, which shares no row with the lanes and whose rows are also checked here
 // against finite differences of their C; and conservation laws. Where a bound limits an impulse both use the same
-// formula in a sweep: the evidence for the direction of friction is in friction_direction_test.cpp.
+// formula in a sweep: the evidence for the direction of friction is in friction_direction_test.cpp. So they do where
+// bodies carry arms along before relaxation: the evidence is in free_motion_test.cpp and relaxation_test.cpp.
 //
 // Bound: a step in float rounds each of about 200 operations on numbers of about `size` once, so it differs from the
 // double step by at most about 200 x 6e-8 of that, amplified by the condition of K (below 30 here) where masses are
@@ -251,8 +252,9 @@ TYPED_TEST(EveryJoint, KeepsMomentaAndNeverAddsEnergyInFreeFlight)
 {
     // Two tumbling bodies without external force. Without relaxation the impulses on both bodies are opposite and act
     // at one point, and the integration of turning bodies keeps their angular momentum: only rounding is left.
-    // Relaxation acts on lever arms from before the bodies turned in the substep, manifolds on those from before the
-    // step, which is an error of first order in the step: a quarter in steps of a quarter, or less than a half.
+    // Relaxation acts on lever arms from before the bodies turned in the substep, except those of locks of a point, and
+    // manifolds act on those from before the step, which is an error of first order in the step: a quarter in steps of a
+    // quarter, or less than a half.
     // Implicit softness and gyroscopic terms only ever remove energy.
     using Cases = testing::JointCases<TypeParam>;
     constexpr bool keeps_arms_through_a_step = std::is_same_v<TypeParam, ManifoldDefinition>;

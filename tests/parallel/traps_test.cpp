@@ -55,12 +55,13 @@ TEST(Trap2InLanes, ASliderFarOutAlongItsRailKeepsAngularMomentum)
         }
         return sum;
     };
-    Solver solver({.substeps = 16});
+    // Relaxation acts on arms that have turned, so it drifts by a share of h: without it only rounding is left.
+    Solver solver({.substeps = 16, .relaxations = 0});
     solver.step(scene, frame_time);
     const double before = momentum();
     run(scene, solver, 1);
     const double after = momentum(),
-                 rounding = testing::rounding_of_momenta(60 * 16 * testing::stores_of(1, 2), squares);
+                 rounding = testing::rounding_of_momenta(60 * 16 * testing::stores_of(1, 1), squares);
     EXPECT_NEAR(after, before, rounding);
     EXPECT_GT(std::abs(before), 0.1);
 }

@@ -40,8 +40,8 @@ class Figures {
     /// between light bodies and heavy ones: see light_between_heavy() and refused(). `sets`: what the joints connect.
     void find(std::span<const JointCandidate> joints, const BodySets& sets, const BodyStore& bodies,
               const KernelTable& kernels, const ExactFigures& exact, Array<Placement>& placed);
-    /// With ExactFigures::all: locks that are not solved exactly, because their figure has no fixed body and has a body too light for the
-    /// other bodies; see StepReport::exact_joints_refused.
+    /// With ExactFigures::all: locks that are not solved exactly, because their figure has no fixed body and has a body too
+    /// light for the other bodies; see StepReport::exact_joints_refused.
     struct Refused {
         std::int64_t joints = 0;
         BodyId light_body{};  ///< one such body

@@ -8,7 +8,6 @@
 #include "stores/array.h"
 
 namespace motley {
-
 namespace {
 
 /// The moving bodies that locks hold, numbered in the order in which the joints name them.
@@ -41,9 +40,9 @@ class LockedBodies {
     std::size_t next_ = 0;
 };
 
-double inverse_mass_of(BodyRow body, const BodyStore& bodies)
+float inverse_mass_of(BodyRow body, const BodyStore& bodies)
 {
-    return double{bodies.inverse_masses[bodies.rows(BodyKind::rigid).slot[body.row()]]};
+    return bodies.inverse_masses[bodies.rows(BodyKind::rigid).slot[body.row()]];
 }
 
 }  // namespace
@@ -59,14 +58,14 @@ BodyId light_between_heavy(std::span<const JointCandidate* const> joints, const 
         for (const BodyRow body : {joint->placement.a, joint->placement.b}) {
             if (!is_rigid(body)) return {};
             ++locks_on[locked.number_of(body)];
-            of_heaviest = std::min(of_heaviest, inverse_mass_of(body, bodies));
+            of_heaviest = std::min(of_heaviest, double{inverse_mass_of(body, bodies)});
         }
     }
     for (const JointCandidate* joint : joints) {
         if (joint->equalities == 0) continue;
         for (const BodyRow body : {joint->placement.a, joint->placement.b}) {
             if (locks_on[locked.number_of(body)] > 1 &&
-                inverse_mass_of(body, bodies) > most_mass_ratio * of_heaviest)
+                double{inverse_mass_of(body, bodies)} > most_mass_ratio * of_heaviest)
                 return bodies.id_of_slot(bodies.rows(BodyKind::rigid).slot[body.row()]);
         }
     }
@@ -93,8 +92,10 @@ struct LoadTree {
         double mass = 0;
         bool is_held = false;  ///< a lock connects it to a fixed body
         std::size_t parent = none;
-        Array<std::size_t> neighbours;  ///< by locks, later only its children
-        Behind below, above;            ///< with itself; with its parent
+        Array<std::size_t> neighbours;  ///< bodies that locks connect it to
+        Array<std::size_t> children;    ///< those of them whose parent it is
+        Behind below;                   ///< its children's side of the lock to its parent, with itself
+        Behind above;                   ///< its parent's side of that lock
     };
     Array<Node> nodes;
     Array<std::size_t> order;  ///< parents before children
@@ -105,7 +106,7 @@ struct LoadTree {
         nodes.resize(locked.size());
         const auto node_of = [&](BodyRow body) {
             const std::size_t node = locked.number_of(body);
-            nodes[node].mass = 1 / inverse_mass_of(body, bodies);
+            nodes[node].mass = 1 / double{inverse_mass_of(body, bodies)};
             return node;
         };
         for (const JointCandidate* joint : joints) {
@@ -126,15 +127,13 @@ struct LoadTree {
             order.push_back(root);
             for (std::size_t next = order.size() - 1; next < order.size(); ++next) {
                 const std::size_t node = order[next];
-                Array<std::size_t> children;
                 for (const std::size_t other : nodes[node].neighbours) {
                     if (is_found[other] != 0) continue;
                     is_found[other] = 1;
                     nodes[other].parent = node;
-                    children.push_back(other);
+                    nodes[node].children.push_back(other);
                     order.push_back(other);
                 }
-                nodes[node].neighbours = children;
             }
         }
     }
@@ -152,13 +151,13 @@ struct LoadTree {
             // Of the first child all that is not below it comes after it, and of the last one before it.
             Behind before = node.above;
             before.see({node.mass, node.is_held});
-            for (const std::size_t child : node.neighbours) {
+            for (const std::size_t child : node.children) {
                 nodes[child].above = before;
                 before.see(nodes[child].below);
             }
             Behind after;
-            for (std::size_t i = node.neighbours.size(); i-- > 0;) {
-                Node& child = nodes[node.neighbours[i]];
+            for (std::size_t i = node.children.size(); i-- > 0;) {
+                Node& child = nodes[node.children[i]];
                 child.above.see(after);
                 after.see(child.below);
             }
@@ -174,7 +173,7 @@ struct LoadTree {
             supports += is_load || side.is_held ? 1 : 0;
         };
         if (node.parent != none) count(node.above);
-        for (const std::size_t child : node.neighbours) count(nodes[child].below);
+        for (const std::size_t child : node.children) count(nodes[child].below);
         return loads > 0 && supports > 1;
     }
 };
@@ -184,17 +183,13 @@ struct LoadTree {
 bool bears_heavy_load(std::span<const JointCandidate* const> joints, const BodyStore& bodies, float ratio)
 {
     // In most figures no body is that much heavier than any other.
-    double least = std::numeric_limits<double>::infinity(), most = 0;
+    MassSpan span;
     for (const JointCandidate* joint : joints) {
         if (joint->has_rotor) return false;
-        for (const BodyRow body : {joint->placement.a, joint->placement.b}) {
-            if (!is_rigid(body)) continue;
-            const double inverse_mass = inverse_mass_of(body, bodies);
-            least = std::min(least, inverse_mass);
-            most = std::max(most, inverse_mass);
-        }
+        for (const BodyRow body : {joint->placement.a, joint->placement.b})
+            if (is_rigid(body)) span.note(inverse_mass_of(body, bodies));
     }
-    if (!(most > double{ratio} * least)) return false;
+    if (!span.is_wider_than(ratio)) return false;
     LoadTree tree(joints, bodies);
     tree.look_behind();
     return std::any_of(tree.nodes.begin(), tree.nodes.end(), [&](const LoadTree::Node& node) {

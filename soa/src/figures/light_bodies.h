@@ -1,12 +1,25 @@
 // Light bodies between heavy ones: where sweeps do not converge, and where float is too coarse to solve exactly.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <span>
 
 #include "layout/joint_intake.h"
 #include "motley/core/ids.h"
 
 namespace motley {
+
+/// The inverse masses, 1/kg, of the lightest and the heaviest of some bodies.
+struct MassSpan {
+    float of_heaviest = std::numeric_limits<float>::infinity(), of_lightest = 0;
+    void note(float inverse_mass)
+    {
+        of_heaviest = std::min(of_heaviest, inverse_mass);
+        of_lightest = std::max(of_lightest, inverse_mass);
+    }
+    [[nodiscard]] bool is_wider_than(float ratio) const { return of_lightest > ratio * of_heaviest; }
+};
 
 /// A body with two locks or more, in a figure without a fixed body and with a body more than 2,000 times as heavy;
 /// {} if there is none. The mass that its joints see is made of both and keeps too few digits of the light one: the

@@ -38,21 +38,17 @@ Array<std::uint8_t> find_large_exact(std::span<const JointCandidate> joints, con
     Array<std::uint8_t> may_be_exact(sets.size(), exact.all ? 1 : 0);
     if (exact.all || !exact.any()) return may_be_exact;
     // A necessary condition of bears_heavy_load().
-    struct Span {
-        float least = std::numeric_limits<float>::infinity(), most = 0;
-    };
-    Array<Span> inverse_masses(sets.size());
+    Array<MassSpan> spans(sets.size());
     const BodyRows& rigid = bodies.rows(BodyKind::rigid);
     for (const JointCandidate& joint : joints) {
         for (const BodyRow body : {joint.placement.a, joint.placement.b}) {
-            if (!is_rigid(body)) continue;
-            const float own = bodies.inverse_masses[rigid.slot[body.row()]];
-            Span& of_all = inverse_masses[static_cast<std::size_t>(sets.root(body))];
-            of_all = {std::min(of_all.least, own), std::max(of_all.most, own)};
+            if (is_rigid(body))
+                spans[static_cast<std::size_t>(sets.root(body))].note(
+                    bodies.inverse_masses[rigid.slot[body.row()]]);
         }
     }
-    std::transform(inverse_masses.begin(), inverse_masses.end(), may_be_exact.begin(),
-                   [&](const Span& span) { return span.most > exact.above_ratio * span.least ? 1 : 0; });
+    std::transform(spans.begin(), spans.end(), may_be_exact.begin(),
+                   [&](const MassSpan& span) { return span.is_wider_than(exact.above_ratio) ? 1 : 0; });
     return may_be_exact;
 }
 
@@ -109,11 +105,10 @@ Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, c
     return ends;
 }
 
-bool is_to_be_exact(std::span<const JointCandidate* const> joints, const BodyStore& bodies,
-                    const ExactFigures& exact)
+bool is_wanted_exact(std::span<const JointCandidate* const> joints, const BodyStore& bodies,
+                     const ExactFigures& exact)
 {
-    const bool is_wanted = exact.all || (exact.any() && bears_heavy_load(joints, bodies, exact.above_ratio));
-    return is_wanted && light_between_heavy(joints, bodies) == BodyId{};
+    return exact.all || (exact.any() && bears_heavy_load(joints, bodies, exact.above_ratio));
 }
 
 }  // namespace
@@ -127,7 +122,8 @@ Members::Members(std::span<const JointCandidate> component, const BodyStore& sto
     });
     names.make_room(store);
     JointOrder().sort(joints, store.rows(BodyKind::rigid).slot, names);
-    add_member(*this, joints.size(), names, is_to_be_exact(joints, store, exact));
+    const bool is_wanted = is_wanted_exact(joints, store, exact);
+    add_member(*this, joints.size(), names, is_wanted && light_between_heavy(joints, store) == BodyId{});
 }
 
 Members::Members(std::span<const JointCandidate> candidates, const BodySets& sets, const BodyStore& store,
@@ -143,13 +139,14 @@ Members::Members(std::span<const JointCandidate> candidates, const BodySets& set
         const std::size_t begin = first_joint.back();
         if (begin == end) continue;
         const auto own = std::span<const JointCandidate* const>(joints).subspan(begin, end - begin);
-        const BodyId light = exact.all ? light_between_heavy(own, store) : BodyId{};
-        if (light != BodyId{}) {
+        const bool is_wanted = is_wanted_exact(own, store, exact);
+        const BodyId light = is_wanted ? light_between_heavy(own, store) : BodyId{};
+        if (exact.all && light != BodyId{}) {
             refused.joints += std::count_if(
                 own.begin(), own.end(), [](const JointCandidate* joint) { return joint->equalities > 0; });
             refused.light_body = light;
         }
-        add_member(*this, end, names, is_to_be_exact(own, store, exact));
+        add_member(*this, end, names, is_wanted && light == BodyId{});
     }
 }
 

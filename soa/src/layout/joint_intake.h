@@ -21,7 +21,7 @@ struct JointCandidate {
     ActiveRow active_row = ActiveRow::none;
     /// If one body is fixed, the joint keeps the other from moving along some direction.
     bool locks_place = false;
-    bool has_rotor = false;
+    bool has_rotor = false;  ///< see ConstraintTraits
     /// The moving body that the joint holds in place, with a fixed one; a fixed one if there is none.
     [[nodiscard]] BodyRow holds() const
     {
