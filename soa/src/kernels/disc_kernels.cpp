@@ -12,18 +12,21 @@ namespace {
 
 #include "kernels/kernel_bundle.h"
 
-#include "kernels/kernel_constraints.h"
+#include "kernels/kernel_blocks.h"
+
+#include "kernels/kernel_sweeps.h"
+
+#include "kernels/kernel_rare.h"
 
 #include "kernels/kernel_discs.h"
 
 template <class Type, BodyKind a>
 void enter(ConstraintKernels& kernels)
 {
-    using Own = Kernels<Type, a, BodyKind::planar>;
-    Own::enter_swept(kernels);
+    SweepKernels<Type, a, BodyKind::planar>::enter(kernels);
     kernels.solve = DiscSweeps<Type, a>::solve;
     kernels.relax = DiscSweeps<Type, a>::relax;
-    kernels.project = Own::project;
+    kernels.project = RareKernels<Type, a, BodyKind::planar>::project;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // What contacts of discs, in blocks that are kept from step to step, do in their own way: the start of a step, and sweeps.
-// Included inside an anonymous namespace, after kernel_constraints.h.
+// Included inside an anonymous namespace, after kernel_blocks.h.
 #pragma once
 
 /// Rows of pairs from the poses of their discs; the impulses to start from; and sums of zero.
@@ -7,14 +7,14 @@ template <class Type>
 void prepare_pairs(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,
                    std::int32_t end)
 {
-    using Kernels = Kernels<Type, BodyKind::planar, BodyKind::planar>;
-    using Row = typename Kernels::Row;
-    using Impulse = typename Kernels::Impulse;
+    using Blocks = ConstraintBlocks<Type, BodyKind::planar, BodyKind::planar>;
+    using Row = typename Blocks::Row;
+    using Impulse = typename Blocks::Impulse;
     const BodyPose* const poses = context.bodies[static_cast<int>(BodyKind::planar)].pose;
     const Lanes warm(context.step.warm_start_scale);
     constexpr std::int32_t a_row = offsets_a_row(BodyKind::planar);
     for (std::int32_t block = begin; block < end; ++block) {
-        Kernels::for_each_bundle(context, streams, block, [&](const typename Kernels::Bundle& bundle) {
+        Blocks::for_each_bundle(context, streams, block, [&](const typename Blocks::Bundle& bundle) {
             alignas(64) float x[Lanes_width], y[Lanes_width];
             for (int lane = 0; lane < Lanes_width; ++lane) {
                 const Vec3<PoseReal>& a = poses[bundle.offsets_a[lane] / a_row].position;
@@ -29,7 +29,7 @@ void prepare_pairs(const KernelContext& context, const BlockStreams& streams, st
             Lanes* fields = reinterpret_cast<Lanes*>(&impulse);
             for (int i = 0; i < fields_of<Impulse>; ++i) fields[i] = warm * fields[i];
             store_row(impulse, bundle.impulse);
-            Kernels::clear(bundle.sum);
+            Blocks::clear(bundle.sum);
         });
     }
 }
@@ -37,7 +37,7 @@ void prepare_pairs(const KernelContext& context, const BlockStreams& streams, st
 /// Sweeps of a class, with or without measuring separations first.
 template <class Type, BodyKind kind_a>
 struct DiscSweeps {
-    using Own = Kernels<Type, kind_a, BodyKind::planar>;
+    using Own = ConstraintBlocks<Type, kind_a, BodyKind::planar>;
     using Row = typename Own::Row;
 
     static void solve(const KernelContext& context, const BlockStreams& streams, std::int32_t begin,

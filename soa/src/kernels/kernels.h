@@ -7,7 +7,15 @@
 
 #include "kernels/kernel_bundle.h"
 
-#include "kernels/kernel_constraints.h"
+#include "kernels/kernel_blocks.h"
+
+#include "kernels/kernel_sweeps.h"
+
+#include "kernels/kernel_once.h"
+
+#include "kernels/kernel_rare.h"
+
+#include "kernels/kernel_exact_rows.h"
 
 constexpr bool is_built(BodyKind kind)
 {
@@ -78,13 +86,19 @@ template <KernelShare share, class Type, BodyKind a, BodyKind b>
 void enter_pair(ConstraintKernels* pairs)
 {
     if constexpr (occurs<Type, a, b>() && !is_left_to_scalar<Type, a, b>()) {
-        using Computed = Kernels<Type, computed_as<Type, a, b>(), computed_as<Type, b, a>()>;
+        constexpr BodyKind as_a = computed_as<Type, a, b>(), as_b = computed_as<Type, b, a>();
         ConstraintKernels& kernels = pairs[class_of(0, a, b)];
         constexpr bool usual = is_usual<Type, a, b>();
-        if constexpr (share == (usual ? KernelShare::swept : KernelShare::unusual))
-            Computed::enter_swept(kernels);
-        if constexpr (share == (usual ? KernelShare::once : KernelShare::rare)) Computed::enter_once(kernels);
-        if constexpr (share == KernelShare::rare) Computed::enter_rare(kernels);
+        if constexpr (share == (usual ? KernelShare::swept : KernelShare::unusual)) {
+            SweepKernels<Type, as_a, as_b>::enter(kernels);
+            ExactRowKernels<Type, as_a, as_b>::enter_swept(kernels);
+        }
+        if constexpr (share == (usual ? KernelShare::once : KernelShare::rare))
+            OnceKernels<Type, as_a, as_b>::enter(kernels);
+        if constexpr (share == KernelShare::rare) {
+            RareKernels<Type, as_a, as_b>::enter(kernels);
+            ExactRowKernels<Type, as_a, as_b>::enter_rare(kernels);
+        }
     }
 }
 
