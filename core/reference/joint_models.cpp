@@ -58,6 +58,8 @@ class DistanceModel : public JointModel {
         const Eigen::Vector3d local_a = eigen(joint_.local_anchor_a), local_b = eigen(joint_.local_anchor_b);
         const Jacobian jacobian = distance_jacobian(a, b, local_a, local_b);
         const double length = distance_error(a, b, local_a, local_b, 0);
+        const Block::Line line{a.orientation * local_a, b.orientation * local_b,
+                               point_error(a, b, local_a, local_b)};
         std::vector<Block> blocks;
         if (joint_.spring_hertz > 0) {
             blocks.push_back({.jacobian = jacobian,
@@ -67,6 +69,7 @@ class DistanceModel : public JointModel {
                               .most = joint_.spring_max_force});
         }
         blocks.push_back(limit_block(jacobian, length, joint_.min_length, joint_.max_length));
+        for (Block& block : blocks) block.line = line;
         return blocks;
     }
 

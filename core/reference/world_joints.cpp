@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motley/reference/constraints.h"
 #include "world_rows.h"
 
 namespace motley::reference {
@@ -161,7 +162,8 @@ void World::solve_block(BlockRow& row, double h, const SolverSettings& settings,
 /// Carries the arms of the blocks of a joint along with the bodies, which have moved for h since: carried_arms.h.
 void World::carry_arms(std::span<BlockRow> rows, double h) const
 {
-    if (!rows.front().block.point) return;
+    const Block& first = rows.front().block;
+    if (!first.point && !first.line) return;
     const Body &body_a = bodies[static_cast<std::size_t>(rows.front().joint->a)],
                &body_b = bodies[static_cast<std::size_t>(rows.front().joint->b)];
     const Vector6 &a = body_a.velocity, &b = body_b.velocity;
@@ -169,14 +171,27 @@ void World::carry_arms(std::span<BlockRow> rows, double h) const
     const double mass = 1 / (inverse_mass(0, 0) + inverse_mass(6, 6)),
                  weight_a = mass * inverse_mass.block<3, 3>(3, 3).trace(),
                  weight_b = mass * inverse_mass.block<3, 3>(9, 9).trace();
-    auto [arm_a, arm_b] = *rows.front().block.point;
-    const Eigen::Vector3d middle =
-        (a.head<3>() + a.tail<3>().cross(arm_a) + b.head<3>() + b.tail<3>().cross(arm_b)) / 2;
-    const Eigen::Vector3d by_a = h * (middle - a.head<3>()), by_b = h * (middle - b.head<3>());
-    if (weight_a * by_a.squaredNorm() + weight_b * by_b.squaredNorm() < 0.25) {
-        arm_a += by_a;
-        arm_b += by_b;
+    Eigen::Vector3d arm_a = first.point ? first.point->arm_a : first.line->arm_a,
+                    arm_b = first.point ? first.point->arm_b : first.line->arm_b;
+    const Eigen::Vector3d at_a = a.head<3>() + a.tail<3>().cross(arm_a),
+                          at_b = b.head<3>() + b.tail<3>().cross(arm_b);
+    if (first.line) {
+        const Eigen::Vector3d by_a = h * a.tail<3>().cross(arm_a), by_b = h * b.tail<3>().cross(arm_b),
+                              between = first.line->between + h * (at_b - at_a);
+        const Eigen::Vector3d axis = rows.front().block.jacobian.row(0).segment<3>(6);
+        const double turned = (between.normalized() - axis).squaredNorm(),
+                     changed = weight_a * (by_a.squaredNorm() + turned * arm_a.squaredNorm()) +
+                               weight_b * (by_b.squaredNorm() + turned * arm_b.squaredNorm());
+        if (std::max(turned, changed) >= 0.25) return;
+        for (BlockRow& row : rows)
+            row.block.jacobian = direction_jacobian(between.normalized(), arm_a + by_a, arm_b + by_b);
+        return;
     }
+    const Eigen::Vector3d by_a = h * ((at_a + at_b) / 2 - a.head<3>()),
+                          by_b = h * ((at_a + at_b) / 2 - b.head<3>());
+    if (weight_a * by_a.squaredNorm() + weight_b * by_b.squaredNorm() >= 0.25) return;
+    arm_a += by_a;
+    arm_b += by_b;
     for (BlockRow& row : rows) {
         Jacobian& jacobian = row.block.jacobian;
         for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {

@@ -21,7 +21,7 @@ struct Figure {
     static constexpr double mass = 1.5;
     static constexpr Vec3<float> moments{0.01F, 0.03F, 0.025F};
 
-    enum class Ties { ball_sockets, hinges, fixed_joints };
+    enum class Ties { ball_sockets, hinges, fixed_joints, rods, springs };
 
     explicit Figure(Ties ties = Ties::ball_sockets)
     {
@@ -44,6 +44,10 @@ struct Figure {
                 case Ties::fixed_joints:
                     scene.add_joint(between_frames<FixedDefinition>(a, b));
                     break;
+                case Ties::rods:
+                case Ties::springs:
+                    scene.add_joint(between_points(a, b, ties == Ties::springs));
+                    break;
             }
         }
         // The whole figure turns about z, and each body also spins about the line of the chain.
@@ -59,6 +63,17 @@ struct Figure {
     {
         const Quat<float> turned = testing::axis_along(2);
         return {a, b, {{0.2F, 0, 0}, turned}, {{-0.2F, 0, 0}, turned}};
+    }
+    static DistanceDefinition between_points(BodyId a, BodyId b, bool is_spring)
+    {
+        DistanceDefinition joint{a, b, {0.1F, 0.05F, 0}, {-0.1F, 0, 0.05F}};
+        joint.min_length = joint.max_length = joint.rest_length = std::sqrt(0.2F * 0.2F + 2 * 0.05F * 0.05F);
+        if (is_spring) {
+            joint.min_length = 0;
+            joint.max_length = std::numeric_limits<float>::infinity();
+            joint.spring_hertz = 3;
+        }
+        return joint;
     }
     [[nodiscard]] Vector centre() const
     {
@@ -216,11 +231,12 @@ TEST(FreeFigure, KeepsItsAngularMomentum)
     }
 }
 
-/// Relaxation acts after the bodies have moved. Its impulses must act at one point of both bodies all the same.
-TEST(FreeFigure, KeepsItsAngularMomentumWithEveryLockOfAPoint)
+/// Relaxation acts after the bodies have moved. Its impulses must act at one point of both bodies, or along the line between two,
+/// all the same.
+TEST(FreeFigure, KeepsItsAngularMomentumWithEveryLockOfAPointAndPullAlongALine)
 {
     using enum Figure::Ties;
-    for (const Figure::Ties ties : {ball_sockets, hinges, fixed_joints}) {
+    for (const Figure::Ties ties : {ball_sockets, hinges, fixed_joints, rods, springs}) {
         for (const int substeps : {1, 4, 16}) {
             for (const int relaxations : {1, 3}) {
                 SolverSettings settings;

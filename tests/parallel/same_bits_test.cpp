@@ -24,11 +24,11 @@ struct Way {
 #ifdef __EMSCRIPTEN__
 // WebAssembly cannot take denormals for zero. x86 without the flags of float_environment.h makes these hashes too.
 constexpr std::uint64_t golden_of_projection = 15141545631632701481ULL;
-constexpr std::uint64_t goldens_of_joints[] = {12749587056558402579ULL, 2331465399250425985ULL,
+constexpr std::uint64_t goldens_of_joints[] = {8955850234489012046ULL, 2331465399250425985ULL,
                                                624527473120407804ULL, 8699562796177522752ULL};
 #else
 constexpr std::uint64_t golden_of_projection = 12600455655897062784ULL;
-constexpr std::uint64_t goldens_of_joints[] = {4855865761504975169ULL, 6585940013977620421ULL,
+constexpr std::uint64_t goldens_of_joints[] = {4691149092226896028ULL, 6585940013977620421ULL,
                                                9837424727708137686ULL, 15575520870910274772ULL};
 #endif
 
@@ -44,7 +44,7 @@ std::vector<Way> ways()
     SolverSettings none = iterative, projection = iterative;
     none.drift_correction = DriftCorrection::none;
     projection.drift_correction = DriftCorrection::projection;
-    return {{"soft_step", soft, 6123186716311811008ULL},
+    return {{"soft_step", soft, 11220186639852722211ULL},
             {"baumgarte", iterative, 8677351179348254354ULL},
             {"no drift correction", none, 10831977531164320898ULL},
             {"projection", projection, golden_of_projection}};

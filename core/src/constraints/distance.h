@@ -11,6 +11,7 @@
 
 #include "contract/constraint_type.h"
 #include "contract/type_list.h"
+#include "maths/carried_arms.h"
 #include "maths/lane_softness.h"
 #include "maths/limit.h"
 #include "motley/core/constraints/distance_definition.h"
@@ -44,6 +45,7 @@ struct Distance : ConstraintTraits {
         Real min_length, max_length;
         Real rest_length, spring_max_impulse;
         LaneSoftness<Real> spring;  ///< mass_scale 0 and impulse_scale 1 where there is none
+        ArmWeights<Real> weights;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
@@ -59,6 +61,7 @@ struct Distance : ConstraintTraits {
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
         Real spring, limit;
+        PairVector<Real, a, b> push;  ///< N s on b in this substep; relaxation may push along another axis
     };
 
     static void validate(const Definition& joint, const JointBodies& bodies)
@@ -86,7 +89,7 @@ struct Distance : ConstraintTraits {
 
     template <class Start, class Real, class A, class B>
     static auto prepare(const Start& start, const Parameters<Real>& joint, const Memory<Real>& memory,
-                        const A&, const B&, Impulse<Real, A::kind, B::kind>& impulse)
+                        const A& a, const B& b, Impulse<Real, A::kind, B::kind>& impulse)
     {
         const StepConstants& step = start.step();
         const JointPose<Real, A::kind, B::kind> pose = start.pose();
@@ -103,8 +106,10 @@ struct Distance : ConstraintTraits {
         row.in_sweep.spring_max_impulse = Real(step.substep) * joint.spring_max_force;
         row.in_sweep.spring =
             softness_or(step, joint.spring_hertz, joint.spring_damping_ratio, Softness{0, 0, 1});
+        row.in_sweep.weights = arm_weights(a, b);
         impulse.spring = Real(step.warm_start_scale) * memory.spring;
         impulse.limit = Real(step.warm_start_scale) * memory.limit;
+        impulse.push = to_space<Vector>(Vec3<Real>{Real(0), Real(0), Real(0)});
         return row;
     }
 
@@ -125,7 +130,7 @@ struct Distance : ConstraintTraits {
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void warm_start(const Row&, const Substep& substep, const Impulse& impulse, A& a, B& b)
     {
-        push((impulse.spring + impulse.limit) * substep.axis, substep, a, b);
+        push((impulse.spring + impulse.limit) * substep.axis, substep.arm_a, substep.arm_b, a, b);
     }
 
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
@@ -133,7 +138,14 @@ struct Distance : ConstraintTraits {
                       Impulse& impulse, A& a, B& b)
     {
         const Real before = impulse.spring + impulse.limit;
-        Real speed = dot(substep.axis, velocity_at(b, substep.arm_b) - velocity_at(a, substep.arm_a));
+        auto arm_a = substep.arm_a, arm_b = substep.arm_b, axis = substep.axis;
+        auto held = impulse.push;
+        if (step.moved_for > 0) {
+            carry_line(step, in_sweep.weights, substep.length, axis, arm_a, arm_b, a, b);
+        } else {
+            held = before * axis;
+        }
+        Real speed = dot(axis, velocity_at(b, arm_b) - velocity_at(a, arm_a));
         const SoftRow<Real> soft{in_sweep.spring.rate, in_sweep.spring.mass_scale * substep.effective_mass,
                                  in_sweep.spring.impulse_scale};
         const Real spring = spring_impulse(soft, substep.length - in_sweep.rest_length, speed, impulse.spring,
@@ -142,7 +154,9 @@ struct Distance : ConstraintTraits {
         impulse.spring = spring;
         impulse.limit = range_impulse(step, substep.length, in_sweep.min_length, in_sweep.max_length, speed,
                                       substep.effective_mass, impulse.limit);
-        push((impulse.spring + impulse.limit - before) * substep.axis, substep, a, b);
+        const auto change = (impulse.spring + impulse.limit - before) * axis;
+        impulse.push = held + change;
+        push(change, arm_a, arm_b, a, b);
     }
 
     template <class Real, class Row, class A, class B>
@@ -164,9 +178,9 @@ struct Distance : ConstraintTraits {
     }
 
     template <class Real, class Row, class Substep, class Impulse>
-    static Wrench<Real> wrench(const Row&, const Substep& substep, const Impulse& impulse)
+    static Wrench<Real> wrench(const Row&, const Substep&, const Impulse& impulse)
     {
-        return {to_three((impulse.spring + impulse.limit) * substep.axis), {Real(0), Real(0), Real(0)}};
+        return {to_three(impulse.push), {Real(0), Real(0), Real(0)}};
     }
 
     /// Errors: how far the length is beyond its limits, from the present poses, in double.
@@ -201,11 +215,11 @@ struct Distance : ConstraintTraits {
                 (inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b)) * substep.axis);
         substep.effective_mass = inverse_or_zero(substep.response);
     }
-    template <class Vector, class Substep, class A, class B>
-    static void push(const Vector& impulse, const Substep& substep, A& a, B& b)
+    template <class Vector, class A, class B>
+    static void push(const Vector& impulse, const Vector& arm_a, const Vector& arm_b, A& a, B& b)
     {
-        apply_impulse(a, substep.arm_a, -impulse);
-        apply_impulse(b, substep.arm_b, impulse);
+        apply_impulse(a, arm_a, -impulse);
+        apply_impulse(b, arm_b, impulse);
     }
     /// |d| and the unit axis; the x axis when the points coincide, so that a direction always exists.
     template <class Real, class Row, class Vector, class A, class B>

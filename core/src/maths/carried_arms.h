@@ -13,6 +13,11 @@
 // direction has become twice what it was. Arms that move by x change K by about x^2 tr(I^-1), beside 1/m_a + 1/m_b which is in
 // K along every direction. Where the sum of that for both bodies is more than a quarter, as a share, arms stay: to move them only
 // in part would be worse than either.
+//
+// A rod, rope or spring acts on each body at its own point, along the line between them. Arms turn with their own bodies then, and
+// the axis u with the line: with d between the points,
+//
+//   r' = r + h w x r of each body,   u' = d' / |d'|,   d' = d + h (v_b + w_b x r_b - v_a - w_a x r_a)
 #pragma once
 
 #include "maths/wrench.h"
@@ -42,6 +47,27 @@ void carry_arms(const StepConstants& step, const ArmWeights<Real>& weights, Vect
     const Real h(step.moved_for);
     const Real changed = h * h * (weights.a * dot(by_a, by_a) + weights.b * dot(by_b, by_b));
     const Real moved = select(changed < Real(0.25F), h, Real(0));
+    arm_a = arm_a + moved * by_a;
+    arm_b = arm_b + moved * by_b;
+}
+
+/// The same for impulses along the line between the ends of the arms, which is `length` long and has this unit axis.
+template <class Real, class Vector, class A, class B>
+void carry_line(const StepConstants& step, const ArmWeights<Real>& weights, const Real& length, Vector& axis,
+                Vector& arm_a, Vector& arm_b, const A& a, const B& b)
+{
+    const Real h(step.moved_for);
+    const Vector at_a = velocity_at(a, arm_a), at_b = velocity_at(b, arm_b);
+    const Vector by_a = h * (at_a - to_space<Vector>(to_three(a.linear))),
+                 by_b = h * (at_b - to_space<Vector>(to_three(b.linear)));
+    const Vector d = length * axis + h * (at_b - at_a);
+    const Vector by_axis = inverse_or_zero(square_root(dot(d, d))) * d - axis;
+    const Real turned = dot(by_axis, by_axis);
+    const Real changed = weights.a * (dot(by_a, by_a) + turned * dot(arm_a, arm_a)) +
+                         weights.b * (dot(by_b, by_b) + turned * dot(arm_b, arm_b));
+    // Where the points meet or pass each other the axis has no direction, or turns round.
+    const Real moved = select(maximum(changed, turned) < Real(0.25F), Real(1), Real(0));
+    axis = axis + moved * by_axis;
     arm_a = arm_a + moved * by_a;
     arm_b = arm_b + moved * by_b;
 }

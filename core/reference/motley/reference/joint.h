@@ -17,6 +17,10 @@ struct Block {
     struct Point {
         Eigen::Vector3d arm_a, arm_b;
     };
+    /// The line between two points, along which the one row of a block acts: arms to its ends, and from one to the other, m.
+    struct Line {
+        Eigen::Vector3d arm_a, arm_b, between;
+    };
     enum class Kind {
         equality,  ///< C = 0; with a frequency, stiffness or damping a spring
         limit,     ///< one row: C >= 0 with side * lambda >= 0; `error` is C, the room that is left
@@ -36,8 +40,9 @@ struct Block {
     double most_per_contact = -1;
     double restitution = 0;  ///< of a contact
     double armature = 0;     ///< kg or kg m2: inertia of a rotor that is geared to the block's one row
-    /// Of locks of a point, whose arms bodies carry along before relaxation.
+    /// Of locks of a point, and of rows along a line: bodies carry them along before relaxation.
     std::optional<Point> point{};
+    std::optional<Line> line{};
 
     [[nodiscard]] bool is_spring() const { return hertz > 0 || stiffness > 0 || damping > 0; }
     [[nodiscard]] bool is_one_sided() const { return kind == Kind::limit || kind == Kind::contact; }
