@@ -172,7 +172,7 @@ struct JointCases<BallSocketDefinition> {
 template <>
 struct JointCases<DistanceDefinition> {
     static constexpr Keeps keeps = Keeps::both_momenta;
-    static bool is_passive(const DistanceDefinition& joint) { return joint.spring_hertz == 0; }
+    static bool is_passive(const DistanceDefinition& joint) { return !joint.has_spring(); }
     static std::vector<DistanceDefinition> of(const JointPlace& at)
     {
         DistanceDefinition rod{at.a, at.b, at.anchor_on_a(), at.anchor_on_b()};
@@ -189,7 +189,12 @@ struct JointCases<DistanceDefinition> {
         DistanceDefinition weak = spring;
         weak.max_length = without_end;
         weak.spring_max_force = 1;
-        return {rod, rope, spring, weak};
+        DistanceDefinition stiff = weak;
+        stiff.spring_hertz = stiff.spring_damping_ratio = 0;
+        stiff.spring_stiffness = 200;
+        stiff.spring_damping = 20;
+        stiff.spring_max_force = without_end;
+        return {rod, rope, spring, weak, stiff};
     }
 };
 

@@ -61,11 +61,13 @@ class DistanceModel : public JointModel {
         const Block::Line line{a.orientation * local_a, b.orientation * local_b,
                                point_error(a, b, local_a, local_b)};
         std::vector<Block> blocks;
-        if (joint_.spring_hertz > 0) {
+        if (joint_.has_spring()) {
             blocks.push_back({.jacobian = jacobian,
                               .error = scalar(length - static_cast<double>(joint_.rest_length)),
                               .hertz = joint_.spring_hertz,
                               .damping_ratio = joint_.spring_damping_ratio,
+                              .stiffness = joint_.spring_stiffness,
+                              .damping = joint_.spring_damping,
                               .most = joint_.spring_max_force});
         }
         blocks.push_back(limit_block(jacobian, length, joint_.min_length, joint_.max_length));

@@ -408,7 +408,7 @@ TEST(CStructs, HaveTheSizesThatHostsWereBuiltWith)
     EXPECT_EQ(sizeof(motley_half_space_definition), 72U);
     EXPECT_EQ(sizeof(motley_shape_contact), 68U);
     EXPECT_EQ(sizeof(motley_ball_socket_definition), 48U);
-    EXPECT_EQ(sizeof(motley_distance_definition), 72U);
+    EXPECT_EQ(sizeof(motley_distance_definition), 80U);
     EXPECT_EQ(sizeof(motley_frame_joint_definition), 88U);
     EXPECT_EQ(sizeof(motley_drive_definition), 128U);
     EXPECT_EQ(sizeof(motley_swing_limit_definition), 88U);

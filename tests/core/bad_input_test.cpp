@@ -258,6 +258,15 @@ TEST(BadInput, EveryFieldOfAJointIsChecked)
             "damping", [](auto& j, Fixture&) { j.spring_damping_ratio = -1; },
             "DistanceDefinition.spring_damping_ratio", "-1"),
         distance(
+            "spring stiffness", [](auto& j, Fixture&) { j.spring_stiffness = -2; },
+            "DistanceDefinition.spring_stiffness", "-2"),
+        distance(
+            "spring damping", [](auto& j, Fixture&) { j.spring_damping = nan; },
+            "DistanceDefinition.spring_damping", "nan"),
+        distance(
+            "two springs", [](auto& j, Fixture&) { j.spring_hertz = 3, j.spring_stiffness = 1; },
+            "DistanceDefinition.spring_hertz", "3"),
+        distance(
             "rest length", [](auto& j, Fixture&) { j.rest_length = -2; }, "DistanceDefinition.rest_length",
             "-2"),
         distance(

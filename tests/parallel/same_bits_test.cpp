@@ -24,12 +24,12 @@ struct Way {
 #ifdef __EMSCRIPTEN__
 // WebAssembly cannot take denormals for zero. x86 without the flags of float_environment.h makes these hashes too.
 constexpr std::uint64_t golden_of_projection = 15141545631632701481ULL;
-constexpr std::uint64_t goldens_of_joints[] = {8955850234489012046ULL, 2331465399250425985ULL,
-                                               624527473120407804ULL, 8699562796177522752ULL};
+constexpr std::uint64_t goldens_of_joints[] = {16641942690327985438ULL, 5949572519813984265ULL,
+                                               9170620323481159938ULL, 2923570952597301938ULL};
 #else
 constexpr std::uint64_t golden_of_projection = 12600455655897062784ULL;
-constexpr std::uint64_t goldens_of_joints[] = {4691149092226896028ULL, 6585940013977620421ULL,
-                                               9837424727708137686ULL, 15575520870910274772ULL};
+constexpr std::uint64_t goldens_of_joints[] = {2274434173113477618ULL, 13718648614058717832ULL,
+                                               12057534720706406688ULL, 749867953405811242ULL};
 #endif
 
 std::vector<Way> ways()

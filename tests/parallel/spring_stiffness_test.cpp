@@ -136,6 +136,50 @@ TEST(SpringStiffness, OfASlideBearsAWeightByItsStiffness)
     }
 }
 
+/// A spring between two points bears a weight that hangs on it, swings with the root of k / m, and is drawn out by a body of
+/// any mass by the same force.
+TEST(SpringStiffness, OfADistanceBearsAWeightAndSwings)
+{
+    for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
+        for (const bool is_particle : {false, true}) {
+            for (const float mass : {0.01F, 3.0F, 1000.0F}) {
+                Scene scene;
+                BodyDefinition definition = box({0, -2, 0}, mass);
+                if (is_particle) definition.model = BodyModel::particle;
+                const BodyId weight = scene.add_body(definition);
+                DistanceDefinition spring{scene.ground(), weight};
+                spring.min_length = 0;
+                spring.max_length = std::numeric_limits<float>::infinity();
+                spring.rest_length = 2;
+                spring.spring_stiffness = 200 * mass;
+                spring.spring_damping = 20 * mass;
+                const ConstraintId joint = scene.add_joint(spring);
+                SolverSettings settings = testing::with_gravity({0, -10, 0});
+                settings.method = method;
+                Solver solver(settings);
+                testing::run(scene, solver, 5);
+                EXPECT_NEAR(scene.state(weight).position.y, -2 - 10.0 / 200, 1e-4) << mass;
+                EXPECT_NEAR(scene.joint_report(joint).force.y, 10 * mass, 1e-2 * static_cast<double>(mass));
+            }
+        }
+    }
+    Scene scene;
+    const BodyId weight = scene.add_body(box({1.1, 0, 0}, 2));
+    DistanceDefinition spring{scene.ground(), weight};
+    spring.min_length = 0;
+    spring.max_length = std::numeric_limits<float>::infinity();
+    spring.spring_stiffness = 4 * pi * pi * 2;  // one swing a second
+    scene.add_joint(spring);
+    SolverSettings settings;
+    settings.substeps = 32;
+    Solver solver(settings);
+    // It has swung to the other side after half a second, and come back after one.
+    testing::run(scene, solver, 0.5);
+    EXPECT_NEAR(scene.state(weight).position.x, 0.9, 2e-3);
+    testing::run(scene, solver, 0.5);
+    EXPECT_NEAR(scene.state(weight).position.x, 1.1, 4e-3);
+}
+
 TEST(SpringStiffness, NoStiffnessIsTooMuchForASubstep)
 {
     // A spring far stiffer than a substep can follow acts as a lock and adds no energy.

@@ -33,7 +33,9 @@ struct Distance : ConstraintTraits {
         Real min_length;
         Vec3<Real> anchor_b;
         Real max_length;
-        Real spring_hertz, spring_damping_ratio, rest_length, spring_max_force;
+        Real spring_hertz, spring_damping_ratio;
+        Real spring_stiffness, spring_damping;
+        Real rest_length, spring_max_force;
     };
     template <class Real>
     struct Memory {
@@ -44,18 +46,20 @@ struct Distance : ConstraintTraits {
     struct InSweep {
         Real min_length, max_length;
         Real rest_length, spring_max_impulse;
-        LaneSoftness<Real> spring;  ///< mass_scale 0 and impulse_scale 1 where there is none
+        Real spring_rate;
         ArmWeights<Real> weights;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
         PairVector<Real, a, b> start_arm_a, start_arm_b, start_between;
+        SpringSoftness<Real> spring;
         InSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
     struct SubstepRow {
         PairVector<Real, a, b> arm_a, arm_b, axis;
-        Real response, effective_mass;  ///< K and its inverse
+        Real response, effective_mass;            ///< K and its inverse
+        Real spring_effective_mass, spring_kept;  ///< see SoftRow
         Real length;
     };
     template <class Real, BodyKind a, BodyKind b>
@@ -75,16 +79,24 @@ struct Distance : ConstraintTraits {
                     "0 (no spring) or up to 1e6 (Hz)");
         check_range("DistanceDefinition.spring_damping_ratio", joint.spring_damping_ratio, 0, 1e6F,
                     "0 to 1e6");
+        check_range("DistanceDefinition.spring_stiffness", joint.spring_stiffness, 0, 1e12F,
+                    "0 to 1e12 (N/m)");
+        check_range("DistanceDefinition.spring_damping", joint.spring_damping, 0, 1e12F, "0 to 1e12 (N s/m)");
+        if (joint.spring_hertz > 0 && (joint.spring_stiffness > 0 || joint.spring_damping > 0)) {
+            refuse("DistanceDefinition.spring_hertz", joint.spring_hertz,
+                   "0 where spring_stiffness or spring_damping say what the spring is");
+        }
         check_range("DistanceDefinition.rest_length", joint.rest_length, 0, largest_length, "0 to 1e9 (m)");
         check_bound("DistanceDefinition.spring_max_force", joint.spring_max_force);
     }
     static bool locks_place(const Definition& joint) { return joint.min_length == joint.max_length; }
     static Parameters<float> parameters(const Definition& joint)
     {
-        return {joint.local_anchor_a, joint.min_length,
-                joint.local_anchor_b, std::fmin(joint.max_length, far_away),
-                joint.spring_hertz,   joint.spring_damping_ratio,
-                joint.rest_length,    std::fmin(joint.spring_max_force, largest_force)};
+        return {joint.local_anchor_a,   joint.min_length,
+                joint.local_anchor_b,   std::fmin(joint.max_length, far_away),
+                joint.spring_hertz,     joint.spring_damping_ratio,
+                joint.spring_stiffness, joint.spring_damping,
+                joint.rest_length,      std::fmin(joint.spring_max_force, largest_force)};
     }
 
     template <class Start, class Real, class A, class B>
@@ -104,8 +116,9 @@ struct Distance : ConstraintTraits {
         row.in_sweep.max_length = joint.max_length;
         row.in_sweep.rest_length = joint.rest_length;
         row.in_sweep.spring_max_impulse = Real(step.substep) * joint.spring_max_force;
-        row.in_sweep.spring =
-            softness_or(step, joint.spring_hertz, joint.spring_damping_ratio, Softness{0, 0, 1});
+        row.spring = spring_softness(step, joint.spring_hertz, joint.spring_damping_ratio,
+                                     joint.spring_stiffness, joint.spring_damping);
+        row.in_sweep.spring_rate = row.spring.rate;
         row.in_sweep.weights = arm_weights(a, b);
         impulse.spring = Real(step.warm_start_scale) * memory.spring;
         impulse.limit = Real(step.warm_start_scale) * memory.limit;
@@ -146,8 +159,7 @@ struct Distance : ConstraintTraits {
             held = before * axis;
         }
         Real speed = dot(axis, velocity_at(b, arm_b) - velocity_at(a, arm_a));
-        const SoftRow<Real> soft{in_sweep.spring.rate, in_sweep.spring.mass_scale * substep.effective_mass,
-                                 in_sweep.spring.impulse_scale};
+        const SoftRow<Real> soft{in_sweep.spring_rate, substep.spring_effective_mass, substep.spring_kept};
         const Real spring = spring_impulse(soft, substep.length - in_sweep.rest_length, speed, impulse.spring,
                                            in_sweep.spring_max_impulse);
         speed = speed + substep.response * (spring - impulse.spring);
@@ -197,7 +209,7 @@ struct Distance : ConstraintTraits {
             report.state = JointState::active;
         } else if (memory.limit != 0) {
             report.state = memory.limit > 0 ? JointState::lower : JointState::upper;
-        } else if (joint.spring_hertz > 0) {
+        } else if (joint.has_spring()) {
             report.state = JointState::active;
         }
         return report;
@@ -214,6 +226,9 @@ struct Distance : ConstraintTraits {
             dot(substep.axis,
                 (inverse_point_mass(a, substep.arm_a) + inverse_point_mass(b, substep.arm_b)) * substep.axis);
         substep.effective_mass = inverse_or_zero(substep.response);
+        const SoftRow<Real> spring = soft_row(row.spring, substep.response, substep.effective_mass);
+        substep.spring_effective_mass = spring.effective_mass;
+        substep.spring_kept = spring.kept;
     }
     template <class Vector, class A, class B>
     static void push(const Vector& impulse, const Vector& arm_a, const Vector& arm_b, A& a, B& b)

@@ -18,7 +18,7 @@ namespace motley {
 namespace {
 
 /// To be increased with every change of what is written.
-constexpr std::uint32_t format_version = 10;
+constexpr std::uint32_t format_version = 11;
 using Name = std::array<char, 8>;
 constexpr Name scene_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 's'};
 constexpr Name problem_name{'m', 'o', 't', 'l', 'e', 'y', ' ', 'p'};

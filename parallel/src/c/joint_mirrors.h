@@ -37,11 +37,11 @@ template <>
 struct Mirror<motley_distance_definition, DistanceDefinition>
     : Pair<motley_distance_definition, DistanceDefinition> {
     static constexpr const char* name = "motley_distance_definition";
-    static constexpr auto fields =
-        std::tuple(MOTLEY_FIELD(body_a), MOTLEY_FIELD(body_b), MOTLEY_FIELD(local_anchor_a),
-                   MOTLEY_FIELD(local_anchor_b), MOTLEY_FIELD(min_length), MOTLEY_FIELD(max_length),
-                   MOTLEY_FIELD(spring_hertz), MOTLEY_FIELD(spring_damping_ratio), MOTLEY_FIELD(rest_length),
-                   MOTLEY_FIELD(spring_max_force));
+    static constexpr auto fields = std::tuple(
+        MOTLEY_FIELD(body_a), MOTLEY_FIELD(body_b), MOTLEY_FIELD(local_anchor_a),
+        MOTLEY_FIELD(local_anchor_b), MOTLEY_FIELD(min_length), MOTLEY_FIELD(max_length),
+        MOTLEY_FIELD(spring_hertz), MOTLEY_FIELD(spring_damping_ratio), MOTLEY_FIELD(rest_length),
+        MOTLEY_FIELD(spring_max_force), MOTLEY_FIELD(spring_stiffness), MOTLEY_FIELD(spring_damping));
 };
 template <LinearLock linear, AngularLock angular>
 struct Mirror<motley_frame_joint_definition, FrameJointDefinition<linear, angular>>

@@ -43,6 +43,9 @@ typedef struct motley_distance_definition {
     float spring_damping_ratio;  ///< 0 to 1e6; 1 is critical; default 0
     float rest_length;           ///< m, 0 to 1e9: where the spring rests; default 1
     float spring_max_force;      ///< N, >= 0, or infinite, which is the default
+    float
+        spring_stiffness;  ///< N/m, 0 to 1e12, instead of spring_hertz; independent of the masses; default 0
+    float spring_damping;  ///< N s/m, 0 to 1e12; without a stiffness a damper; default 0
 } motley_distance_definition;
 
 /// Locks axes of a frame on b to those of a frame on a; which ones, the names below say. For rigid, planar, static and

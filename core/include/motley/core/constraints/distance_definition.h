@@ -20,10 +20,20 @@ struct DistanceDefinition {
     float min_length = 1;          ///< m, 0 to max_length
     float max_length = 1;          ///< m, to 1e9 or infinite
 
-    float spring_hertz = 0;          ///< Hz, to 1e6, on the joint's own effective mass; 0: no spring
+    // A spring, given either by a frequency of the mass that it moves, or by a stiffness and a damping; not by both.
+    float spring_hertz = 0;          ///< Hz, to 1e6, on the joint's own effective mass; 0: none
     float spring_damping_ratio = 0;  ///< 0 to 1e6; 1 is critical
-    float rest_length = 1;           ///< m, 0 to 1e9: where the spring rests
+    /// N/m, 0 to 1e12; independent of the masses. Integrated implicitly: stable at any stiffness, but oscillations faster than
+    /// a substep are damped.
+    float spring_stiffness = 0;
+    float spring_damping = 0;  ///< N s/m, 0 to 1e12; without a stiffness a damper
+    float rest_length = 1;     ///< m, 0 to 1e9: where the spring rests
     float spring_max_force = std::numeric_limits<float>::infinity();  ///< N, >= 0, or infinite
+
+    [[nodiscard]] bool has_spring() const
+    {
+        return spring_hertz > 0 || spring_stiffness > 0 || spring_damping > 0;
+    }
 };
 
 }  // namespace motley
