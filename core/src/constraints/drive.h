@@ -1,13 +1,4 @@
-// A drive: limits, motor and spring on one coordinate C of two frames.
-//
-//   slide   C = x_a . d, d = p_b - p_a        row [-x_a, -(r_a + d) x x_a, x_a, r_b x x_a]
-//   twist   C = 2 atan2(v . x, w), q = q_a* q_b, w >= 0    row [0, -t, 0, t], t = (x_a + x_b) / (1 + x_a . x_b)
-//   euler   n = z_b x x_a:   x: C = atan2(-y_a . z_b, z_a . z_b),  t = n x z_b / n^2
-//                            y: C = atan2(x_a . z_b, |n|),         t = n / |n|
-//                            z: C = atan2(-x_a . y_b, x_a . x_b),  t = x_a x n / n^2
-//
-// Symbols: p, r: anchors and their arms; x, y, z: axes of the frames of a and b; q = (v, w): rotation of frame b in
-// frame a from those of the frames, q_a and q_b; t: axis of the angular row.
+// A drive: limits, motor and spring on one coordinate C of two frames, which drive_coordinate.h has.
 //
 // A rotor of inertia I_r that is geared to C moves with the bodies along the row. With K = J M^-1 J^T and
 // s = 1 / (1 + K I_r) an impulse along the row changes the speed by K s times the impulse, and the bodies get the share
@@ -24,12 +15,12 @@
 
 #include "contract/constraint_type.h"
 #include "contract/type_list.h"
+#include "maths/drive_coordinate.h"
 #include "maths/lane_softness.h"
 #include "maths/limit.h"
 #include "maths/locked_point.h"
 #include "motley/core/constraints/drive_definition.h"
 #include "motley/core/invalid_input.h"
-#include "stores/if_needed.h"
 
 namespace motley {
 
@@ -37,49 +28,27 @@ template <DriveAxis drive_axis>
 struct Drive : ConstraintTraits {
     using Definition = DriveDefinition<drive_axis>;
     static constexpr bool needs_bodies_that_turn = true;
-    static constexpr bool slides = drive_axis == DriveAxis::slide;
+    using Coordinate = DriveCoordinate<drive_axis>;
+    static constexpr bool slides = Coordinate::slides, is_euler = Coordinate::is_euler;
     static constexpr bool has_torque = !slides;
     static constexpr bool turns_about_points = !slides;
     static constexpr ActiveRow active_row = slides ? ActiveRow::linear : ActiveRow::angular;
     static constexpr bool has_motor = true;
-    static constexpr bool is_euler = drive_axis == DriveAxis::euler;
     /// Few joints have Euler angles.
     static constexpr bool is_rare = is_euler;
     /// Replaces an infinite limit: too far to be reached, small enough for results to stay finite.
     static constexpr float far_away = 1e12F;
     static constexpr float half_turn = 3.14159265F;
 
-    /// Only slides have positions of frames, arms and levers. Rotations act about their axis wherever that is.
-    template <class Real>
-    struct Anchors {
-        Vec3<Real> position_a, position_b;
-    };
-    template <class Real>
-    struct Arms {
-        Vec3<Real> a, b, separation;
-    };
-    template <class Real>
-    struct Levers {
-        Vec3<Real> a, b;
-    };
-
-    /// Which Euler angle the drive acts on: 1 for it, 0 for the others.
-    template <class Real>
-    struct Which {
-        Real x, y, z;
-    };
-
     template <class Real>
     struct Parameters {
-        Quat<Real> rotation_a, rotation_b;
+        typename Coordinate::template Frames<Real> frames;
         Real lower, upper;
         Real motor_speed, motor_max_force;
         Real spring_hertz, spring_damping_ratio;
         Real spring_stiffness, spring_damping;
         Real spring_target, spring_max_force;
         Real armature;
-        [[no_unique_address]] IfNeeded<slides, Anchors<Real>> anchors;
-        [[no_unique_address]] IfNeeded<is_euler, Which<Real>, 1> which;
     };
     template <class Real>
     struct Memory {
@@ -100,19 +69,14 @@ struct Drive : ConstraintTraits {
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Row {
-        [[no_unique_address]] IfNeeded<slides, Arms<Real>> start_arms;
-        Quat<Real> start_frame_a, start_frame_b;
-        [[no_unique_address]] IfNeeded<is_euler, Which<Real>, 1> which;
+        typename Coordinate::template Start<Real> start;
         SpringSoftness<Real> spring;
         InSweep<Real> in_sweep;
     };
     template <class Real, BodyKind a, BodyKind b>
-    struct SubstepRow {
-        Vec3<Real> axis;  ///< x_a or t
-        [[no_unique_address]] IfNeeded<slides, Levers<Real>> levers;
+    struct SubstepRow : Coordinate::template Here<Real> {
         Real response, effective_mass;            ///< K s; its inverse, or more: see lengthen_step()
         Real share;                               ///< s
-        Real value;                               ///< C
         Real spring_effective_mass, spring_kept;  ///< see SoftRow
         Real start_speed;                         ///< of the rotor when the substep began
     };
@@ -156,27 +120,18 @@ struct Drive : ConstraintTraits {
     static bool locks_place(const Definition& drive) { return slides && drive.lower == drive.upper; }
     static Parameters<float> parameters(const Definition& drive)
     {
-        Parameters<float> parameters{unit(drive.frame_a.rotation),
-                                     unit(drive.frame_b.rotation),
-                                     std::fmax(drive.lower, -far_away),
-                                     std::fmin(drive.upper, far_away),
-                                     drive.motor_speed,
-                                     drive.motor_max_force,
-                                     drive.spring_hertz,
-                                     drive.spring_damping_ratio,
-                                     drive.spring_stiffness,
-                                     drive.spring_damping,
-                                     drive.spring_target,
-                                     std::fmin(drive.spring_max_force, largest_force),
-                                     drive.armature,
-                                     {},
-                                     {}};
-        if constexpr (slides) parameters.anchors = {drive.frame_a.position, drive.frame_b.position};
-        if constexpr (is_euler) {
-            const auto share = [&](EulerAngle angle) { return drive.angle == angle ? 1.0F : 0.0F; };
-            parameters.which = {share(EulerAngle::x), share(EulerAngle::y), share(EulerAngle::z)};
-        }
-        return parameters;
+        return {Coordinate::frames_of(drive),
+                std::fmax(drive.lower, -far_away),
+                std::fmin(drive.upper, far_away),
+                drive.motor_speed,
+                drive.motor_max_force,
+                drive.spring_hertz,
+                drive.spring_damping_ratio,
+                drive.spring_stiffness,
+                drive.spring_damping,
+                drive.spring_target,
+                std::fmin(drive.spring_max_force, largest_force),
+                drive.armature};
     }
 
     static bool has_rotor(const Definition& drive) { return drive.armature > 0; }
@@ -186,16 +141,8 @@ struct Drive : ConstraintTraits {
                         const A& a, const B& b, Impulse<Real, A::kind, B::kind>& impulse)
     {
         const StepConstants& step = start.step();
-        const JointPose<Real, A::kind, B::kind> pose = start.pose();
         Row<Real, A::kind, B::kind> row;
-        if constexpr (slides) {
-            row.start_arms.a = to_world(pose.orientation_a, drive.anchors.position_a);
-            row.start_arms.b = to_world(pose.orientation_b, drive.anchors.position_b);
-            row.start_arms.separation = pose.between + row.start_arms.b - row.start_arms.a;
-        }
-        row.start_frame_a = to_world(pose.orientation_a, drive.rotation_a);
-        row.start_frame_b = to_world(pose.orientation_b, drive.rotation_b);
-        if constexpr (is_euler) row.which = drive.which;
+        row.start = Coordinate::start_of(drive.frames, start.pose());
         row.in_sweep.lower = drive.lower;
         row.in_sweep.upper = drive.upper;
         row.in_sweep.motor_speed = drive.motor_speed;
@@ -213,22 +160,18 @@ struct Drive : ConstraintTraits {
         impulse.rotor_change = warm * memory.rotor_change;
         SubstepRow<Real, A::kind, B::kind> here;
         build<Real>(row, here, a, b);
-        impulse.rotor_speed = speed_of(here, a, b) - memory.rotor_lag;
+        impulse.rotor_speed = Coordinate::template speed<Real>(here, a, b) - memory.rotor_lag;
         return row;
     }
 
     template <class Real, class Row, class Impulse>
     static Real torque(const Row& row, const Impulse& impulse)
     {
-        Real length(0.5F);  // t of a twist turns half as far as each body
-        if constexpr (is_euler) {
-            const Vec3<Real> n = cross(axis_z(row.start_frame_b), axis_x(row.start_frame_a));
-            length = row.which.y + (row.which.x + row.which.z) * steepness(over_length(n));
-        }
         // What a rotor takes from a light body is handed on by the rows at the body's other end, and these are warm started
         // too: so it counts as that of three joints.
         const Real of_rotor = Real(3) * row.in_sweep.armature * absolute(impulse.rotor_change);
-        return length * maximum(absolute(to_bodies(row.in_sweep.armature, impulse)), of_rotor);
+        return Coordinate::length_of_axis(row.start) *
+               maximum(absolute(to_bodies(row.in_sweep.armature, impulse)), of_rotor);
     }
 
     template <class Impulse, class Real>
@@ -251,7 +194,7 @@ struct Drive : ConstraintTraits {
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static void warm_start(const Row& row, const Substep& substep, const Impulse& impulse, A& a, B& b)
     {
-        push(substep, to_bodies(row.in_sweep.armature, impulse), a, b);
+        Coordinate::template push<Real>(substep, to_bodies(row.in_sweep.armature, impulse), a, b);
     }
 
     /// Of the motor and the limit. Not of the spring, whose softness is that of the two bodies alone, nor of a drive with a
@@ -271,7 +214,7 @@ struct Drive : ConstraintTraits {
                       Impulse& impulse, A& a, B& b)
     {
         const Real before = impulse.motor + impulse.spring + impulse.limit;
-        Real speed = speed_of(substep, a, b);
+        Real speed = Coordinate::template speed<Real>(substep, a, b);
         const Real rotor_speed = substep.start_speed + impulse.rotor_change;
         const Real excess = speed - rotor_speed;
         const Real to_rotor = in_sweep.armature * substep.share * excess;
@@ -294,8 +237,9 @@ struct Drive : ConstraintTraits {
 
         impulse.rotor_change = speed - substep.start_speed;
         impulse.rotor_speed = speed;
-        push(substep, substep.share * (impulse.motor + impulse.spring + impulse.limit - before) - to_rotor, a,
-             b);
+        Coordinate::template push<Real>(
+            substep, substep.share * (impulse.motor + impulse.spring + impulse.limit - before) - to_rotor, a,
+            b);
     }
 
     /// The limit acts once it is touched, while it pushes inwards harder than the motor alone; the motor acts while it has
@@ -371,14 +315,7 @@ struct Drive : ConstraintTraits {
         build<Real>(row, now, a, b);
         const Real lambda = -(now.share * now.effective_mass *
                               beyond_range(now.value, row.in_sweep.lower, row.in_sweep.upper));
-        if constexpr (slides) {
-            displace(a, -(lambda * now.axis), -(lambda * now.levers.a));
-            displace(b, lambda * now.axis, lambda * now.levers.b);
-        } else {
-            const Vec3<Real> none{Real(0), Real(0), Real(0)};
-            displace(a, none, -(lambda * now.axis));
-            displace(b, none, lambda * now.axis);
-        }
+        Coordinate::template move<Real>(now, lambda, a, b);
     }
 
     template <class Real, class Row, class Impulse, class End>
@@ -388,7 +325,7 @@ struct Drive : ConstraintTraits {
         const auto b = end.b();
         SubstepRow<Real, decltype(a)::kind, decltype(b)::kind> now;
         build<Real>(row, now, a, b);
-        const Real lag = speed_of(now, a, b) - impulse.rotor_speed;
+        const Real lag = Coordinate::template speed<Real>(now, a, b) - impulse.rotor_speed;
         const auto has_rotor = row.in_sweep.armature > Real(0);
         return {impulse.motor, impulse.spring, impulse.limit, select(has_rotor, lag, Real(0)),
                 select(has_rotor, impulse.rotor_change, Real(0))};
@@ -406,12 +343,7 @@ struct Drive : ConstraintTraits {
     static JointReport report(const Definition& drive, const Memory<float>& memory, const BodyState& a,
                               const BodyState& b)
     {
-        const Quat<double> frame_a = a.orientation * unit(convert<double>(drive.frame_a.rotation));
-        const Quat<double> frame_b = b.orientation * unit(convert<double>(drive.frame_b.rotation));
-        const Vec3<double> d = anchor_separation(a, b, drive.frame_a.position, drive.frame_b.position);
-        const double value = slides     ? dot(axis_x(frame_a), d)
-                             : is_euler ? euler_angle(drive.angle, frame_a, frame_b)
-                                        : twist_of(conjugate(frame_a) * frame_b);
+        const double value = Coordinate::value_of(drive, a, b);
         const double wrong = std::fmax(0.0, std::fmax(static_cast<double>(drive.lower) - value,
                                                       value - static_cast<double>(drive.upper)));
         JointReport report;
@@ -447,76 +379,12 @@ struct Drive : ConstraintTraits {
     {
         return impulse.motor + impulse.spring + impulse.limit - armature * impulse.rotor_change;
     }
-    static double twist_of(const Quat<double>& q)
-    {
-        return 2 * std::atan2(q.w < 0 ? -q.x : q.x, std::abs(q.w));
-    }
-    static double euler_angle(EulerAngle angle, const Quat<double>& frame_a, const Quat<double>& frame_b)
-    {
-        const Vec3<double> x_a = axis_x(frame_a), z_b = axis_z(frame_b), n = cross(z_b, x_a);
-        if (angle == EulerAngle::x) return std::atan2(-dot(axis_y(frame_a), z_b), dot(axis_z(frame_a), z_b));
-        if (angle == EulerAngle::y) return std::atan2(dot(x_a, z_b), std::sqrt(dot(n, n)));
-        return std::atan2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));
-    }
-    template <class Real>
-    static Real over_length(const Vec3<Real>& n)
-    {
-        return Real(1) / square_root(maximum(dot(n, n), Real(1e-30F)));
-    }
-    /// The length of t of the Euler angles x and z, from 1 / |n|. It must never be shorter than 1, or the impulse that
-    /// reaches a given speed along t would grow without bound. Within 1.5 degrees of a right angle of y it is held at 38.
-    template <class Real>
-    static Real steepness(const Real& over_length)
-    {
-        return minimum(over_length, Real(38));
-    }
-    /// t and C of the Euler angle of each lane.
-    template <class Real, class Substep>
-    static void build_euler(const Which<Real>& which, const Quat<Real>& frame_a, const Quat<Real>& frame_b,
-                            Substep& substep)
-    {
-        const Vec3<Real> x_a = axis_x(frame_a), z_b = axis_z(frame_b), n = cross(z_b, x_a);
-        const Real over = over_length(n), steep = steepness(over);
-        substep.axis = (which.x * steep * over) * cross(n, z_b) + (which.y * over) * n +
-                       (which.z * steep * over) * cross(x_a, n);
-        const Real x = full_arc_tangent2(-dot(axis_y(frame_a), z_b), dot(axis_z(frame_a), z_b)),
-                   y = arc_tangent2(dot(x_a, z_b), square_root(dot(n, n))),
-                   z = full_arc_tangent2(-dot(x_a, axis_y(frame_b)), dot(x_a, axis_x(frame_b)));
-        substep.value = which.x * x + which.y * y + which.z * z;
-    }
-
     template <class Real, class Row, class Substep, class A, class B>
     static void build(const Row& row, Substep& substep, const A& a, const B& b)
     {
-        const Quat<Real> frame_a = turn_of(a) * row.start_frame_a;
-        if constexpr (slides) {
-            const Vec3<Real> arm_a = rotate(turn_of(a), row.start_arms.a),
-                             arm_b = rotate(turn_of(b), row.start_arms.b);
-            const Vec3<Real> d = anchor_error(row.start_arms.separation, row.start_arms.a, row.start_arms.b,
-                                              arm_a, arm_b, a, b);
-            substep.axis = axis_x(frame_a);
-            substep.levers.a = cross(arm_a + d, substep.axis);
-            substep.levers.b = cross(arm_b, substep.axis);
-            substep.value = dot(substep.axis, d);
-            substep.response = dot(substep.axis, over_mass(a, substep.axis) + over_mass(b, substep.axis)) +
-                               dot(substep.levers.a, over_inertia(a, substep.levers.a)) +
-                               dot(substep.levers.b, over_inertia(b, substep.levers.b));
-        } else {
-            const Quat<Real> frame_b = turn_of(b) * row.start_frame_b;
-            if constexpr (is_euler) {
-                build_euler(row.which, frame_a, frame_b, substep);
-            } else {
-                const Quat<Real> q = relative_rotation(frame_a, frame_b);
-                const Vec3<Real> x_a = axis_x(frame_a), x_b = axis_x(frame_b);
-                // In a hinge the axes are nearly parallel. Without one they may be opposite, where there is no twist.
-                const Real scale = Real(1) / maximum(Real(1) + dot(x_a, x_b), Real(0.01F));
-                substep.axis = scale * (x_a + x_b);
-                substep.value = Real(2) * arc_tangent2(q.x, q.w);
-            }
-            substep.response =
-                dot(substep.axis, over_inertia(a, substep.axis) + over_inertia(b, substep.axis));
-        }
-        const Real size = slides ? linear_size(a) + linear_size(b) : angular_size(a) + angular_size(b);
+        Coordinate::locate(row.start, substep, a, b);
+        substep.response = Coordinate::template response<Real>(substep, a, b);
+        const Real size = Coordinate::template size<Real>(a, b);
         const auto usable = substep.response > Real(rounding_share) * size;
         const Real effective_mass = select(usable, inverse_or_zero(substep.response), Real(0));
         substep.share =
@@ -526,29 +394,6 @@ struct Drive : ConstraintTraits {
         const SoftRow<Real> spring = soft_row(row.spring, substep.response, substep.effective_mass);
         substep.spring_effective_mass = spring.effective_mass;
         substep.spring_kept = spring.kept;
-    }
-
-    template <class Substep, class A, class B>
-    static auto speed_of(const Substep& substep, const A& a, const B& b)
-    {
-        if constexpr (slides) {
-            return dot(substep.axis, linear_of(b) - linear_of(a)) + dot(substep.levers.b, angular_of(b)) -
-                   dot(substep.levers.a, angular_of(a));
-        } else {
-            return dot(substep.axis, angular_of(b) - angular_of(a));
-        }
-    }
-
-    template <class Real, class Substep, class A, class B>
-    static void push(const Substep& substep, const Real& lambda, A& a, B& b)
-    {
-        if constexpr (slides) {
-            apply_wrench(a, -(lambda * substep.axis), -(lambda * substep.levers.a));
-            apply_wrench(b, lambda * substep.axis, lambda * substep.levers.b);
-        } else {
-            apply_turn(a, -(lambda * substep.axis));
-            apply_turn(b, lambda * substep.axis);
-        }
     }
 };
 

@@ -335,10 +335,10 @@ template <BodyKind kind, bool runs_on>
     }
 }
 
-template <BodyKind kind, bool runs_on>
+template <BodyKind kind>
 [[gnu::noinline]] void move_some_on(const KernelContext& context, const RowIndex<kind>& index)
 {
-    move_on<kind, runs_on>(context, index);
+    move_on<kind, false>(context, index);
 }
 
 template <BodyKind kind, bool runs_on>
@@ -346,13 +346,16 @@ void integrate_positions(const KernelContext& context, std::int32_t begin, std::
 {
     for_each_rows<kind>(
         begin, end, [&](const RowIndex<kind>& index) { move_on<kind, runs_on>(context, index); },
-        [&](const RowIndex<kind>& index) { move_some_on<kind, runs_on>(context, index); });
+        [&](const RowIndex<kind>& index) {
+            move_some_on<kind>(context, index);
+            if constexpr (runs_on && kind != BodyKind::fixed) speed_up_some<kind, false>(context, index);
+        });
 }
 
 template <BodyKind kind>
 void integrate_listed(const KernelContext& context, const BodyRow* rows, std::int32_t count)
 {
     for (std::int32_t first = 0; first < count; first += Lanes_width)
-        move_some_on<kind, false>(
+        move_some_on<kind>(
             context, RowIndex<kind>(rows + first, count - first < Lanes_width ? count - first : Lanes_width));
 }
