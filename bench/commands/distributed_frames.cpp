@@ -1,81 +1,22 @@
 // See distributed_frames.h.
 #include "commands/distributed_frames.h"
 
-#include <algorithm>
-#include <numeric>
-#include <stdexcept>
-#include <string>
-
-#include "shared_file.h"
-#include "worlds/slot_index.h"
+#include "commands/distributed_view.h"
 
 namespace motley::bench {
-namespace {
 
-/// The records of all ranks, on rank `root`.
-template <class Record>
-std::vector<Record> gather(const std::vector<Record>& own, int root, int ranks)
-{
-    const auto size = static_cast<int>(own.size());
-    std::vector<int> sizes(static_cast<std::size_t>(ranks)), firsts(sizes);
-    MPI_Gather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, root, MPI_COMM_WORLD);
-    std::exclusive_scan(sizes.begin(), sizes.end(), firsts.begin(), 0);
-    std::vector<Record> all(static_cast<std::size_t>(firsts.back() + sizes.back()));
-    const RecordType<Record> type;
-    MPI_Gatherv(own.data(), size, type.get(), all.data(), sizes.data(), firsts.data(), type.get(), root,
-                MPI_COMM_WORLD);
-    return all;
-}
-
-constexpr auto by_number = [](const auto& p, const auto& q) { return p.number < q.number; };
-
-}  // namespace
-
-DistributedFrames::DistributedFrames(const RunOutputs& outputs, const OpenCrowdPeople& people,
-                                     std::span<const WallId> walls)
-    : people_(people), walls_(walls.begin(), walls.end())
+DistributedFrames::DistributedFrames(const RunOutputs& outputs)
 {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks_);
     try_on_all([&] { writer_.emplace(outputs.frames, outputs.colour, rank_, ranks_); });
 }
 
-void DistributedFrames::note_places(const DistributedCrowd& crowd)
+void DistributedFrames::write(const DistributedView& from, DistributedCrowd& crowd)
 {
-    std::vector<BodyId> bodies;
-    for (const OwnPerson& person : crowd.people()) bodies.push_back(person.body);
-    std::vector<Vec3<double>> positions(bodies.size());
-    crowd.scene().read_positions(bodies, std::span<Vec3<double>>(positions));
-    places_.clear();
-    for (std::size_t i = 0; i < positions.size(); ++i)
-        places_.push_back({crowd.people()[i].number, {positions[i].x, positions[i].y}});
-}
-
-void DistributedFrames::write(DistributedCrowd& crowd)
-{
-    const std::span<const OwnPerson> own = crowd.people();
-    const std::vector<BodyLoad> loads = crowd.read_loads();
-    std::vector<BodyId> bodies;
-    std::vector<Pressed> pressed;
-    for (std::size_t i = 0; i < own.size(); ++i) {
-        bodies.push_back(own[i].body);
-        pressed.push_back({own[i].number, static_cast<double>(loads[i].pressure)});
-    }
-    SlotIndex index;
-    index.build(bodies);
-    std::vector<Leaning> leaning;
-    for (const DiscContact& contact : crowd.scene().disc_contacts()) {
-        const auto wall = std::find(walls_.begin(), walls_.end(), contact.wall);
-        const std::int32_t person = index.of(contact.b);
-        if (wall == walls_.end() || person < 0) continue;
-        leaning.push_back({own[static_cast<std::size_t>(person)].number, wall - walls_.begin(),
-                           static_cast<double>(contact.normal_force)});
-    }
     const int root = gathered_ % ranks_;
-    std::vector<Place> all_places = gather(places_, root, ranks_);
-    std::vector<Pressed> all_pressed = gather(pressed, root, ranks_);
-    const std::vector<Leaning> all_leaning = gather(leaning, root, ranks_);
-    if (rank_ == root) view_ = view_of(std::move(all_places), std::move(all_pressed), all_leaning);
+    std::optional<View> view = from.gather(crowd, root);
+    if (view) view_ = std::move(view);
     if (gathered_ == 0) {
         // All show the same part of the plane.
         PictureBounds bounds;
@@ -86,59 +27,12 @@ void DistributedFrames::write(DistributedCrowd& crowd)
     if (++gathered_ % ranks_ == 0) draw(crowd.executor());
 }
 
-View DistributedFrames::view_of(std::vector<Place> places, std::vector<Pressed> pressed,
-                                const std::vector<Leaning>& leaning) const
-{
-    std::sort(places.begin(), places.end(), by_number);
-    std::sort(pressed.begin(), pressed.end(), by_number);
-    View view;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const auto [number, at] = places[i];
-        view.people.push_back(at);
-        view.numbers.push_back(static_cast<std::uint32_t>(number));
-        view.shapes.push_back(
-            {at, at, static_cast<double>(people_.person(number).radius), pressed[i].pressure, i});
-    }
-    std::vector<std::vector<PressOnWall>> presses(walls_.size());
-    for (const auto& [number, wall, force] : leaning) {
-        const auto place = std::lower_bound(places.begin(), places.end(), Place{number, {}}, by_number);
-        presses[static_cast<std::size_t>(wall)].push_back(
-            {place->at, static_cast<double>(people_.person(number).radius), force});
-    }
-    const auto walls = people_.walls();
-    view.walls.assign(walls.begin(), walls.end());
-    for (std::size_t wall = 0; wall < view.walls.size(); ++wall)
-        view.wall_pressures.push_back(wall_pressures(view.walls[wall], presses[wall]));
-    return view;
-}
-
 void DistributedFrames::draw(Executor& executor)
 {
     try_on_all([&] {
         if (view_) writer_->write(*view_, executor);
         view_.reset();
     });
-}
-
-template <class Work>
-void DistributedFrames::try_on_all(const Work& work) const
-{
-    std::string failure;
-    try {
-        work();
-    } catch (const std::exception& error) {
-        failure = error.what();
-    }
-    const int failed = failure.empty() ? ranks_ : rank_;
-    int first = ranks_;
-    MPI_Allreduce(&failed, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
-    if (first == ranks_) return;
-    // Every rank throws the message of the first one that has failed.
-    auto size = static_cast<int>(failure.size());
-    MPI_Bcast(&size, 1, MPI_INT, first, MPI_COMM_WORLD);
-    failure.resize(static_cast<std::size_t>(size));
-    MPI_Bcast(failure.data(), size, MPI_CHAR, first, MPI_COMM_WORLD);
-    throw std::runtime_error(failure);
 }
 
 }  // namespace motley::bench

@@ -19,9 +19,12 @@
 
 #include "commands/distributed_frames.h"
 #include "commands/distributed_trajectories.h"
+#include "commands/distributed_view.h"
 #include "measuring/clock.h"
 #include "measuring/median.h"
 #include "motley/mpi/distributed_crowd.h"
+#include "recording/recording.h"
+#include "worlds/density.h"
 #include "worlds/scenes/open_crowd_people.h"
 
 namespace motley::bench {
@@ -149,15 +152,13 @@ double reduce(double value, MPI_Op operation)
     return value;
 }
 
-const char* refusal_of(const std::string& scene, const RunOptions& options, const RunOutputs& outputs)
+const char* refusal_of(const std::string& scene, const RunOptions& options)
 {
     if (scene != "crowd") return "only the scene `crowd` runs on several ranks";
     if (options.lists_contacts || options.direct_every > 0 || options.settings.measures)
         return "--listed, --measures and --direct-every need all people in one process";
     if (options.steering != SteeringModel::plain || options.torsos)
         return "on several ranks people are discs with plain steering";
-    if (!outputs.recording.empty() || !outputs.problem.empty() || outputs.densities)
-        return "--record and --densities need all people in one process";
     return nullptr;
 }
 
@@ -222,11 +223,12 @@ void print(const std::vector<Line>& lines, std::uint64_t hash, int ranks, int th
     fmt::print("  {:<66}{:016x}\n", "people hash", hash);
 }
 
-void write_json(const std::string& path, const std::vector<Line>& lines, std::uint64_t hash, int ranks,
-                int threads, std::int64_t steps)
+void write_json(const std::string& path, const std::vector<Line>& lines, const std::vector<Figure>& figures,
+                std::uint64_t hash, int ranks, int threads, std::int64_t steps)
 {
     nlohmann::ordered_json out{{"scene", "crowd"}, {"ranks", ranks}, {"threads", threads}, {"steps", steps}};
     for (const Line& line : lines) out[line.key] = line.value;
+    for (const auto& [name, value] : figures) out["figures"][name] = value;
     out["people_hash"] = fmt::format("{:016x}", hash);
     std::ofstream file(path);
     file << out.dump(2) << '\n';
@@ -244,13 +246,24 @@ void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Check
     if (!outputs.trajectories.empty())
         trajectories.emplace(outputs.trajectories, 1 / static_cast<double>(options.dt));
     std::optional<DistributedFrames> frames;
-    if (!outputs.frames.empty()) frames.emplace(outputs, all.who(), all.walls());
+    if (!outputs.frames.empty()) frames.emplace(outputs);
+    std::optional<RecordingWriter> recording;  // on rank 0
+    const bool is_recorded = !outputs.recording.empty();
+    if (is_recorded) {
+        try_on_all([&] {
+            if (rank == 0)
+                recording.emplace(outputs.recording, "crowd",
+                                  outputs.record_every * static_cast<double>(options.dt));
+        });
+    }
+    DistributedView view(all.who(), all.walls());
     Measured run;
     for (std::int64_t step = all.crowd.figures().steps; step < last; ++step) {
         // As one process does, from where people are when the step begins.
         if (trajectories) trajectories->write(all.crowd, step);
-        const bool is_drawn = frames && step % outputs.frame_every == 0;
-        if (is_drawn) frames->note_places(all.crowd);
+        const bool draws = frames && step % outputs.frame_every == 0;
+        const bool records = is_recorded && step % outputs.record_every == 0;
+        if (draws || records) view.note_places(all.crowd);
         const double began = now();
         all.steer(step);
         const double steered = now();
@@ -258,7 +271,13 @@ void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Check
         const double ended = now();
         if (report.status != StepStatus::done)
             throw std::runtime_error(fmt::format("step {} refused: {}", step, report.error));
-        if (is_drawn) frames->write(all.crowd);
+        if (draws) frames->write(view, all.crowd);
+        if (records) {
+            const std::optional<View> seen = view.gather(all.crowd, 0);
+            try_on_all([&] {
+                if (seen) recording->write(*seen, step);
+            });
+        }
         ++run.steps;
         run.step_seconds.push_back(ended - began);
         run.solver_seconds.push_back(ended - steered);
@@ -274,6 +293,12 @@ void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Check
     }
     if (trajectories) trajectories->close();
     if (frames) frames->close(all.crowd);
+    std::vector<Figure> densities;  // on rank 0
+    if (outputs.densities) {
+        view.note_places(all.crowd);
+        if (const std::optional<View> seen = view.gather(all.crowd, 0))
+            densities = density_figures(*seen, all.crowd.executor());
+    }
     if (run.steps == 0)
         throw std::runtime_error("--restart: the checkpoint is at or beyond the end of --seconds");
     const std::vector<Line> lines =
@@ -281,7 +306,8 @@ void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Check
     const std::uint64_t hash = all.crowd.hash();
     if (rank != 0) return;
     print(lines, hash, ranks, options.solver.threads, run.steps);
-    if (!json.empty()) write_json(json, lines, hash, ranks, options.solver.threads, run.steps);
+    for (const auto& [name, value] : densities) fmt::print("  {} {:.4g}\n", name, value);
+    if (!json.empty()) write_json(json, lines, densities, hash, ranks, options.solver.threads, run.steps);
 }
 
 }  // namespace
@@ -305,7 +331,7 @@ int run_distributed(const std::string& scene, RunOptions options, const RunOutpu
     if (options.agents == 0) options.agents = entry.agents;
     if (options.seconds == 0) options.seconds = entry.seconds;
     try {
-        if (const char* const refused = refusal_of(scene, options, outputs)) {
+        if (const char* const refused = refusal_of(scene, options)) {
             code = 2;
             throw std::runtime_error(refused);
         }

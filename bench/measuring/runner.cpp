@@ -132,25 +132,6 @@ class DirectComparison {
     }
 };
 
-/// The density on each square metre that has anybody, and around each person.
-void add_densities(const View& view, Executor& executor, std::vector<Figure>& figures)
-{
-    const auto add = [&](const char* of, std::vector<double> values) {
-        std::erase(values, 0.0);
-        if (values.empty()) return;
-        std::ranges::sort(values);
-        double sum = 0;
-        for (const double value : values) sum += value;
-        figures.emplace_back(fmt::format("density of {}, mean (1/m2)", of),
-                             sum / static_cast<double>(values.size()));
-        figures.emplace_back(fmt::format("density of {}, 95th percentile (1/m2)", of),
-                             values[values.size() * 95 / 100]);
-        figures.emplace_back(fmt::format("density of {}, highest (1/m2)", of), values.back());
-    };
-    add("square metres with people", density_field(view.people).people);
-    add("Voronoi cells", voronoi_densities(view, density_reach, executor));
-}
-
 }  // namespace
 
 void settle_options(const SceneEntry& entry, RunOptions& options)
@@ -287,7 +268,10 @@ RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutput
     direct.report(result);
     result.error = scene->error();
     result.figures = scene->figures();
-    if (outputs.densities) add_densities(*scene->view(), executor, result.figures);
+    if (outputs.densities) {
+        const std::vector<Figure> told = density_figures(*scene->view(), executor);
+        result.figures.insert(result.figures.end(), told.begin(), told.end());
+    }
     result.marks = scene->marks();
     if (result.error) result.figures.emplace_back(result.error->name, result.error->value);
     return result;

@@ -1,6 +1,8 @@
 // See density.h.
 #include "worlds/density.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -188,6 +190,26 @@ std::vector<double> voronoi_densities(const View& view, double reach, Executor& 
                      }
                  });
     return densities;
+}
+
+std::vector<Figure> density_figures(const View& view, Executor& executor)
+{
+    std::vector<Figure> figures;
+    const auto add = [&](const char* of, std::vector<double> values) {
+        std::erase(values, 0.0);
+        if (values.empty()) return;
+        std::ranges::sort(values);
+        double sum = 0;
+        for (const double value : values) sum += value;
+        figures.emplace_back(fmt::format("density of {}, mean (1/m2)", of),
+                             sum / static_cast<double>(values.size()));
+        figures.emplace_back(fmt::format("density of {}, 95th percentile (1/m2)", of),
+                             values[values.size() * 95 / 100]);
+        figures.emplace_back(fmt::format("density of {}, highest (1/m2)", of), values.back());
+    };
+    add("square metres with people", density_field(view.people).people);
+    add("Voronoi cells", voronoi_densities(view, density_reach, executor));
+    return figures;
 }
 
 }  // namespace motley::bench

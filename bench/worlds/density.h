@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "motley/motley.h"
+#include "worlds/bench_scene.h"
 #include "worlds/view.h"
 
 namespace motley::bench {
@@ -31,5 +32,8 @@ std::vector<double> voronoi_densities(const View& view, double reach, Executor& 
 
 /// m: the cut-off with which densities are told and drawn.
 inline constexpr double density_reach = 1;
+
+/// Mean, 95th percentile and highest density on the square metres that have anybody, and around each person, each with its name.
+std::vector<Figure> density_figures(const View& view, Executor& executor);
 
 }  // namespace motley::bench
