@@ -296,8 +296,10 @@ void run_crowd(const RunOptions& options, const RunOutputs& outputs, const Check
     std::vector<Figure> densities;  // on rank 0
     if (outputs.densities) {
         view.note_places(all.crowd);
-        if (const std::optional<View> seen = view.gather(all.crowd, 0))
-            densities = density_figures(*seen, all.crowd.executor());
+        const std::optional<View> seen = view.gather(all.crowd, 0);
+        try_on_all([&] {
+            if (seen) densities = density_figures(*seen, all.crowd.executor());
+        });
     }
     if (run.steps == 0)
         throw std::runtime_error("--restart: the checkpoint is at or beyond the end of --seconds");

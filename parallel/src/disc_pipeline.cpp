@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 
 #include "scene/wall_ends.h"
@@ -18,7 +17,8 @@ constexpr int longest_age = 20;
 /// within a step.
 constexpr double slack = 0.005;
 
-/// Whether a disc may leave its skin in a step of dt. It has gone so far since the last search, and goes as far as its speed tells.
+/// Whether a disc may leave its skin in a step of `dt`, s: whether the way that it has gone since the last search, and the way that
+/// it goes in the step at its speed, are longer together than the skin.
 bool may_leave(const DiscStore& discs, const BodyRows& rows, std::uint32_t row, float dt)
 {
     const DiscAnchor& anchor = discs.anchors[row];
@@ -30,7 +30,7 @@ bool may_leave(const DiscStore& discs, const BodyRows& rows, std::uint32_t row, 
                  step_y = static_cast<double>(dt) * static_cast<double>(v[1]);
     const double gone2 = x * x + y * y, step2 = step_x * step_x + step_y * step_y,
                  room = static_cast<double>(anchor.skin) - slack;
-    // (g + s)^2 <= 2 (g^2 + s^2): of most discs this tells without a root that they stay.
+    // The square of a sum is at most twice the sum of the squares: this tells of most discs, without a root, that they stay.
     if (2 * (gone2 + step2) < room * room && room > 0) return false;
     return !(std::sqrt(gone2) + std::sqrt(step2) <= room);
 }
@@ -161,14 +161,9 @@ void DiscPipeline::list_leaving(const SceneCore& scene, float dt)
     runner_.run(chunks, [&](std::int64_t chunk) {
         Array<std::uint32_t>& leaving = leaving_of_[static_cast<std::size_t>(chunk)];
         leaving.clear();
-        auto first = static_cast<std::uint32_t>(chunk) * disc_rows_per_chunk;
-        for (std::uint32_t awake : rows.awake_in_chunk(chunk)) {
-            for (; awake != 0; awake &= awake - 1) {
-                const std::uint32_t row = first + static_cast<std::uint32_t>(std::countr_zero(awake));
-                if (row < size && may_leave(discs, rows, row, dt)) leaving.push_back(row);
-            }
-            first += BodyRows::rows_per_group;
-        }
+        rows.for_each_awake_row(chunk, [&](std::uint32_t row) {
+            if (row < size && may_leave(discs, rows, row, dt)) leaving.push_back(row);
+        });
     });
     leaving_.clear();
     for (std::int64_t chunk = 0; chunk < chunks; ++chunk) {

@@ -2,7 +2,6 @@
 #include "sleep_pipeline.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "crowd/disc_strips.h"
 #include "scene/wall_ends.h"
@@ -39,16 +38,10 @@ template <class Work>
 void for_each_awake(const BodyStore& bodies, BodyKind kind, std::int64_t chunk, const Work& work)
 {
     const BodyRows& rows = bodies.rows(kind);
-    auto first = static_cast<std::uint32_t>(chunk) * BodyRows::rows_per_chunk;
-    for (const std::uint16_t group : rows.awake_in_chunk(chunk)) {
-        // Of a copy of the word, because work() may put the body to sleep.
-        for (unsigned awake = group; awake != 0; awake &= awake - 1) {
-            const std::uint32_t row = first + static_cast<std::uint32_t>(std::countr_zero(awake));
-            const std::uint32_t slot = rows.slot[row];
-            if (bodies.contained[slot] == 0) work(BodyRow(kind, row), slot);
-        }
-        first += BodyRows::rows_per_group;
-    }
+    rows.for_each_awake_row(chunk, [&](std::uint32_t row) {
+        const std::uint32_t slot = rows.slot[row];
+        if (bodies.contained[slot] == 0) work(BodyRow(kind, row), slot);
+    });
 }
 
 /// A body that may fall asleep, if its island does.

@@ -136,8 +136,18 @@ TEST(SpringStiffness, OfASlideBearsAWeightByItsStiffness)
     }
 }
 
-/// A spring between two points bears a weight that hangs on it, swings with the root of k / m, and is drawn out by a body of
-/// any mass by the same force.
+/// A spring without limits between the centres of the ground and a body, N/m and N s/m.
+DistanceDefinition spring_to(const Scene& scene, BodyId body, float stiffness, float damping = 0)
+{
+    DistanceDefinition spring{scene.ground(), body};
+    spring.min_length = 0;
+    spring.max_length = std::numeric_limits<float>::infinity();
+    spring.spring_stiffness = stiffness;
+    spring.spring_damping = damping;
+    return spring;
+}
+
+/// It bears a weight, m g = k x, and swings with the root of k / m.
 TEST(SpringStiffness, OfADistanceBearsAWeightAndSwings)
 {
     for (const Method method : {Method::soft_step, Method::sequential_impulse, Method::direct}) {
@@ -147,12 +157,8 @@ TEST(SpringStiffness, OfADistanceBearsAWeightAndSwings)
                 BodyDefinition definition = box({0, -2, 0}, mass);
                 if (is_particle) definition.model = BodyModel::particle;
                 const BodyId weight = scene.add_body(definition);
-                DistanceDefinition spring{scene.ground(), weight};
-                spring.min_length = 0;
-                spring.max_length = std::numeric_limits<float>::infinity();
+                DistanceDefinition spring = spring_to(scene, weight, 200 * mass, 20 * mass);
                 spring.rest_length = 2;
-                spring.spring_stiffness = 200 * mass;
-                spring.spring_damping = 20 * mass;
                 const ConstraintId joint = scene.add_joint(spring);
                 SolverSettings settings = testing::with_gravity({0, -10, 0});
                 settings.method = method;
@@ -165,11 +171,7 @@ TEST(SpringStiffness, OfADistanceBearsAWeightAndSwings)
     }
     Scene scene;
     const BodyId weight = scene.add_body(box({1.1, 0, 0}, 2));
-    DistanceDefinition spring{scene.ground(), weight};
-    spring.min_length = 0;
-    spring.max_length = std::numeric_limits<float>::infinity();
-    spring.spring_stiffness = 4 * pi * pi * 2;  // one swing a second
-    scene.add_joint(spring);
+    scene.add_joint(spring_to(scene, weight, 4 * pi * pi * 2));  // one swing a second
     SolverSettings settings;
     settings.substeps = 32;
     Solver solver(settings);

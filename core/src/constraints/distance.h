@@ -82,10 +82,8 @@ struct Distance : ConstraintTraits {
         check_range("DistanceDefinition.spring_stiffness", joint.spring_stiffness, 0, 1e12F,
                     "0 to 1e12 (N/m)");
         check_range("DistanceDefinition.spring_damping", joint.spring_damping, 0, 1e12F, "0 to 1e12 (N s/m)");
-        if (joint.spring_hertz > 0 && (joint.spring_stiffness > 0 || joint.spring_damping > 0)) {
-            refuse("DistanceDefinition.spring_hertz", joint.spring_hertz,
-                   "0 where spring_stiffness or spring_damping say what the spring is");
-        }
+        check_one_spring("DistanceDefinition.spring_hertz", joint.spring_hertz, joint.spring_stiffness,
+                         joint.spring_damping);
         check_range("DistanceDefinition.rest_length", joint.rest_length, 0, largest_length, "0 to 1e9 (m)");
         check_bound("DistanceDefinition.spring_max_force", joint.spring_max_force);
     }

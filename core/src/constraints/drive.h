@@ -108,10 +108,7 @@ struct Drive : ConstraintTraits {
                     slides ? "0 to 1e12 (N/m)" : "0 to 1e12 (N m/rad)");
         check_range("spring_damping", drive.spring_damping, 0, 1e12F,
                     slides ? "0 to 1e12 (N s/m)" : "0 to 1e12 (N m s/rad)");
-        if (drive.spring_hertz > 0 && (drive.spring_stiffness > 0 || drive.spring_damping > 0)) {
-            refuse("spring_hertz", drive.spring_hertz,
-                   "0 where spring_stiffness or spring_damping say what the spring is");
-        }
+        check_one_spring("spring_hertz", drive.spring_hertz, drive.spring_stiffness, drive.spring_damping);
         check_range("armature", drive.armature, 0, 1e10F, slides ? "0 to 1e10 (kg)" : "0 to 1e10 (kg m2)");
         check_range("spring_target", drive.spring_target, -most, most,
                     slides ? "-1e9 to 1e9 (m)" : "-pi to pi (rad)");

@@ -36,17 +36,26 @@ auto arm_weights(const A& a, const B& b)
     return ArmWeights<std::remove_cvref_t<decltype(mass)>>{mass * angular_size(a), mass * angular_size(b)};
 }
 
+/// The share of a response that carried arms may change, and the square of the turn of an axis, rad2.
+inline constexpr float most_carried = 0.25F;
+
+/// The velocity of a body's centre, as a vector of its pair.
+template <class Vector, class Body>
+Vector of_centre(const Body& body)
+{
+    return to_space<Vector>(to_three(body.linear));
+}
+
 /// Carries the arms of one point along, if the bodies have moved for StepConstants::moved_for.
 template <class Real, class Vector, class A, class B>
 void carry_arms(const StepConstants& step, const ArmWeights<Real>& weights, Vector& arm_a, Vector& arm_b,
                 const A& a, const B& b)
 {
     const Vector middle = Real(0.5F) * (velocity_at(a, arm_a) + velocity_at(b, arm_b));
-    const Vector by_a = middle - to_space<Vector>(to_three(a.linear)),
-                 by_b = middle - to_space<Vector>(to_three(b.linear));
+    const Vector by_a = middle - of_centre<Vector>(a), by_b = middle - of_centre<Vector>(b);
     const Real h(step.moved_for);
     const Real changed = h * h * (weights.a * dot(by_a, by_a) + weights.b * dot(by_b, by_b));
-    const Real moved = select(changed < Real(0.25F), h, Real(0));
+    const Real moved = select(changed < Real(most_carried), h, Real(0));
     arm_a = arm_a + moved * by_a;
     arm_b = arm_b + moved * by_b;
 }
@@ -58,15 +67,14 @@ void carry_line(const StepConstants& step, const ArmWeights<Real>& weights, cons
 {
     const Real h(step.moved_for);
     const Vector at_a = velocity_at(a, arm_a), at_b = velocity_at(b, arm_b);
-    const Vector by_a = h * (at_a - to_space<Vector>(to_three(a.linear))),
-                 by_b = h * (at_b - to_space<Vector>(to_three(b.linear)));
+    const Vector by_a = h * (at_a - of_centre<Vector>(a)), by_b = h * (at_b - of_centre<Vector>(b));
     const Vector d = length * axis + h * (at_b - at_a);
     const Vector by_axis = inverse_or_zero(square_root(dot(d, d))) * d - axis;
     const Real turned = dot(by_axis, by_axis);
     const Real changed = weights.a * (dot(by_a, by_a) + turned * dot(arm_a, arm_a)) +
                          weights.b * (dot(by_b, by_b) + turned * dot(arm_b, arm_b));
     // Where the points meet or pass each other the axis has no direction, or turns round.
-    const Real moved = select(maximum(changed, turned) < Real(0.25F), Real(1), Real(0));
+    const Real moved = select(maximum(changed, turned) < Real(most_carried), Real(1), Real(0));
     axis = axis + moved * by_axis;
     arm_a = arm_a + moved * by_a;
     arm_b = arm_b + moved * by_b;

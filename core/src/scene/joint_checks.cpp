@@ -28,6 +28,12 @@ void check_bound(std::string_view field, float value)
                 ">= 0 (N or N m), infinite for none");
 }
 
+void check_one_spring(std::string_view field, float hertz, float stiffness, float damping)
+{
+    if (hertz > 0 && (stiffness > 0 || damping > 0))
+        refuse(field, hertz, "0 where spring_stiffness or spring_damping say what the spring is");
+}
+
 void check_length_range(std::string_view definition, float min_length, float max_length)
 {
     const FieldName least(definition, ".min_length");

@@ -38,6 +38,8 @@ struct FieldName {
 void check_range(const FieldName& field, float value, float low, float high, std::string_view expected);
 /// Refuses a bound on a force or torque that is negative or NaN; infinity means no bound.
 void check_bound(std::string_view field, float value);
+/// Refuses a spring that is given both by a frequency and by a stiffness or damping. `field`: its frequency.
+void check_one_spring(std::string_view field, float hertz, float stiffness, float damping);
 /// Refuses lengths that are not 0 <= min_length <= max_length, at most 1e9 m; max_length may be infinite.
 void check_length_range(std::string_view definition, float min_length, float max_length);
 /// Refuses an anchor that is not finite or longer than 1e9 m, or not at the centre of a particle, which has

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 
@@ -108,6 +109,17 @@ struct BodyRows {
     {
         const std::span<const std::uint16_t> groups = awake_in_chunk(chunk);
         return std::any_of(groups.begin(), groups.end(), [](std::uint16_t rows) { return rows != 0; });
+    }
+    /// Calls work(row) for each row of a chunk whose body is awake, also where work() puts one to sleep.
+    template <class Work>
+    void for_each_awake_row(std::int64_t chunk, const Work& work) const
+    {
+        auto first = static_cast<std::uint32_t>(chunk) * rows_per_chunk;
+        for (const std::uint16_t group : awake_in_chunk(chunk)) {
+            for (unsigned rows = group; rows != 0; rows &= rows - 1)
+                work(first + static_cast<std::uint32_t>(std::countr_zero(rows)));
+            first += rows_per_group;
+        }
     }
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(slot.size()); }
 };
