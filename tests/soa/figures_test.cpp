@@ -43,7 +43,7 @@ TEST(FigureTree, EveryLockIsInTheTreeOrClosesALoopOnce)
     for (int trial = 0; trial < 5000; ++trial) {
         FigureShape shape = random_shape(random);
         const FigureShape bare = shape;
-        if (!build_tree(shape)) {
+        if (!build_tree(shape, RotorsBesideTree::allowed)) {
             EXPECT_TRUE(shape.nodes.empty());
             EXPECT_TRUE(shape.closures.empty());
             for (const auto& joint : shape.joints) EXPECT_FALSE(joint.in_tree);
@@ -100,7 +100,7 @@ TEST(FigureTree, NumbersOfNodesDoNotOverlap)
     Random random(12);
     for (int trial = 0; trial < 500; ++trial) {
         FigureShape shape = random_shape(random);
-        if (!build_tree(shape)) continue;
+        if (!build_tree(shape, RotorsBesideTree::allowed)) continue;
         std::vector<std::pair<std::int64_t, std::int64_t>> parts;
         const auto add = [&](std::int64_t begin, std::int64_t floats) {
             if (floats > 0) parts.emplace_back(begin, begin + floats * block_lanes);

@@ -82,7 +82,7 @@ struct Drive : ConstraintTraits {
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
-        Real limit, motor;  ///< in this order for exact joints
+        Real limit, motor;  ///< these five in this order for exact joints
         Real spring;
         /// m/s or rad/s, of the rotor's speed in the substep. I_r times it is what the rotor took from the bodies.
         Real rotor_change;
@@ -242,7 +242,7 @@ struct Drive : ConstraintTraits {
     /// The limit acts once it is touched, while it pushes inwards harder than the motor alone; the motor acts while it has
     /// force left and does not arrive at the limit; and else the spring does, while it has force left. One row bears all
     /// three, so the impulse is all that of one; but sweeps solve a spring beside a limit that acts, or beside a motor, and a
-    /// limit beside a spring. A rotor shares the impulses of its row with the bodies: drives with one are left to the sweeps.
+    /// limit beside a spring. A rotor always acts. Without SolverSettings::exact_limits nothing else does.
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static ActingRow<Real> act(const StepConstants& step, const Row& row, const Substep& substep,
                                Impulse& impulse, const A& a, const B& b)
@@ -263,12 +263,14 @@ struct Drive : ConstraintTraits {
         const Real strength =
             select(most > none, none, select(soft.effective_mass > none, drive.spring_max_impulse, none));
         const Real of_spring = select(absolute(impulse.spring) < strength, spring, none);
-        const Real usable = select(drive.armature > none, none, here.effective_mass);
-        const Real by =
+        const Real usable = step.exact_limits ? here.effective_mass : none;
+        const Real of_others =
             select(usable > none, select(of_limit > none, of_limit, maximum(of_motor, of_spring)), none);
+        const Real rotor = select(here.effective_mass > none, drive.armature, none);
+        const Real by = maximum(of_others, select(rotor > none, Real(ActsBy::rotor), none));
 
         const auto is_usable = usable > none, by_spring = by > motor, by_motor = by > limit;
-        const auto acts = (by > none) & (spring > by);
+        const auto acts = (of_others > none) & (spring > of_others);
         // What does not act lets go: the motor and the spring keep what they may push.
         const Real kept = select(acts, both, maximum(minimum(both, most), -most));
         const Real by_limit = select(acts, select(by_motor, none, kept), none);
@@ -289,7 +291,8 @@ struct Drive : ConstraintTraits {
                             select(is_usable, taken_back, none),
                             here.effective_mass,
                             give,
-                            select(by_spring, given, none)};
+                            select(by_spring, given, none),
+                            rotor};
         if constexpr (slides) {
             out.row.linear = here.axis;
             out.row.lever_a = here.levers.a;

@@ -134,6 +134,7 @@ struct SwingLimit : ConstraintTraits {
                 impulse.limit - before,
                 here.effective_mass,
                 none,
+                none,
                 none};
     }
     template <class Real, class Row, class A, class B>

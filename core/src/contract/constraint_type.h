@@ -92,8 +92,9 @@ struct ConstraintTraits {
     /// Is defined by points of the world: has world_points(definition), and start.from_world_points().
     static constexpr bool has_world_points = false;
     /// Of types with a limit or motor that exact joints may hold: see equality_row.h. Such a type has act() and
-    /// SubstepRow::effective_mass, and the first Real of Impulse is the impulse of the limit. With `has_motor` the second is that
-    /// of the motor and the third that of the spring, and SubstepRow has spring_effective_mass and spring_kept.
+    /// SubstepRow::effective_mass, and the first Real of Impulse is the impulse of the limit. With `has_motor` the next two are
+    /// those of the motor and the spring, then come the change of the rotor's speed in the substep and that speed, and SubstepRow
+    /// has spring_effective_mass and spring_kept.
     static constexpr ActiveRow active_row = ActiveRow::none;
     static constexpr bool has_motor = false;
     /// Rows of J that exact joints may lock.
@@ -107,7 +108,7 @@ struct ConstraintTraits {
     {
         return false;
     }
-    /// Whether a joint of this definition has a rotor, which sweeps must solve: see act() of drive.h.
+    /// Whether a joint of this definition has a rotor, which exact joints hold: see equality_row.h.
     template <class Definition>
     static bool has_rotor(const Definition&)
     {

@@ -6,6 +6,10 @@
 // only find out that a limit, a motor or a spring acts; from then on its row is one more row of the lock, until it would pull
 // where it can only push, or push harder than it may: an active set, changed whenever the figure is factored (J. Nocedal, S.
 // Wright, Numerical Optimization, 2006, section 16.5). The row of a spring gives way: J v + give lambda = speed.
+//
+// A rotor of inertia I_r on such a row always acts, for it is part of the figure's inertia. Its speed is that of the row, so it
+// gives the bodies lambda = -I_r (J v - its speed before): a row with give 1 / I_r and that speed. On the row of a spring both
+// add up, and on that of a limit or motor, which does not give way, the rotor takes the part of lambda that it needs.
 #pragma once
 
 #include <cstdint>
@@ -33,9 +37,15 @@ enum class ActiveRow : std::uint8_t {
     angular  ///< it only turns them, about opposite axes
 };
 
-/// What acts on such a row: one of these, as a Real.
+/// What acts on such a row: one of these, as a Real. A rotor may be there beside the last three.
 struct ActsBy {
-    static constexpr float nothing = 0, limit = 1, motor = 2, spring = 3;
+    static constexpr float nothing = 0, rotor = 1, limit = 2, motor = 3, spring = 4;
+};
+
+/// Where the Impulse of a type with a motor has a rotor, after the impulses of limit, motor and spring: what the substep has added
+/// to its speed, and that speed.
+struct RotorImpulse {
+    static constexpr int change = 3, speed = 4;
 };
 
 template <class Real>
@@ -48,6 +58,14 @@ struct ActingRow {
     /// m/s or rad/s, of a spring whose substep has begun: by how much `speed` is too high for what is left of it, because the
     /// spring has pushed already, and because its law is that of C when the substep began.
     Real given;
+    Real rotor;  ///< kg or kg m2: I_r, or 0
+    /// How far the row gives way when the spring and the rotor hold it together.
+    [[nodiscard]] Real give_of_all() const
+    {
+        const auto alone = (by > Real(0)) & (Real(ActsBy::limit) > by);
+        const Real beside_spring = give / (Real(1) + give * rotor);
+        return select(alone, Real(1) / select(alone, rotor, Real(1)), beside_spring);
+    }
 };
 
 /// C of a limit that acts, without a correction faster than push_out_speed.

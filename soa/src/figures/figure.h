@@ -38,19 +38,21 @@ struct FigureNode {
     int most_rows;    ///< with those of its limits and motors, at most 6
     /// Where its arrays begin in FigureBlock::system, in floats. M' is the mass matrix of the child body and
     /// everything below it in the tree (articulated inertia).
-    std::int64_t jacobian;  ///< EqualityRows; once factored, the form that kernel_tree_rows.h keeps
-    std::int64_t response;  ///< M'^-1 J^T, six floats per row
-    std::int64_t factor;    ///< factors of K = J M'^-1 J^T
-    std::int64_t target;    ///< K^-1 times the right-hand side of the rows; one float per row
-    std::int64_t change;    ///< of the child body's velocity, six
-    std::int64_t mass;      ///< M': lower triangle
-    std::int64_t force;     ///< on the child body, from the nodes below it, six
-    std::int64_t kept;      ///< copy of the velocity while responses of closures are computed, six
-    std::int64_t pull;      ///< angular impulse of stiffened locks, applied at the first solve, three
-    std::int64_t taken;     ///< impulse of what has let go, applied by the next solve, six
-    std::int64_t in_use;    ///< see FigureBlock::rows_of() and for_each_acting(), one
-    std::int64_t acts_by;   ///< ActsBy of its limits, motors and springs, one of each
-    std::int64_t give;      ///< ActingRow::give, one per row; 0 of locks
+    std::int64_t jacobian;     ///< EqualityRows; once factored, the form that kernel_tree_rows.h keeps
+    std::int64_t response;     ///< M'^-1 J^T, six floats per row
+    std::int64_t factor;       ///< factors of K = J M'^-1 J^T
+    std::int64_t target;       ///< K^-1 times the right-hand side of the rows; one float per row
+    std::int64_t change;       ///< of the child body's velocity, six
+    std::int64_t mass;         ///< M': lower triangle
+    std::int64_t force;        ///< on the child body, from the nodes below it, six
+    std::int64_t kept;         ///< copy of the velocity while responses of closures are computed, six
+    std::int64_t pull;         ///< angular impulse of stiffened locks, applied at the first solve, three
+    std::int64_t taken;        ///< impulse of what has let go, applied by the next solve, six
+    std::int64_t in_use;       ///< see FigureBlock::rows_of() and for_each_acting(), one
+    std::int64_t acts_by;      ///< ActsBy of its limits, motors and springs, one of each
+    std::int64_t give;         ///< ActingRow::give_of_all(), one per row; 0 of locks
+    std::int64_t spring_give;  ///< ActingRow::give, one per row. At `give` in figures without rotors
+    std::int64_t rotor;        ///< ActingRow::rotor, one per row. Of figures with rotors only
     std::int64_t given;  ///< ActingRow::given, and give times what the spring has pushed since; one per row
     std::int64_t speed;  ///< EqualityRow::speed as act() found it; one per row
     std::int64_t
@@ -66,10 +68,11 @@ struct FigureNode {
         bool reversed;     ///< the child body is the joint's body a: errors and impulses change sign
     };
     Array<Lock> locks;
-    /// A limit or a motor. Sweeps decide whether it acts, and then the tree finds how much it pushes.
+    /// A limit, a motor or a spring. Sweeps decide whether it acts, and then the tree finds how much it pushes.
     struct Active {
         int joint;      ///< of the shape
         bool reversed;  ///< as of a lock
+        bool has_rotor;
     };
     Array<Active> actives;
     /// Whether the node has a single lock, whose first three rows hold a point on a point along x, y and z, and whose
@@ -86,6 +89,12 @@ struct FigureNode {
         const int of_points = 6 + rows_in_use + 3 * (rows_in_use - 3) + (row - 3);
         return jacobian + (hangs_by_point() ? std::int64_t{of_points} * block_lanes
                                             : std::int64_t{row} * row_floats + 10 * block_lanes);
+    }
+    /// Likewise, where its error is.
+    [[nodiscard]] std::int64_t error_of(int row) const
+    {
+        return jacobian + (hangs_by_point() ? std::int64_t{6 + row} * block_lanes
+                                            : std::int64_t{row} * row_floats + 9 * block_lanes);
     }
 };
 
@@ -113,6 +122,7 @@ struct FigureShape {
         int equalities;    ///< rows that may be solved exactly; 0 for limits, motors, springs
         bool locks_point;  ///< the first three of them hold a point on a point
         ActiveRow active_row;
+        bool has_rotor;
         bool in_tree = false;
     };
     Array<BodyKind> bodies;
@@ -120,7 +130,8 @@ struct FigureShape {
     Array<std::uint32_t> signature;  ///< these in numbers: figures with equal ones are copies
     Array<FigureNode> nodes;         ///< children before parents; empty unless locks are solved exactly
     Array<JointAtPoint> joints_at_points;
-    bool has_actives = false;    ///< a node has limits or motors
+    bool has_actives = false;    ///< a node has limits, motors, springs or rotors
+    bool has_rotors = false;     ///< a node has rotors
     std::int64_t exceeding = 0;  ///< with them: in which copies a motor has pushed harder than it may, one
     Array<FigureClosure> closures;
     int closure_rows = 0;
@@ -136,9 +147,13 @@ struct FigureShape {
     }
 };
 
+/// Which rotors a tree may leave to the sweeps, because no locks of the tree are between the same two bodies, or six rows are.
+/// Beside exact locks sweeps throw a light body that turns a heavier rotor.
+enum class RotorsBesideTree { allowed, refused };
+
 /// Builds the tree of all locks of a shape and the closures of its loops. Returns false and builds neither when there
-/// are no locks or too many rows of closures.
-bool build_tree(FigureShape& shape);
+/// are no locks, too many rows of closures, or refused rotors beside it.
+bool build_tree(FigureShape& shape, RotorsBesideTree rotors);
 /// How many locks a shape, for which build_tree() has found too many closures, may lose and still have too many, whichever
 /// locks its tree took then. Below 0 when that cannot be told from the pairs of bodies that are locked to each other.
 std::int64_t spare_loops_of(const FigureShape& shape);

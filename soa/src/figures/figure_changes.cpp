@@ -75,7 +75,8 @@ bool Figures::put_together(std::span<const JointCandidate> component, const Body
         if ((block == blocks_.end() || other->count < block->count) && fits(*other)) block = other;
     }
     if (block == blocks_.end()) {
-        if (members.is_exact[0] != 0 && build_tree(*members.shape_of(0))) return false;
+        if (members.is_exact[0] != 0 && build_tree(*members.shape_of(0), exact_.rotors_beside_trees()))
+            return false;
         const std::uint64_t shape = members.hash_of(0);
         const auto waiting = std::find_if(waiting_.begin(), waiting_.end(),
                                           [&](const Waiting& other) { return other.shape == shape; });

@@ -78,14 +78,15 @@ void act(const KernelContext& context, const FigureBlock& block, const FigureNod
             ? nullptr
             : block.system + block.shape->nodes[static_cast<std::size_t>(node.parent_node)].taken;
     const auto at_row = [&](std::int64_t array) { return block.system + array + block_lanes * row; };
+    float* const rotor = block.shape->has_rotors ? at_row(node.rotor) : nullptr;
     kernels->act(context, streams, which, block.body(joint.a), block.body(joint.b),
                  block.system + node.jacobian + FigureNode::row_floats * row, by,
-                 {at_row(node.give), at_row(node.given), at_row(node.speed)},
+                 {at_row(node.give), at_row(node.spring_give), rotor, at_row(node.given), at_row(node.speed)},
                  active.reversed ? of_child : of_parent, active.reversed ? of_parent : of_child, only);
 }
 
 /// Finds out which limits and motors of a node act in any copy, and adds their rows to those of the locks. One that pushes
-/// nowhere does not act.
+/// nowhere does not act; a rotor always does.
 void add_acting_rows(const KernelContext& context, const FigureBlock& block, const FigureNode& node)
 {
     int rows = node.rows;
@@ -95,7 +96,7 @@ void add_acting_rows(const KernelContext& context, const FigureBlock& block, con
         const FigureBlock::Joint& lanes = block.joints[active.joint];
         const float* impulses = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
         const std::int32_t count = lanes.streams.counts[lanes.block];
-        bool acts = false;
+        bool acts = active.has_rotor;
         for (int i = 0; i < lanes.kernels->active_impulses; ++i)
             acts = acts || any_of_lanes(impulses + i * block_lanes, count);
         if (acts) {
@@ -322,7 +323,11 @@ void begin_tree(const FigureBlock& block)
             // A spring's is the third; sweeps solve one beside a limit or motor that acts.
             for (int which = 0; which < lanes.kernels->active_impulses; ++which, impulses += block_lanes)
                 for (int i = 0; i < block_lanes; ++i)
-                    impulses[i] = by[i] > (which < 2 ? ActsBy::nothing : ActsBy::motor) ? 0.0F : impulses[i];
+                    impulses[i] = by[i] > (which < 2 ? ActsBy::rotor : ActsBy::motor) ? 0.0F : impulses[i];
+            if (active.has_rotor) {
+                float* const of_joint = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
+                std::fill_n(of_joint + RotorImpulse::change * block_lanes, block_lanes, 0.0F);
+            }
             // No spring has pushed in this substep.
             float* const speed_left = block.system + node.speed_left(row, block.rows_of(node));
             for (int i = 0; i < block_lanes; ++i) {

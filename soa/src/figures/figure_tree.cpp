@@ -20,8 +20,9 @@ std::size_t at(int index)
 /// of each node begin.
 class TreeBuilder {
   public:
-    explicit TreeBuilder(FigureShape& shape)
+    TreeBuilder(FigureShape& shape, RotorsBesideTree rotors)
         : shape_(shape),
+          rotors_(rotors),
           locks_on_(shape.bodies.size()),
           actives_on_(shape.bodies.size()),
           node_of_(shape.bodies.size(), none),
@@ -34,6 +35,7 @@ class TreeBuilder {
         hang_all_bodies();
         find_closures();
         if (closure_rows_ > most_closure_rows || nodes_.empty()) return false;
+        if (rotors_ == RotorsBesideTree::refused && has_rotor_beside()) return false;
         lay_out();
         hand_over();
         list_joints_at_points();
@@ -43,6 +45,7 @@ class TreeBuilder {
   private:
     static constexpr int none = -1;
     FigureShape& shape_;
+    RotorsBesideTree rotors_;
     Array<Array<int>> locks_on_;      ///< joints, by body
     Array<Array<int>> actives_on_;    ///< likewise, limits and motors
     Array<int> node_of_;              ///< by body
@@ -99,7 +102,7 @@ class TreeBuilder {
             }
         }
     }
-    /// Makes a node of all locks between the two bodies, and of their limits and motors, up to six rows.
+    /// Makes a node of all locks between the two bodies, and of their limits and motors, up to six rows. Rotors come first.
     void hang(int body, int parent)
     {
         FigureNode node{};
@@ -114,16 +117,28 @@ class TreeBuilder {
             node.rows += j.equalities;
         }
         node.most_rows = node.rows;
-        for (const int joint : actives_on_[at(body)]) {
-            const FigureShape::Joint& j = shape_.joints[at(joint)];
-            if (other_end(joint, body) != parent || node.rows == 0 || node.most_rows == most_rows) continue;
-            if (node.hangs_by_point() && j.active_row == ActiveRow::linear) continue;
-            node.actives.push_back({joint, j.a == body});
-            shape_.has_actives = true;
-            ++node.most_rows;
+        for (const bool has_rotor : {true, false}) {
+            for (const int joint : actives_on_[at(body)]) {
+                const FigureShape::Joint& j = shape_.joints[at(joint)];
+                if (j.has_rotor != has_rotor || other_end(joint, body) != parent || node.rows == 0 ||
+                    node.most_rows == most_rows ||
+                    (node.hangs_by_point() && j.active_row == ActiveRow::linear))
+                    continue;
+                is_in_node_[at(joint)] = 1;
+                node.actives.push_back({joint, j.a == body, has_rotor});
+                shape_.has_actives = true;
+                shape_.has_rotors = shape_.has_rotors || has_rotor;
+                ++node.most_rows;
+            }
         }
         node_of_[at(body)] = static_cast<int>(nodes_.size());
         nodes_.push_back(std::move(node));
+    }
+    [[nodiscard]] bool has_rotor_beside() const
+    {
+        for (std::size_t i = 0; i < shape_.joints.size(); ++i)
+            if (shape_.joints[i].has_rotor && is_in_node_[i] == 0) return true;
+        return false;
     }
     void find_closures()
     {
@@ -147,7 +162,11 @@ class TreeBuilder {
             node.response = take(6 * node.most_rows);
             node.factor = take(node.most_rows * (node.most_rows + 1) / 2);
             node.target = take(node.most_rows);
-            node.give = take(node.most_rows);
+            node.give = node.spring_give = take(node.most_rows);
+            if (shape_.has_rotors) {
+                node.spring_give = take(node.most_rows);
+                node.rotor = take(node.most_rows);
+            }
             node.tension = shape_.has_actives ? take(node.rows) : node.target;
             if (shape_.has_actives) node.taken = take(6);
             if (shape_.has_actives) {
@@ -199,9 +218,9 @@ class TreeBuilder {
 
 }  // namespace
 
-bool build_tree(FigureShape& shape)
+bool build_tree(FigureShape& shape, RotorsBesideTree rotors)
 {
-    return TreeBuilder(shape).build();
+    return TreeBuilder(shape, rotors).build();
 }
 
 std::int64_t spare_loops_of(const FigureShape& shape)

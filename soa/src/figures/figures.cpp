@@ -74,7 +74,7 @@ void Figures::find(std::span<const JointCandidate> joints, const BodySets& sets,
         // Too few copies, and nothing to be solved exactly.
         if (!is_exact && (is_large || copies.size() < std::size_t{fewest_copies})) continue;
         std::unique_ptr<FigureShape> shape = members.shape_of(copies.front());
-        const bool has_tree = is_exact && build_tree(*shape);
+        const bool has_tree = is_exact && build_tree(*shape, exact_.rotors_beside_trees());
         if (!has_tree && is_large) {
             spare_loops_ = std::min(spare_loops_, spare_loops_of(*shape));
             continue;

@@ -22,6 +22,11 @@ struct ExactFigures {
     bool all = false;
     float above_ratio = std::numeric_limits<float>::infinity();  ///< see bears_heavy_load()
     [[nodiscard]] bool any() const { return all || above_ratio < std::numeric_limits<float>::infinity(); }
+    /// Figures that are exact because they bear heavy loads would rather be swept.
+    [[nodiscard]] RotorsBesideTree rotors_beside_trees() const
+    {
+        return all ? RotorsBesideTree::allowed : RotorsBesideTree::refused;
+    }
     friend bool operator==(const ExactFigures&, const ExactFigures&) = default;
 };
 

@@ -185,7 +185,6 @@ bool bears_heavy_load(std::span<const JointCandidate* const> joints, const BodyS
     // In most figures no body is that much heavier than any other.
     MassSpan span;
     for (const JointCandidate* joint : joints) {
-        if (joint->has_rotor) return false;
         for (const BodyRow body : {joint->placement.a, joint->placement.b})
             if (is_rigid(body)) span.note(inverse_mass_of(body, bodies));
     }

@@ -30,8 +30,7 @@ struct MassSpan {
 
 /// Whether locks hang a heavy body on a light one: some body has, behind one of its locks, a body more than `ratio` times
 /// as heavy as itself, and behind another one also such a body, or a fixed one. A sweep passes only about 1 / ratio of
-/// such a load on. Loops of locks are cut open where a search of the bodies closes them. Never true of a figure with a rotor: a
-/// sweep beside exact locks throws a light body that turns a heavier rotor.
+/// such a load on. Loops of locks are cut open where a search of the bodies closes them.
 [[nodiscard]] bool bears_heavy_load(std::span<const JointCandidate* const> joints, const BodyStore& bodies,
                                     float ratio);
 

@@ -161,7 +161,7 @@ std::unique_ptr<FigureShape> Members::shape_of(std::size_t member) const
         shape->joints.push_back({p.type, p.a.kind(), p.b.kind(), p.colour,
                                  static_cast<int>(signature[3 * i + 1]),
                                  static_cast<int>(signature[3 * i + 2]), own[i]->equalities,
-                                 own[i]->locks_point, own[i]->active_row});
+                                 own[i]->locks_point, own[i]->active_row, own[i]->has_rotor});
     }
     shape->signature.assign(signature.begin(), signature.end());
     return shape;

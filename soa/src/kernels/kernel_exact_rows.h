@@ -36,28 +36,40 @@ struct ExactRowKernels : ConstraintBlocks<Type, kind_a, kind_b> {
             ActingRow<Lanes> acting =
                 Type::template act<Lanes>(context.step, load_row<Row>(bundle.row), substep, impulse,
                                           load_row<A>(body_a + lane), load_row<B>(body_b + lane));
+            const Lanes none(0);
+            Lanes speed = select(acting.by > Lanes(ActsBy::limit), acting.row.speed, none);
+            Lanes give_of_all = acting.give_of_all();
             if (only != nullptr) {
-                const auto changes = load_lanes(only + lane) > Lanes(0);
+                const auto changes = load_lanes(only + lane) > none;
+                const auto keep = [&](Lanes& now, const float* at) {
+                    now = select(changes, now, load_lanes(at + lane));
+                };
                 keep_where_not(changes, before, impulse);
-                acting.by = select(changes, acting.by, load_lanes(by + lane));
-                acting.taken_back = select(changes, acting.taken_back, Lanes(0));
-                acting.given = select(changes, acting.given, load_lanes(soft.given + lane));
+                keep(acting.by, by);
+                acting.taken_back = select(changes, acting.taken_back, none);
+                keep(acting.given, soft.given);
+                keep(speed, soft.speed);
+                keep(give_of_all, soft.give_of_all);
+                keep(acting.give, soft.give);
             }
-            const auto has_mass = substep.effective_mass > Lanes(0);
+            const auto has_mass = substep.effective_mass > none;
             substep.effective_mass = select(has_mass, substep.effective_mass, acting.effective_mass);
             leave_to_tree(substep, acting.by);
             store_row(impulse, bundle.impulse);
             store_row(substep, bundle.substep);
             const EqualityRow<Lanes>& whole = acting.row;
-            const Lanes none(0);
             const Lanes share = select(acting.by > none, Lanes(1), none);
-            const auto by_motor = acting.by > Lanes(ActsBy::limit);
-            const Lanes speed = select(by_motor, whole.speed, none);
+            const Lanes by_limit = select(acting.by > Lanes(ActsBy::limit), none,
+                                          select(acting.by > Lanes(ActsBy::rotor), Lanes(1), none));
             store_row(EqualityRow<Lanes>{share * whole.linear, share * whole.lever_a, share * whole.lever_b,
-                                         select(by_motor, none, share * whole.error), speed - acting.given},
+                                         by_limit * whole.error, speed - acting.given},
                       row + lane);
             store_lanes(acting.by, by + lane);
-            store_lanes(acting.give, soft.give + lane);
+            store_lanes(give_of_all, soft.give_of_all + lane);
+            if (soft.rotor != nullptr) {
+                store_lanes(acting.give, soft.give + lane);
+                store_lanes(acting.rotor, soft.rotor + lane);
+            }
             store_lanes(acting.given, soft.given + lane);
             store_lanes(speed, soft.speed + lane);
             const auto take = [&](float* from, const Lanes& push, const Vec3<Lanes>& lever) {
@@ -71,13 +83,15 @@ struct ExactRowKernels : ConstraintBlocks<Type, kind_a, kind_b> {
             take(taken_b, acting.taken_back, whole.lever_b);
         });
     }
-    /// Without an effective mass, sweeps change neither the limit nor the motor. A spring that acts leaves them to the sweeps.
+    /// Without an effective mass, sweeps change neither the limit nor the motor. A spring that acts leaves them to the sweeps, and
+    /// so does a rotor alone.
     static void leave_to_tree(Substep& substep, const Lanes& by)
     {
         const Lanes none(0);
         const auto by_spring = by > Lanes(ActsBy::motor);
         substep.effective_mass =
-            select(by > none, select(by_spring, substep.effective_mass, none), substep.effective_mass);
+            select(by > Lanes(ActsBy::rotor), select(by_spring, substep.effective_mass, none),
+                   substep.effective_mass);
         if constexpr (Type::has_motor) {
             substep.spring_effective_mass = select(by_spring, none, substep.spring_effective_mass);
             substep.spring_kept = select(by_spring, none, substep.spring_kept);

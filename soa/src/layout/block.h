@@ -155,9 +155,9 @@ struct ConstraintKernels {
                                 const float* body_b, float* rows);
     CopiesRows equality_rows = nullptr;
     int equality_count = 0;
-    /// The fields of these names of an ActingRow and its row, sixteen floats each.
+    /// The fields of these names of an ActingRow and its row, sixteen floats each. `rotor` is null in figures without rotors.
     struct SoftLanes {
-        float *give, *given, *speed;
+        float *give_of_all, *give, *rotor, *given, *speed;
     };
     /// Finds out what acts on the row of a limit, motor or spring, and writes its EqualityRow (0 where nothing does), with the
     /// speed that is left (speed - given), its ActsBy and SoftLanes, sixteen floats a field. What lets go is added to `taken_a`

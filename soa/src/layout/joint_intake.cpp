@@ -113,7 +113,7 @@ void JointIntake::take(SceneCore& scene, bool limits_exactly, ColourMasks& masks
         note(b, true);
         sets_.tie(a, b);
         *next = joint;
-        if (!limits_exactly) next->active_row = ActiveRow::none;
+        if (!limits_exactly && !joint.has_rotor) next->active_row = ActiveRow::none;
         ++next;
         return true;
     };
