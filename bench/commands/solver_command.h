@@ -58,8 +58,10 @@ struct SolverCommand {
                        "soft_step: stiffness of joints, as far as a substep can follow")
             ->capture_default_str();
         app.add_flag("--exact", settings.exact_joints, "soft_step: joints solved all at once");
-        app.add_option("--exact-above-ratio", settings.exact_above_ratio,
-                       "soft_step: joints solved all at once where a body hangs on one so many times lighter")
+        app.add_option(
+               "--exact-above-ratio", settings.exact_above_ratio,
+               "soft_step: joints solved all at once where a body hangs on one so many times lighter, or a "
+               "rotor turns such bodies")
             ->capture_default_str();
         app.add_flag("--exact-limits", settings.exact_limits,
                      "limits, motors and springs too, where joints are and while they act");

@@ -191,6 +191,46 @@ TEST(HeavyLoads, AreHeldWithTheirRotors)
     }
 }
 
+/// A rotor weighs as much as a load: K I_r, with the response K of the two bodies that it turns.
+TEST(HeavyLoads, MayBeRotors)
+{
+    const auto arm_with = [](std::size_t joint, float rotor) {
+        testing::Arm arm = testing::arm_of(3, 1, {});
+        TwistDriveDefinition geared = arm.definitions[joint];
+        geared.armature = rotor;
+        arm.scene.set_joint(arm.drives[joint], geared);
+        return arm;
+    };
+    const float inertia = 0.021F;  // of a link about z
+    struct Case {
+        std::size_t joint;
+        float rotor;
+        bool is_heavy;
+    };
+    for (const auto& [joint, rotor, is_heavy] :
+         {Case{0, 9.9F * inertia, false}, Case{0, 10.1F * inertia, true}, Case{1, 4.9F * inertia, false},
+          Case{1, 5.1F * inertia, true}}) {
+        const Scene scene = arm_with(joint, rotor).scene;
+        SolverSettings exact = above(never);
+        exact.exact_joints = true;
+        EXPECT_EQ(hash_after(scene, above(10)), hash_after(scene, is_heavy ? exact : above(never)))
+            << joint << " " << rotor;
+        EXPECT_NE(hash_after(scene, exact), hash_after(scene, above(never)));
+    }
+    // It gets heavy, and light again.
+    testing::Arm arm = arm_with(1, 0.01F);
+    Solver solver(above(10));
+    for (int step = 0; step < 12; ++step) {
+        TwistDriveDefinition geared = arm.definitions[1];
+        geared.armature = step % 6 < 3 ? 0.01F : 1.0F;
+        arm.scene.set_joint(arm.drives[1], geared);
+        Scene as_new = arm.scene;
+        solver.step(arm.scene, frame_time);
+        Solver(above(10)).step(as_new, frame_time);
+        ASSERT_EQ(arm.scene.state_hash(), as_new.state_hash()) << step;
+    }
+}
+
 /// Beside exact locks a sweep throws a light body that turns a heavier rotor, so figures with a rotor that no lock of the tree is
 /// beside are swept.
 TEST(HeavyLoads, AreSweptWhereARotorIsBesideTheTree)

@@ -131,7 +131,19 @@ struct Drive : ConstraintTraits {
                 drive.armature};
     }
 
-    static bool has_rotor(const Definition& drive) { return drive.armature > 0; }
+    /// Of an Euler angle, whose axis depends on the pose, at most.
+    static float rotor_load(const Definition& drive, const RigidMass& a, const RigidMass& b)
+    {
+        if (drive.armature == 0) return 0;
+        if (slides) return drive.armature * (a.inverse_mass + b.inverse_mass);
+        const auto response = [](const Sym3<float>& inverse_inertia, const JointFrame& frame) {
+            if (is_euler) return trace(inverse_inertia);
+            const Vec3<float> axis = axis_x(unit(frame.rotation));
+            return dot(axis, inverse_inertia * axis);
+        };
+        return drive.armature *
+               (response(a.inverse_inertia, drive.frame_a) + response(b.inverse_inertia, drive.frame_b));
+    }
 
     template <class Start, class Real, class A, class B>
     static auto prepare(const Start& start, const Parameters<Real>& drive, const Memory<Real>& memory,

@@ -108,11 +108,12 @@ struct ConstraintTraits {
     {
         return false;
     }
-    /// Whether a joint of this definition has a rotor, which exact joints hold: see equality_row.h.
+    /// Of a joint with a rotor of inertia I_r, which exact joints hold (see equality_row.h): K I_r, by how many times the rotor is
+    /// heavier than what it turns, with the response K of the two bodies alone. Else 0.
     template <class Definition>
-    static bool has_rotor(const Definition&)
+    static float rotor_load(const Definition&, const RigidMass& /*a*/, const RigidMass& /*b*/)
     {
-        return false;
+        return 0;
     }
     /// Whether a body that it ties to the world can never fly freely.
     template <class Definition>

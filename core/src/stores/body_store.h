@@ -73,6 +73,12 @@ struct BodyPose {
     PoseReal yaw = 0;
 };
 
+/// 1/kg, and 1/(kg m2) in the body's frame. Zeros for bodies that are not rigid or cannot move.
+struct RigidMass {
+    float inverse_mass = 0;
+    Sym3<float> inverse_inertia{};
+};
+
 /// The rows of one kind. Row 0 is the null body of padding lanes: it cannot move and nothing is tied to it.
 struct BodyRows {
     AlignedVector<float> velocity, delta, acceleration;
@@ -208,6 +214,12 @@ class BodyStore {
 
     /// For each slot the inverse mass, 1/kg; kept while the body is contained, for its revival.
     AlignedVector<float> inverse_masses;
+    [[nodiscard]] RigidMass rigid_mass_of(BodyRow body) const
+    {
+        if (body.kind() != BodyKind::rigid) return {};
+        const BodyRows& rigid = rows(BodyKind::rigid);
+        return {inverse_masses[rigid.slot[body.row()]], rigid.inverse_inertia[body.row()]};
+    }
     Array<float> inverse_inertias;  ///< likewise, planar only
     /// 1/(kg m2): at least the trace of the inverse inertia of each rigid body that there is or was; see torque.h.
     float largest_response = 0;

@@ -18,7 +18,7 @@ namespace motley {
     return p.colour | std::uint32_t{p.type} << 8 | static_cast<std::uint32_t>(p.a.kind()) << 16 |
            static_cast<std::uint32_t>(p.b.kind()) << 18 | static_cast<std::uint32_t>(joint.equalities) << 20 |
            static_cast<std::uint32_t>(joint.locks_point) << 24 |
-           static_cast<std::uint32_t>(joint.has_rotor) << 25;
+           static_cast<std::uint32_t>(joint.has_rotor()) << 25;
 }
 
 /// The joints on a moving body have different colours. So a walk over a figure that takes the joints of each body by colour

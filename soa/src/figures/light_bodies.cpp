@@ -42,7 +42,7 @@ class LockedBodies {
 
 float inverse_mass_of(BodyRow body, const BodyStore& bodies)
 {
-    return bodies.inverse_masses[bodies.rows(BodyKind::rigid).slot[body.row()]];
+    return bodies.rigid_mass_of(body).inverse_mass;
 }
 
 }  // namespace
@@ -179,6 +179,12 @@ struct LoadTree {
 };
 
 }  // namespace
+
+bool turns_heavy_rotor(std::span<const JointCandidate* const> joints, float ratio)
+{
+    return std::any_of(joints.begin(), joints.end(),
+                       [&](const JointCandidate* joint) { return joint->rotor_load > ratio; });
+}
 
 bool bears_heavy_load(std::span<const JointCandidate* const> joints, const BodyStore& bodies, float ratio)
 {

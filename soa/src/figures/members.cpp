@@ -37,18 +37,18 @@ Array<std::uint8_t> find_large_exact(std::span<const JointCandidate> joints, con
 {
     Array<std::uint8_t> may_be_exact(sets.size(), exact.all ? 1 : 0);
     if (exact.all || !exact.any()) return may_be_exact;
-    // A necessary condition of bears_heavy_load().
+    // Where it turns a heavy rotor, or meets a necessary condition of bears_heavy_load().
     Array<MassSpan> spans(sets.size());
-    const BodyRows& rigid = bodies.rows(BodyKind::rigid);
     for (const JointCandidate& joint : joints) {
         for (const BodyRow body : {joint.placement.a, joint.placement.b}) {
-            if (is_rigid(body))
-                spans[static_cast<std::size_t>(sets.root(body))].note(
-                    bodies.inverse_masses[rigid.slot[body.row()]]);
+            if (!is_rigid(body)) continue;
+            const auto root = static_cast<std::size_t>(sets.root(body));
+            spans[root].note(bodies.rigid_mass_of(body).inverse_mass);
+            if (joint.rotor_load > exact.above_ratio) may_be_exact[root] = 1;
         }
     }
-    std::transform(spans.begin(), spans.end(), may_be_exact.begin(),
-                   [&](const MassSpan& span) { return span.is_wider_than(exact.above_ratio) ? 1 : 0; });
+    for (std::size_t root = 0; root < spans.size(); ++root)
+        if (spans[root].is_wider_than(exact.above_ratio)) may_be_exact[root] = 1;
     return may_be_exact;
 }
 
@@ -108,7 +108,8 @@ Array<std::uint32_t> sort_by_component(std::span<const JointCandidate> joints, c
 bool is_wanted_exact(std::span<const JointCandidate* const> joints, const BodyStore& bodies,
                      const ExactFigures& exact)
 {
-    return exact.all || (exact.any() && bears_heavy_load(joints, bodies, exact.above_ratio));
+    return exact.all || (exact.any() && (turns_heavy_rotor(joints, exact.above_ratio) ||
+                                         bears_heavy_load(joints, bodies, exact.above_ratio)));
 }
 
 }  // namespace
@@ -161,7 +162,7 @@ std::unique_ptr<FigureShape> Members::shape_of(std::size_t member) const
         shape->joints.push_back({p.type, p.a.kind(), p.b.kind(), p.colour,
                                  static_cast<int>(signature[3 * i + 1]),
                                  static_cast<int>(signature[3 * i + 2]), own[i]->equalities,
-                                 own[i]->locks_point, own[i]->active_row, own[i]->has_rotor});
+                                 own[i]->locks_point, own[i]->active_row, own[i]->has_rotor()});
     }
     shape->signature.assign(signature.begin(), signature.end());
     return shape;

@@ -21,7 +21,8 @@ struct JointCandidate {
     ActiveRow active_row = ActiveRow::none;
     /// If one body is fixed, the joint keeps the other from moving along some direction.
     bool locks_place = false;
-    bool has_rotor = false;  ///< see ConstraintTraits
+    float rotor_load = 0;  ///< see ConstraintTraits
+    [[nodiscard]] bool has_rotor() const { return rotor_load > 0; }
     /// The moving body that the joint holds in place, with a fixed one; a fixed one if there is none.
     [[nodiscard]] BodyRow holds() const
     {

@@ -60,12 +60,13 @@ struct SolverSettings {
     bool exact_joints = false;
     /// soft_step: as `exact_joints`, but only in figures in which locks hang a heavy body on a light one: a
     /// body has, behind one lock, a body more than this many times as heavy, and behind another lock also such a body or a
-    /// static or kinematic one. Sweeps pass so little of such a load on that its joints part. Not in figures with an
-    /// armature. 1 or more; infinite: never. Ignored with `exact_joints`.
+    /// static or kinematic one; or in which an armature is more than this many times as heavy as the two bodies that it turns.
+    /// Sweeps pass so little of such a load on that its joints part, and rotors throw bodies. 1 or more; infinite: never.
+    /// Ignored with `exact_joints`.
     float exact_above_ratio = 10;
     /// Where locks are solved exactly: limits, motors and springs of drives, and swing limits, are solved with them while they act,
     /// exactly at any load, so that links of 1 kg hold and lift tons by them; sweeps alone let such limits and springs give way
-    /// without bound. Springs of other joints, drives with an armature, a spring beside a motor or a limit that acts, and what
+    /// without bound. Springs of other joints, a spring beside a motor or a limit that acts, and what
     /// is beyond six rows between two bodies are still swept, and so is all of this in nets. A row may begin to act, and a limit
     /// let go, a substep late; no motor or spring pushes harder than it may. Ragdolls whose limits act take 1.4 times as long
     /// as with exact_joints alone at one substep, 1.8 times at four.

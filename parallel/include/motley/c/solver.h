@@ -89,7 +89,7 @@ typedef struct motley_solver_settings {
     /// at any load. Default 0. Hosts of the first release do not have this field.
     motley_bool exact_limits;
     /// MOTLEY_SOFT_STEP: as exact_joints, but only in figures in which locks hang a body on one that is more than
-    /// this many times lighter; 1 or more, or infinite: never. Default 10. Hosts of the first release do not have this field.
+    /// this many times lighter, or an armature is so much heavier than what it turns; 1 or more, or infinite: never. Default 10. Hosts of the first release do not have this field.
     float exact_above_ratio;
 } motley_solver_settings;
 MOTLEY_DECLARE_DEFAULT(solver_settings)
