@@ -148,16 +148,14 @@ TEST(HeavyLoads, OfOneFigureLeaveOthersSwept)
     EXPECT_LT(chain.separation(), 1e-6);
 }
 
-/// With SolverSettings::exact_limits alone, limits of such figures bear the load too.
+/// Limits of such figures bear the load too.
 TEST(HeavyLoads, LeanOnLimits)
 {
     for (const double mass : {11.0, 1e3, 1e4}) {
         TwistDriveDefinition drive;
         drive.lower = 0, drive.upper = 1;
         testing::Arm arm = testing::arm_of(5, mass, drive);
-        SolverSettings settings = above(10);
-        settings.exact_limits = true;
-        Solver solver(settings);
+        Solver solver(above(10));
         testing::run(arm.scene, solver, 1);
         const Vec3<double> at = arm.scene.state(arm.load).position;
         EXPECT_LT(testing::length(at - Vec3<double>{arm.length(), 0, 0}), 1e-6) << mass;

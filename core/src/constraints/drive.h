@@ -298,27 +298,30 @@ struct Drive : ConstraintTraits {
             select(by_spring, -(soft.rate * (here.value - drive.spring_target)), drive.motor_speed);
         const Real give = select(by_spring, soft.give(), none);
         const Real given = give * impulse.spring - soft.rate * (here.value - substep.value);
+        const Real no_more =
+            select(by_spring, drive.spring_max_impulse, select(by_motor, most, Real(no_bound)));
         ActingRow<Real> out{{{none, none, none}, here.axis, here.axis, error, speed},
                             by,
                             select(is_usable, taken_back, none),
                             here.effective_mass,
                             give,
                             select(by_spring, given, none),
-                            rotor};
+                            rotor,
+                            -no_more,
+                            no_more};
         if constexpr (slides) {
             out.row.linear = here.axis;
             out.row.lever_a = here.levers.a;
             out.row.lever_b = here.levers.b;
+        } else {
+            // A limit pulls where it pushes less than the motor alone.
+            const Real pull = at.inwards * (at.motor_alone - bearable_pull<Real>(step, a, b));
+            const Real by_limit_alone = select(by_motor, none, by);
+            const auto may_pull = (drive.upper > drive.lower) & (by_limit_alone > Real(ActsBy::rotor));
+            out.least = select(may_pull, select(at.inwards > none, pull, out.least), out.least);
+            out.most = select(may_pull, select(at.inwards > none, out.most, pull), out.most);
         }
         return out;
-    }
-    template <class Real, class Row, class Impulse>
-    static Real exceeds(const Row& row, const Impulse& impulse, const Real& by)
-    {
-        const auto by_spring = by > Real(ActsBy::motor);
-        const Real pushes = absolute(select(by_spring, impulse.spring, impulse.motor));
-        const Real most = select(by_spring, row.in_sweep.spring_max_impulse, row.in_sweep.motor_max_impulse);
-        return select(by > Real(ActsBy::limit), select(pushes > most, Real(1), Real(0)), Real(0));
     }
     template <class Real, class Row, class A, class B>
     static void project(const StepConstants&, const Row& row, A& a, B& b)

@@ -135,7 +135,9 @@ struct SwingLimit : ConstraintTraits {
                 here.effective_mass,
                 none,
                 none,
-                none};
+                none,
+                -bearable_pull<Real>(step, a, b),
+                Real(no_bound)};
     }
     template <class Real, class Row, class A, class B>
     static void project(const StepConstants&, const Row& row, A& a, B& b)

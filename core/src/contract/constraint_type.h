@@ -50,7 +50,6 @@
 //     act<Real>(step, row, substep, impulse&, a, b) -> ActingRow      what acts now: there SubstepRow::effective_mass, or of a
 //                                                                     spring spring_effective_mass and spring_kept, is 0,
 //                                                                     so that sweeps leave it alone
-//     exceeds<Real>(row, impulse, by) -> Real                         with has_motor: 1 where it has pushed harder than it may
 //   likewise, each substep, with turns_about_points
 //     lengthen_step<Real>(substep&, a, arm_a, b, arm_b)               where a point is locked: see locked_point.h
 #pragma once

@@ -16,6 +16,7 @@
 
 #include "maths/scalar.h"
 #include "maths/step_constants.h"
+#include "maths/torque.h"
 #include "motley/core/vector.h"
 
 namespace motley {
@@ -59,6 +60,9 @@ struct ActingRow {
     /// spring has pushed already, and because its law is that of C when the substep began.
     Real given;
     Real rotor;  ///< kg or kg m2: I_r, or 0
+    /// N s or N m s, of what acts beside a rotor: beyond these it lets go at once, and the figure is solved again without it. The
+    /// limit and the motor of a row count together.
+    Real least, most;
     /// How far the row gives way when the spring and the rotor hold it together.
     [[nodiscard]] Real give_of_all() const
     {
@@ -67,6 +71,18 @@ struct ActingRow {
         return select(alone, Real(1) / select(alone, rotor, Real(1)), beside_spring);
     }
 };
+
+/// How hard a limit may pull, N m s, until it lets go when the figure is factored next, where bodies have moved on. What it has
+/// pulled is taken back there, about an axis that has turned by an angle of h w, and misses by that share of itself (torque.h).
+/// A limit that pulls harder lets go at once.
+template <class Real, class A, class B>
+Real bearable_pull(const StepConstants& step, const A& a, const B& b)
+{
+    const Real response = maximum(largest_response(a), largest_response(b));
+    return Real(0.25F * step.inverse_substep) / maximum(response, Real(1e-20F));
+}
+/// In place of a bound that there is not.
+inline constexpr float no_bound = 1e30F;
 
 /// C of a limit that acts, without a correction faster than push_out_speed.
 template <class Real>

@@ -97,7 +97,8 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
     // Method::direct corrects free flight itself (core/reference).
     if (settings.method != Method::direct) step.flight_excess = 0.5F * step.substep * dt;
     step.gravity = settings.gravity;
-    step.exact_limits = settings.exact_limits;
+    // Figures that are exact because of their loads hold them by limits too.
+    step.exact_limits = settings.exact_limits || !settings.exact_joints;
     step.restitution_threshold = settings.restitution_threshold;
     step.push_out_speed = settings.push_out_speed;
     // An impulse is a force times the substep, so a cached one is scaled when the substep changes; but never up,

@@ -8,6 +8,7 @@ namespace motley {
 
 /// Memory of the hooks of set_memory_hooks(), else of operator new. Throws std::bad_alloc where there is none.
 [[nodiscard]] void* allocate_memory(std::size_t bytes, std::size_t alignment);
+/// Does nothing for null.
 void release_memory(void* memory, std::size_t bytes, std::size_t alignment) noexcept;
 
 template <class T>

@@ -55,6 +55,7 @@ struct FigureNode {
     std::int64_t rotor;        ///< ActingRow::rotor, one per row. Of figures with rotors only
     std::int64_t given;  ///< ActingRow::given, and give times what the spring has pushed since; one per row
     std::int64_t speed;  ///< EqualityRow::speed as act() found it; one per row
+    std::int64_t least, most;  ///< of ActingRow, one per row
     std::int64_t
         tension;  ///< lambda of the last substep times its length, N s2; one per row of the locks. At `target` in
                   ///< figures whose nodes have no limits or motors
@@ -132,7 +133,7 @@ struct FigureShape {
     Array<JointAtPoint> joints_at_points;
     bool has_actives = false;    ///< a node has limits, motors, springs or rotors
     bool has_rotors = false;     ///< a node has rotors
-    std::int64_t exceeding = 0;  ///< with them: in which copies a motor has pushed harder than it may, one
+    std::int64_t exceeding = 0;  ///< with them: in which copies something has pushed harder than it may, one
     Array<FigureClosure> closures;
     int closure_rows = 0;
     std::int64_t closure_jacobian = 0, closure_factor = 0, closure_target = 0;  ///< like those of a node

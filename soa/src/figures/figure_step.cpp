@@ -81,7 +81,8 @@ void act(const KernelContext& context, const FigureBlock& block, const FigureNod
     float* const rotor = block.shape->has_rotors ? at_row(node.rotor) : nullptr;
     kernels->act(context, streams, which, block.body(joint.a), block.body(joint.b),
                  block.system + node.jacobian + FigureNode::row_floats * row, by,
-                 {at_row(node.give), at_row(node.spring_give), rotor, at_row(node.given), at_row(node.speed)},
+                 {at_row(node.give), at_row(node.spring_give), rotor, at_row(node.given), at_row(node.speed),
+                  at_row(node.least), at_row(node.most)},
                  active.reversed ? of_child : of_parent, active.reversed ? of_parent : of_child, only);
 }
 
@@ -171,23 +172,35 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
     kernels.factor(block);
 }
 
-/// Finds the copies in which a motor has pushed harder than it may. Null where none has.
+/// Finds the copies in which a motor, a spring or a limit has pushed harder than it may. Null where none has.
 const float* find_exceeding(const FigureBlock& block)
 {
     if (!block.shape->has_actives) return nullptr;
     float* const exceeding = block.system + block.shape->exceeding;
     std::fill_n(exceeding, block_lanes, 0.0F);
-    for_each_acting(block, [&](const FigureNode::Active& active, const float* by) {
-        const FigureBlock::Joint& lanes = block.joints[active.joint];
-        if (lanes.kernels->exceeds != nullptr)
-            lanes.kernels->exceeds(lanes.streams, lanes.block, by, exceeding);
-    });
+    for (const FigureNode& node : block.shape->nodes) {
+        block.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float* by) {
+            const FigureBlock::Joint& lanes = block.joints[active.joint];
+            const float* const limit = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
+            const bool has_motor = lanes.kernels->active_impulses > 1;
+            const float* const least = block.system + node.least + row * block_lanes;
+            const float* const most = block.system + node.most + row * block_lanes;
+            for (int i = 0; i < block_lanes; ++i) {
+                if (!(by[i] > ActsBy::rotor)) continue;
+                float pushed = limit[i];
+                if (has_motor)
+                    pushed =
+                        by[i] > ActsBy::motor ? limit[2 * block_lanes + i] : pushed + limit[block_lanes + i];
+                if (pushed < least[i] || pushed > most[i]) exceeding[i] = 1;
+            }
+        });
+    }
     return any_of_lanes(exceeding, block.count) ? exceeding : nullptr;
 }
 
-/// Solves the tree, and then again without the motors that it has made push harder than they may. These may be others then; two
-/// rounds leave few. A limit that pulls lets go when the tree is factored next, which gives no energy; but a motor that was
-/// too strong for a substep in each step would be too strong for ever.
+/// Solves the tree, and then again without the limits, motors and springs that it has made push harder than they may. These may
+/// be others then; two rounds leave few. (What is left lets go when the tree is factored next; but a motor that was too strong
+/// for a substep in each step would be too strong for ever.)
 void solve_within_bounds(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
                          float rate)
 {

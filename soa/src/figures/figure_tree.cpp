@@ -172,6 +172,8 @@ class TreeBuilder {
             if (shape_.has_actives) {
                 node.given = take(node.most_rows);
                 node.speed = take(node.most_rows);
+                node.least = take(node.most_rows);
+                node.most = take(node.most_rows);
             }
             node.in_use = take(1);
             node.acts_by = take(static_cast<int>(node.actives.size()));

@@ -51,6 +51,8 @@ struct ExactRowKernels : ConstraintBlocks<Type, kind_a, kind_b> {
                 keep(speed, soft.speed);
                 keep(give_of_all, soft.give_of_all);
                 keep(acting.give, soft.give);
+                keep(acting.least, soft.least);
+                keep(acting.most, soft.most);
             }
             const auto has_mass = substep.effective_mass > none;
             substep.effective_mass = select(has_mass, substep.effective_mass, acting.effective_mass);
@@ -66,6 +68,8 @@ struct ExactRowKernels : ConstraintBlocks<Type, kind_a, kind_b> {
                       row + lane);
             store_lanes(acting.by, by + lane);
             store_lanes(give_of_all, soft.give_of_all + lane);
+            store_lanes(acting.least, soft.least + lane);
+            store_lanes(acting.most, soft.most + lane);
             if (soft.rotor != nullptr) {
                 store_lanes(acting.give, soft.give + lane);
                 store_lanes(acting.rotor, soft.rotor + lane);
@@ -103,20 +107,6 @@ struct ExactRowKernels : ConstraintBlocks<Type, kind_a, kind_b> {
         const Lanes* const from = reinterpret_cast<const Lanes*>(&before);
         Lanes* const to = reinterpret_cast<Lanes*>(&now);
         for (int i = 0; i < fields_of<Fields>; ++i) to[i] = select(changes, to[i], from[i]);
-    }
-
-    static void exceeds(const BlockStreams& streams, std::int32_t block, const float* by, float* exceeding)
-    {
-        const int count = streams.counts[block];
-        const auto at = [&](float* stream, int floats) {
-            return stream + std::int64_t{block} * floats * block_lanes;
-        };
-        for (int lane = 0; lane < count; lane += Lanes_width) {
-            const Lanes now = Type::template exceeds<Lanes>(
-                load_row<Row>(at(streams.rows, fields_of<Row>) + lane),
-                load_row<Impulse>(at(streams.impulses, fields_of<Impulse>) + lane), load_lanes(by + lane));
-            store_lanes(maximum(now, load_lanes(exceeding + lane)), exceeding + lane);
-        }
     }
 
     static void set_aside(const BlockStreams& streams, std::int32_t block, const float* by)
@@ -161,7 +151,6 @@ struct ExactRowKernels : ConstraintBlocks<Type, kind_a, kind_b> {
         if constexpr (has_copies && Type::active_row != ActiveRow::none) {
             kernels.act = act;
             kernels.set_aside = set_aside;
-            if constexpr (Type::has_motor) kernels.exceeds = exceeds;
             kernels.active_impulses = Type::has_motor ? 3 : 1;
         }
     }

@@ -16,6 +16,7 @@ namespace {
 
 #include "kernels/kernel_tree_rows.h"
 
+#include "kernels/kernel_acting_rows.h"
 #include "kernels/kernel_elimination.h"
 #include "kernels/kernel_trees.h"
 

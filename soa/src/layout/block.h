@@ -157,7 +157,7 @@ struct ConstraintKernels {
     int equality_count = 0;
     /// The fields of these names of an ActingRow and its row, sixteen floats each. `rotor` is null in figures without rotors.
     struct SoftLanes {
-        float *give_of_all, *give, *rotor, *given, *speed;
+        float *give_of_all, *give, *rotor, *given, *speed, *least, *most;
     };
     /// Finds out what acts on the row of a limit, motor or spring, and writes its EqualityRow (0 where nothing does), with the
     /// speed that is left (speed - given), its ActsBy and SoftLanes, sixteen floats a field. What lets go is added to `taken_a`
@@ -168,9 +168,6 @@ struct ConstraintKernels {
                 float* taken_b, const float* only) = nullptr;
     /// After warm_start: leaves the rows on which something acts to the tree.
     void (*set_aside)(const BlockStreams&, std::int32_t block, const float* by) = nullptr;
-    /// After the tree has been solved: writes 1 into the lanes in which a motor or spring has pushed harder than it may. Null
-    /// for types without them.
-    void (*exceeds)(const BlockStreams&, std::int32_t block, const float* by, float* exceeding) = nullptr;
     int active_impulses = 0;  ///< how many impulses such a row has: see ConstraintTraits::active_row
     /// After warm_start, where the two bodies are held together at the point with these arms (three fields of sixteen floats):
     /// see locked_point.h. Null for types without such rows.

@@ -61,10 +61,10 @@ struct SolverSettings {
     /// soft_step: as `exact_joints`, but only in figures in which locks hang a heavy body on a light one: a
     /// body has, behind one lock, a body more than this many times as heavy, and behind another lock also such a body or a
     /// static or kinematic one; or in which an armature is more than this many times as heavy as the two bodies that it turns.
-    /// Sweeps pass so little of such a load on that its joints part, and rotors throw bodies. 1 or more; infinite: never.
-    /// Ignored with `exact_joints`.
+    /// Sweeps pass so little of such a load on that its joints part, and rotors throw bodies. Limits, motors and springs of
+    /// such figures are solved as with `exact_limits`. 1 or more; infinite: never. Ignored with `exact_joints`.
     float exact_above_ratio = 10;
-    /// Where locks are solved exactly: limits, motors and springs of drives, and swing limits, are solved with them while they act,
+    /// With `exact_joints`: limits, motors and springs of drives, and swing limits, are solved with the locks while they act,
     /// exactly at any load, so that links of 1 kg hold and lift tons by them; sweeps alone let such limits and springs give way
     /// without bound. Springs of other joints, a spring beside a motor or a limit that acts, and what
     /// is beyond six rows between two bodies are still swept, and so is all of this in nets. A row may begin to act, and a limit

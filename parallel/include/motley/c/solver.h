@@ -85,11 +85,11 @@ typedef struct motley_solver_settings {
     float sleep_speed;
     /// s, 0 to 1e9; to a step, and up to 7 steps more where islands move beside; default 0.5
     float sleep_after;
-    /// Where locks are solved exactly: solves limits, motors and springs of drives, and swing limits, with the locks while they act, exactly
+    /// With exact_joints: solves limits, motors and springs of drives, and swing limits, with the locks while they act, exactly
     /// at any load. Default 0. Hosts of the first release do not have this field.
     motley_bool exact_limits;
     /// MOTLEY_SOFT_STEP: as exact_joints, but only in figures in which locks hang a body on one that is more than
-    /// this many times lighter, or an armature is so much heavier than what it turns; 1 or more, or infinite: never. Default 10. Hosts of the first release do not have this field.
+    /// this many times lighter, or an armature is so much heavier than what it turns; and in these with exact_limits; 1 or more, or infinite: never. Default 10. Hosts of the first release do not have this field.
     float exact_above_ratio;
 } motley_solver_settings;
 MOTLEY_DECLARE_DEFAULT(solver_settings)
