@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <deque>
 #include <vector>
 
 namespace motley::reference {
@@ -41,7 +42,7 @@ struct RowGroup {
 /// low one and w <= 0 at the high one. Rows of a cone have no bounds of their own; at its edge w points against lambda.
 struct Problem {
     int bodies = 0;
-    std::vector<RowGroup> groups;
+    std::deque<RowGroup> groups;  ///< which are large, so that they had better not be moved when more come
 };
 
 struct Solution {
