@@ -254,7 +254,7 @@ struct Drive : ConstraintTraits {
     /// The limit acts once it is touched, while it pushes inwards harder than the motor alone; the motor acts while it has
     /// force left and does not arrive at the limit; and else the spring does, while it has force left. One row bears all
     /// three, so the impulse is all that of one; but sweeps solve a spring beside a limit that acts, or beside a motor, and a
-    /// limit beside a spring. A rotor always acts. Without SolverSettings::exact_limits nothing else does.
+    /// limit beside a spring. A rotor always acts; without StepConstants::exact_limits nothing else does.
     template <class Real, class Row, class Substep, class Impulse, class A, class B>
     static ActingRow<Real> act(const StepConstants& step, const Row& row, const Substep& substep,
                                Impulse& impulse, const A& a, const B& b)

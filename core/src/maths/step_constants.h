@@ -32,7 +32,7 @@ struct StepConstants {
     /// 1/s: the rate at which SolverSettings::exact_joints removes the error of locks. Soft steps remove all of it in a
     /// substep; relaxation then takes away the speed that this needed.
     float exact_rate = 0;
-    bool exact_limits = false;  ///< see SolverSettings
+    bool exact_limits = false;  ///< trees hold limits, motors and springs that act, and not only rotors
     Softness joint, contact, static_contact;
     float push_out_speed = 0;         ///< m/s
     float slop = 0;                   ///< m, penetration that is not corrected

@@ -155,7 +155,8 @@ struct ConstraintKernels {
                                 const float* body_b, float* rows);
     CopiesRows equality_rows = nullptr;
     int equality_count = 0;
-    /// The fields of these names of an ActingRow and its row, sixteen floats each. `rotor` is null in figures without rotors.
+    /// The fields of these names of an ActingRow and its row, sixteen floats each. `rotor` is null in figures without rotors, whose
+    /// `give` is at `give_of_all`.
     struct SoftLanes {
         float *give_of_all, *give, *rotor, *given, *speed, *least, *most;
     };

@@ -68,7 +68,7 @@ struct SolverSettings {
     /// exactly at any load, so that links of 1 kg hold and lift tons by them; sweeps alone let such limits and springs give way
     /// without bound. Springs of other joints, a spring beside a motor or a limit that acts, and what
     /// is beyond six rows between two bodies are still swept, and so is all of this in nets. A row may begin to act, and a limit
-    /// let go, a substep late; no motor or spring pushes harder than it may. Ragdolls whose limits act take 1.4 times as long
+    /// let go, a substep late; no motor or spring pushes harder than it may. Ragdolls whose limits act take 1.6 times as long
     /// as with exact_joints alone at one substep, 1.8 times at four.
     bool exact_limits = false;
     /// soft_step and sequential_impulse: contacts of an island, which are bodies that contacts connect, are solved all at
