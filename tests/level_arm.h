@@ -1,20 +1,32 @@
-// A level arm of light links that bears a load by drives, for tests of exact limits, motors and springs.
+// Light links with drives: a level arm that bears a load, and a chain afloat, for tests of exact limits, motors, springs and rotors.
 #pragma once
 
 #include <utility>
 #include <vector>
 
+#include "every_way.h"
 #include "rig.h"
 
 namespace motley::testing {
 
 inline constexpr double half_link = 0.25, g = 9.81;
 
-inline SolverSettings exact_limits(int substeps, Vec3<float> gravity = {0, -9.81F, 0})
+inline SolverSettings by_default(int substeps, Vec3<float> gravity = {0, -9.81F, 0})
 {
     SolverSettings settings = with_gravity(gravity);
-    settings.exact_joints = settings.exact_limits = true;
     settings.substeps = substeps;
+    return settings;
+}
+inline SolverSettings exact_joints(int substeps, Vec3<float> gravity = {0, -9.81F, 0})
+{
+    SolverSettings settings = by_default(substeps, gravity);
+    settings.exact_joints = true;
+    return settings;
+}
+inline SolverSettings exact_limits(int substeps, Vec3<float> gravity = {0, -9.81F, 0})
+{
+    SolverSettings settings = exact_joints(substeps, gravity);
+    settings.exact_limits = true;
     return settings;
 }
 
@@ -94,9 +106,29 @@ inline Arm arm_of(int count, double mass, const TwistDriveDefinition& drive, boo
     return arm;
 }
 
-/// The states of a body of these arms, which must be solved in lockstep, for a second.
-inline std::vector<BodyState> states_in_lockstep(Arm& arms, BodyId watched)
+/// Limits hold the arm along x, with the torques of statics.
+inline void expect_held_level(const Arm& arm, const ::testing::Message& what)
 {
+    const Vec3<double> at = arm.scene.state(arm.load).position;
+    EXPECT_LT(length(at - Vec3<double>{arm.length(), 0, 0}), 1e-6) << what;
+    for (std::size_t joint = 0; joint < arm.drives.size(); ++joint) {
+        const double torque =
+            std::abs(static_cast<double>(arm.scene.joint_report(arm.drives[joint]).torque.z));
+        EXPECT_NEAR(torque / arm.torque_at(joint), 1, 1e-3) << what << ", joint " << joint;
+    }
+}
+
+/// For a second, the states of the load of one of sixteen arms, which must be solved in lockstep. drive_of(which) are their drives.
+inline constexpr int watched_arm = 5;
+template <class DriveOf>
+std::vector<BodyState> states_of_watched(const DriveOf& drive_of)
+{
+    Arm arms;
+    BodyId watched{};
+    for (int i = 0; i < 16; ++i) {
+        add_arm(arms, 3, 100, drive_of(i), false, 5.0 * i);
+        if (i == watched_arm) watched = arms.load;
+    }
     Solver solver(exact_limits(4));
     std::vector<BodyState> states;
     for (int step = 0; step < 60; ++step) {
@@ -114,6 +146,97 @@ inline void expect_equal(const std::vector<BodyState>& one, const std::vector<Bo
         EXPECT_EQ(one[step].position.y, other[step].position.y) << step;
         EXPECT_EQ(one[step].linear_velocity.y, other[step].linear_velocity.y) << step;
     }
+}
+
+/// Arms with these drives have the same bits for every instruction set and thread count, in lockstep and swept by colour.
+template <class DriveOf>
+void expect_same_bits_of_arms(const DriveOf& drive_of)
+{
+    for (const bool sweeps : {false, true}) {
+        const auto run = [&](const SolverOptions& options) {
+            Arm arms;
+            for (int i = 0; i < 21; ++i) add_arm(arms, 3, 30 * (1 + i), drive_of(i), i % 2 == 0, 5.0 * i);
+            Solver solver(sweeps ? swept(exact_limits(2)) : exact_limits(2), options);
+            std::vector<std::uint64_t> hashes;
+            for (int step = 0; step < long_run(120, 20); ++step) {
+                EXPECT_EQ(solver.step(arms.scene, frame_time).status, StepStatus::done);
+                hashes.push_back(arms.scene.state_hash());
+            }
+            return hashes;
+        };
+        expect_same_bits(run);
+    }
+}
+
+/// Boxes of 50 and 1 kg in turn, hinged about z, afloat and spinning.
+class ChainAfloat {
+  public:
+    Scene scene;
+
+    template <class DriveOf>
+    explicit ChainAfloat(const DriveOf& drive_of)
+    {
+        for (int i = 0; i < 5; ++i) {
+            BodyDefinition link = box({0.5 * i, 0, 0}, static_cast<float>(mass_of(i)));
+            link.linear_velocity = {0.3F, -0.2F, 0.1F};
+            link.angular_velocity = {0, 0, i % 2 == 0 ? 1.0F : -1.0F};
+            links_.push_back(scene.add_body(link));
+            if (i == 0) continue;
+            HingeDefinition hinge{
+                links_[links_.size() - 2], links_.back(), {{0.25F, 0, 0}}, {{-0.25F, 0, 0}}};
+            hinge.frame_a.rotation = hinge.frame_b.rotation = axis_along(2);
+            scene.add_joint(hinge);
+            TwistDriveDefinition drive = drive_of(i);
+            drive.body_a = hinge.body_a, drive.body_b = hinge.body_b;
+            drive.frame_a = hinge.frame_a, drive.frame_b = hinge.frame_b;
+            scene.add_joint(drive);
+            rotors_.push_back(static_cast<double>(drive.armature));
+        }
+    }
+    struct Sums {
+        Vec3<double> p{}, l{};
+        double energy = 0;  ///< kinetic, of bodies and rotors
+    };
+    [[nodiscard]] Sums sums() const
+    {
+        Sums sum;
+        double before = 0;
+        for (std::size_t i = 0; i < links_.size(); ++i) {
+            const double m = mass_of(static_cast<int>(i));
+            const BodyState state = scene.state(links_[i]);
+            const Vec3<double> v = convert<double>(state.linear_velocity);
+            sum.p = sum.p + m * v;
+            sum.l = sum.l + angular_momentum(state, m, {0.1 * m, 0.2 * m, 0.25 * m});
+            const auto w = static_cast<double>(state.angular_velocity.z);
+            sum.energy += 0.5 * m * dot(v, v) + 0.5 * 0.25 * m * w * w;
+            if (i > 0) sum.energy += 0.5 * rotors_[i - 1] * (w - before) * (w - before);
+            before = w;
+        }
+        return sum;
+    }
+
+  private:
+    std::vector<BodyId> links_;
+    std::vector<double> rotors_;
+    static double mass_of(int link) { return link % 2 == 0 ? 50 : 1; }
+};
+
+/// Such a chain keeps its momenta and gains no energy in four seconds.
+template <class DriveOf>
+void expect_momenta_and_no_energy(const SolverSettings& settings, const DriveOf& drive_of)
+{
+    ChainAfloat chain(drive_of);
+    Solver solver(settings);
+    ASSERT_EQ(solver.step(chain.scene, 1e-6F).status, StepStatus::done);
+    const ChainAfloat::Sums before = chain.sums();
+    for (int step = 0; step < 240; ++step) {
+        ASSERT_EQ(solver.step(chain.scene, frame_time).status, StepStatus::done);
+        EXPECT_LT(chain.sums().energy, 1.001 * before.energy)
+            << settings.substeps << " substeps, step " << step;
+    }
+    const ChainAfloat::Sums now = chain.sums();
+    EXPECT_LT(length(now.p - before.p), 1e-5 * length(before.p)) << settings.substeps;
+    EXPECT_LT(length(now.l - before.l), 1e-4 * length(before.l)) << settings.substeps;
 }
 
 }  // namespace motley::testing

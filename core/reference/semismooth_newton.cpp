@@ -20,6 +20,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "block_system.h"
 #include "natural_map.h"
@@ -61,7 +62,7 @@ class Part {
     {
         units_.reserve(groups.size());
         for (RowGroup* group : groups) {
-            Unit unit{.group = group};
+            MappedGroup unit{.group = group};
             for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
                 const int body = group->bodies[side];
                 unit.bodies[side] = body < 0 ? -1 : place[static_cast<std::size_t>(body)];
@@ -70,7 +71,7 @@ class Part {
             units_.push_back(unit);
         }
         const double largest = prepare_scales();
-        for (Unit& unit : units_) {
+        for (MappedGroup& unit : units_) {
             for (Index i = 0; i < unit.scale.size(); ++i)
                 unit.scale(i) = unit.scale(i) > 1e-14 * largest ? 1 / unit.scale(i) : 0;
             const RowGroup& group = *unit.group;
@@ -83,7 +84,7 @@ class Part {
 
     double solve()
     {
-        for (Unit& unit : units_) {
+        for (MappedGroup& unit : units_) {
             if (!unit.group->offset.allFinite()) return fail();
             if (is_linear_ || !unit.group->lambda.allFinite()) unit.group->lambda.setZero();
             unit.offset = unit.group->offset;
@@ -91,19 +92,18 @@ class Part {
         accumulate();
         lay_out();
         iterate();
-        for (Unit& unit : units_) unit.group->lambda = unit.best;
+        for (MappedGroup& unit : units_) unit.group->lambda = unit.best;
         accumulate();
-        for (Unit& unit : units_) unit.offset = unit.group->offset;
+        for (MappedGroup& unit : units_) unit.offset = unit.group->offset;
         return look().violation;
     }
 
   private:
     static constexpr double unbounded = std::numeric_limits<double>::infinity();
-    using Unit = MappedGroup;
     struct Look {
         double violation, merit;
     };
-    std::vector<Unit> units_;
+    std::vector<MappedGroup> units_;
     int bodies_, nodes_;     ///< nodes: bodies, then joints
     bool is_linear_ = true;  ///< only equations
     double epsilon_ = 0, least_ = unbounded;
@@ -113,14 +113,14 @@ class Part {
 
     double fail()
     {
-        for (Unit& unit : units_) unit.group->lambda.setZero();
+        for (MappedGroup& unit : units_) unit.group->lambda.setZero();
         change.setZero();
         return unbounded;
     }
     double prepare_scales()
     {
         double largest = 0;
-        for (Unit& unit : units_) {
+        for (MappedGroup& unit : units_) {
             RowGroup& group = *unit.group;
             unit.scale = Column::Zero(group.size());
             for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
@@ -136,7 +136,7 @@ class Part {
         return largest;
     }
     auto of_body(VectorXd& y, int body) const { return y.segment<6>(6 * static_cast<Index>(body)); }
-    Column speed(const Unit& unit, VectorXd& y) const
+    Column speed(const MappedGroup& unit, VectorXd& y) const
     {
         Column sum = Column::Zero(unit.group->size());
         for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
@@ -145,7 +145,7 @@ class Part {
         }
         return sum;
     }
-    void push(const Unit& unit, const Column& lambda, VectorXd& y) const
+    void push(const MappedGroup& unit, const Column& lambda, VectorXd& y) const
     {
         for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
             if (unit.bodies[side] >= 0)
@@ -155,12 +155,12 @@ class Part {
     void accumulate()
     {
         change.setZero();
-        for (const Unit& unit : units_) push(unit, unit.group->lambda, change);
+        for (const MappedGroup& unit : units_) push(unit, unit.group->lambda, change);
     }
     void lay_out()
     {
         std::vector<std::pair<int, int>> pairs;
-        for (const Unit& unit : units_) {
+        for (const MappedGroup& unit : units_) {
             for (const int body : unit.bodies) {
                 if (unit.node >= 0 && body >= 0) pairs.emplace_back(body, unit.node);
             }
@@ -179,7 +179,7 @@ class Part {
     Look look()
     {
         Look all{0, 0};
-        for (Unit& unit : units_) {
+        for (MappedGroup& unit : units_) {
             const RowGroup& group = *unit.group;
             unit.w = unit.offset + speed(unit, change);
             if (group.softness.size() > 0) unit.w.noalias() += group.softness * group.lambda;
@@ -197,7 +197,7 @@ class Part {
     bool factor()
     {
         system_.reset();
-        for (Unit& unit : units_) {
+        for (MappedGroup& unit : units_) {
             linearise(unit, epsilon_);
             if (unit.node >= 0) {
                 enter_joint(unit);
@@ -207,7 +207,7 @@ class Part {
         }
         return system_.factor();
     }
-    void enter_joint(const Unit& unit)
+    void enter_joint(const MappedGroup& unit)
     {
         const int n = unit.group->size();
         system_.at(unit.node, unit.node).topLeftCorner(n, n) = unit.e;
@@ -218,7 +218,7 @@ class Part {
             system_.at(unit.bodies[side], unit.node).leftCols(n) -= unit.group->jacobian[side].transpose();
         }
     }
-    void enter_contact(const Unit& unit)
+    void enter_contact(const MappedGroup& unit)
     {
         for (std::size_t a = 0; a < RowGroup::most_bodies; ++a) {
             if (unit.bodies[a] < 0) continue;
@@ -234,7 +234,7 @@ class Part {
     bool find_step()
     {
         move_.setZero(6 * static_cast<Index>(nodes_));
-        for (const Unit& unit : units_) {
+        for (const MappedGroup& unit : units_) {
             if (unit.node >= 0) {
                 move_.segment(6 * static_cast<Index>(unit.node), unit.group->size()) = -unit.map;
             } else {
@@ -243,7 +243,7 @@ class Part {
         }
         system_.solve(move_);
         if (!move_.allFinite()) return false;
-        for (Unit& unit : units_) {
+        for (MappedGroup& unit : units_) {
             if (unit.node >= 0) {
                 unit.step = move_.segment(6 * static_cast<Index>(unit.node), unit.group->size());
             } else {
@@ -260,9 +260,9 @@ class Part {
         merits_.push_back(now.merit);
         const auto kept = static_cast<std::ptrdiff_t>(std::min(merits_.size(), memory));
         const double worst = *std::max_element(merits_.end() - kept, merits_.end());
-        for (Unit& unit : units_) unit.start = unit.group->lambda;
+        for (MappedGroup& unit : units_) unit.start = unit.group->lambda;
         for (double length = 1; length > 0.02; length /= 2) {
-            for (Unit& unit : units_) unit.group->lambda = unit.start + length * unit.step;
+            for (MappedGroup& unit : units_) unit.group->lambda = unit.start + length * unit.step;
             accumulate();
             const Look there = look();
             if (there.merit < (1 - 1e-4 * length) * worst) {
@@ -270,7 +270,7 @@ class Part {
                 return length;
             }
         }
-        for (Unit& unit : units_) unit.group->lambda = unit.start;
+        for (MappedGroup& unit : units_) unit.group->lambda = unit.start;
         accumulate();
         now = look();
         return 0;
@@ -279,7 +279,7 @@ class Part {
     /// rest is their solution in the least squares sense.
     void give_up_contradictions()
     {
-        for (Unit& unit : units_) {
+        for (MappedGroup& unit : units_) {
             for (int i = 0; i < unit.group->size(); ++i) {
                 if (unit.where[static_cast<std::size_t>(i)] == Where::inside && unit.scale(i) > 0)
                     unit.offset(i) += epsilon_ * unit.share(i) / unit.scale(i) * unit.step(i);
@@ -290,7 +290,7 @@ class Part {
     [[nodiscard]] bool contradicts(const Look& now) const
     {
         double left = 0;
-        for (const Unit& unit : units_) {
+        for (const MappedGroup& unit : units_) {
             for (int i = 0; i < unit.group->size(); ++i) {
                 if (unit.where[static_cast<std::size_t>(i)] == Where::inside && unit.scale(i) > 0)
                     left = std::max(left, std::abs(epsilon_ * unit.share(i) / unit.scale(i) * unit.step(i)));
@@ -332,7 +332,7 @@ class Part {
             const bool contradictory = has_step && is_linear_ && contradicts(now);
             const double length = has_step ? descend(now, descent.memory) : 0;
             if (contradictory && now.violation > std::max(0.5 * before, rounding)) {
-                for (Unit& unit : units_) unit.group->lambda = unit.start;
+                for (MappedGroup& unit : units_) unit.group->lambda = unit.start;
                 give_up_contradictions();
                 accumulate();
                 now = look();
@@ -353,7 +353,7 @@ class Part {
         epsilon_ = epsilon;
         for (int round = 0; round < rounds && least_ > enough; ++round) {
             if (!factor() || !find_step()) return;
-            for (Unit& unit : units_) unit.group->lambda += unit.step;
+            for (MappedGroup& unit : units_) unit.group->lambda += unit.step;
             accumulate();
             keep_best(look());
         }
@@ -362,18 +362,18 @@ class Part {
     {
         if (!(now.violation < least_)) return;
         least_ = now.violation;
-        for (Unit& unit : units_) unit.best = unit.group->lambda;
+        for (MappedGroup& unit : units_) unit.best = unit.group->lambda;
     }
     void go_back_to_best()
     {
-        for (Unit& unit : units_) unit.group->lambda = unit.best;
+        for (MappedGroup& unit : units_) unit.group->lambda = unit.best;
         accumulate();
         look();
     }
 
     void sweep()
     {
-        for (Unit& unit : units_) sweep_group(unit, change);
+        for (MappedGroup& unit : units_) sweep_group(unit, change);
     }
 };
 

@@ -383,7 +383,7 @@ FigureUse Solver::Impl::use_of_figures(const SceneCore& scene) const
                              (settings.exact_joints || !PlanRunner::sweeps_long(settings));
     ExactFigures exact{.all = possible && settings.exact_joints};
     if (settings.method == Method::soft_step && !exact.all) exact.above_ratio = settings.exact_above_ratio;
-    return {possible && in_lockstep, exact, exact.any() && (settings.exact_limits || !exact.all)};
+    return {possible && in_lockstep, exact, exact.any() && holds_limits(settings)};
 }
 
 /// Whether visit_patches_once() may rewrite the plan. Not where residuals are measured, by island or of the whole

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "every_way.h"
 #include "level_arm.h"
 
 namespace motley {
@@ -231,69 +230,22 @@ TEST(ExactSprings, AreStoppedByLimitsAndComeBack)
 
 TEST(ExactSprings, TakeNoMomentumAndGiveNoEnergy)
 {
-    // Heavy bodies with light ones between them, on springs, afloat and spinning.
-    for (const int substeps : {1, 4}) {
-        Scene scene;
-        std::vector<BodyId> links;
-        const auto mass_of = [](int i) { return i % 2 == 0 ? 50.0 : 1.0; };
-        for (int i = 0; i < 5; ++i) {
-            BodyDefinition link = testing::box({0.5 * i, 0, 0}, static_cast<float>(mass_of(i)));
-            link.linear_velocity = {0.3F, -0.2F, 0.1F};
-            link.angular_velocity = {0, 0, i % 2 == 0 ? 1.0F : -1.0F};
-            links.push_back(scene.add_body(link));
-            if (i == 0) continue;
-            HingeDefinition hinge{links[links.size() - 2], links.back(), {{0.25F, 0, 0}}, {{-0.25F, 0, 0}}};
-            hinge.frame_a.rotation = hinge.frame_b.rotation = testing::axis_along(2);
-            scene.add_joint(hinge);
-            TwistDriveDefinition drive = spring(500, i % 2 == 0 ? 5 : 0);
-            drive.body_a = hinge.body_a, drive.body_b = hinge.body_b;
-            drive.frame_a = hinge.frame_a, drive.frame_b = hinge.frame_b;
-            scene.add_joint(drive);
-        }
-        struct Sums {
-            Vec3<double> p{}, l{};
-            double energy = 0;
-        };
-        const auto sums = [&] {
-            Sums sum;
-            for (int i = 0; i < 5; ++i) {
-                const double m = mass_of(i);
-                const BodyState state = scene.state(links[static_cast<std::size_t>(i)]);
-                const Vec3<double> v = convert<double>(state.linear_velocity);
-                sum.p = sum.p + m * v;
-                sum.l = sum.l + testing::angular_momentum(state, m, {0.1 * m, 0.2 * m, 0.25 * m});
-                const auto w = static_cast<double>(state.angular_velocity.z);
-                sum.energy += 0.5 * m * dot(v, v) + 0.5 * 0.25 * m * w * w;
-            }
-            return sum;
-        };
-        Solver solver(exact_limits(substeps, {}));
-        ASSERT_EQ(solver.step(scene, 1e-6F).status, StepStatus::done);
-        const Sums before = sums();
-        for (int step = 0; step < 240; ++step) {
-            ASSERT_EQ(solver.step(scene, frame_time).status, StepStatus::done);
-            EXPECT_LT(sums().energy, 1.001 * before.energy) << substeps << " substeps, step " << step;
-        }
-        const Sums now = sums();
-        EXPECT_LT(testing::length(now.p - before.p), 1e-5 * testing::length(before.p)) << substeps;
-        EXPECT_LT(testing::length(now.l - before.l), 1e-4 * testing::length(before.l)) << substeps;
-    }
+    for (const int substeps : {1, 4})
+        testing::expect_momenta_and_no_energy(exact_limits(substeps, {}),
+                                              [](int i) { return spring(500, i % 2 == 0 ? 5 : 0); });
 }
 
 /// Sixteen arms are solved in lockstep. One has the same bits whether the springs of the others act, let go or do not exist.
 TEST(ExactSprings, OfAFigureDoNotDependOnTheOtherLanes)
 {
     const auto run = [](float stiffness, float most) {
-        testing::Arm arms;
-        BodyId watched{};
-        for (int i = 0; i < 16; ++i) {
+        return testing::states_of_watched([&](int i) {
+            const bool is_watched = i == testing::watched_arm;
             TwistDriveDefinition drive =
-                spring(i == 5 ? 2e4 : static_cast<double>(stiffness), i == 5 ? 1e3 : 0);
-            drive.spring_max_force = i == 5 ? 3000 : most;
-            testing::add_arm(arms, 3, 100, drive, false, 5.0 * i);
-            if (i == 5) watched = arms.load;
-        }
-        return testing::states_in_lockstep(arms, watched);
+                spring(is_watched ? 2e4 : static_cast<double>(stiffness), is_watched ? 1e3 : 0);
+            drive.spring_max_force = is_watched ? 3000 : most;
+            return drive;
+        });
     };
     const std::vector<BodyState> among_stiff = run(1e5F, 1e9F);
     for (const std::vector<BodyState>& among : {run(0, 1e9F), run(1e5F, 200)}) {
@@ -303,25 +255,12 @@ TEST(ExactSprings, OfAFigureDoNotDependOnTheOtherLanes)
 
 TEST(ExactSprings, HaveTheSameBitsForEveryInstructionSetAndThreadCount)
 {
-    for (const bool sweeps : {false, true}) {
-        const auto run = [&](const SolverOptions& options) {
-            testing::Arm arms;
-            for (int i = 0; i < 21; ++i) {
-                TwistDriveDefinition drive = spring(1e4 * (1 + i % 4), 300 * (i % 3));
-                drive.spring_max_force = i % 5 == 0 ? 1000 : 1e9F;
-                drive.lower = -0.1F, drive.upper = 0.5F;
-                testing::add_arm(arms, 3, 30 * (1 + i), drive, i % 2 == 0, 5.0 * i);
-            }
-            Solver solver(sweeps ? testing::swept(exact_limits(2)) : exact_limits(2), options);
-            std::vector<std::uint64_t> hashes;
-            for (int step = 0; step < testing::long_run(120, 20); ++step) {
-                EXPECT_EQ(solver.step(arms.scene, frame_time).status, StepStatus::done);
-                hashes.push_back(arms.scene.state_hash());
-            }
-            return hashes;
-        };
-        testing::expect_same_bits(run);
-    }
+    testing::expect_same_bits_of_arms([](int i) {
+        TwistDriveDefinition drive = spring(1e4 * (1 + i % 4), 300 * (i % 3));
+        drive.spring_max_force = i % 5 == 0 ? 1000 : 1e9F;
+        drive.lower = -0.1F, drive.upper = 0.5F;
+        return drive;
+    });
 }
 
 }  // namespace

@@ -157,13 +157,7 @@ TEST(HeavyLoads, LeanOnLimits)
         testing::Arm arm = testing::arm_of(5, mass, drive);
         Solver solver(above(10));
         testing::run(arm.scene, solver, 1);
-        const Vec3<double> at = arm.scene.state(arm.load).position;
-        EXPECT_LT(testing::length(at - Vec3<double>{arm.length(), 0, 0}), 1e-6) << mass;
-        for (std::size_t joint = 0; joint < arm.drives.size(); ++joint) {
-            const double torque =
-                std::abs(static_cast<double>(arm.scene.joint_report(arm.drives[joint]).torque.z));
-            EXPECT_NEAR(torque / arm.torque_at(joint), 1, 1e-3) << mass << ", joint " << joint;
-        }
+        testing::expect_held_level(arm, ::testing::Message() << mass << " kg");
     }
 }
 

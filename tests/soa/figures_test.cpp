@@ -98,25 +98,45 @@ TEST(FigureTree, EveryLockIsInTheTreeOrClosesALoopOnce)
 TEST(FigureTree, NumbersOfNodesDoNotOverlap)
 {
     Random random(12);
+    int with_actives = 0, with_rotors = 0;
     for (int trial = 0; trial < 500; ++trial) {
         FigureShape shape = random_shape(random);
+        // In every second figure joints without locks have limits or rotors.
+        for (FigureShape::Joint& joint : shape.joints) {
+            if (joint.equalities > 0 || trial % 2 == 0) continue;
+            joint.active_row = ActiveRow::angular;
+            joint.has_rotor = random.below(2) == 0;
+        }
         if (!build_tree(shape, RotorsBesideTree::allowed)) continue;
         std::vector<std::pair<std::int64_t, std::int64_t>> parts;
         const auto add = [&](std::int64_t begin, std::int64_t floats) {
             if (floats > 0) parts.emplace_back(begin, begin + floats * block_lanes);
         };
         for (const FigureNode& node : shape.nodes) {
-            add(node.jacobian, FigureNode::row_floats / block_lanes * node.rows);
-            add(node.response, 6 * node.rows);
-            add(node.factor, node.rows * (node.rows + 1) / 2);
-            add(node.target, node.rows);
-            add(node.give, node.rows);
+            const int rows = node.most_rows;
+            add(node.jacobian, FigureNode::row_floats / block_lanes * rows);
+            add(node.response, 6 * rows);
+            add(node.factor, rows * (rows + 1) / 2);
+            for (const std::int64_t a_row_each : {node.target, node.give}) add(a_row_each, rows);
+            add(node.in_use, 1);
+            add(node.acts_by, static_cast<std::int64_t>(node.actives.size()));
+            if (shape.has_actives) {
+                add(node.tension, node.rows);
+                add(node.taken, 6);
+                for (const std::int64_t a_row_each : {node.given, node.speed, node.least, node.most})
+                    add(a_row_each, rows);
+            }
+            if (shape.has_rotors)
+                for (const std::int64_t a_row_each : {node.spring_give, node.rotor}) add(a_row_each, rows);
             add(node.change, 6);
             add(node.mass, 21);
             add(node.force, 6);
             add(node.kept, 6);
             add(node.pull, 3);
         }
+        if (shape.has_actives) add(shape.exceeding, 1);
+        with_actives += shape.has_actives ? 1 : 0;
+        with_rotors += shape.has_rotors ? 1 : 0;
         add(shape.closure_jacobian, FigureNode::row_floats / block_lanes * shape.closure_rows);
         add(shape.closure_factor, shape.closure_rows * (shape.closure_rows + 1) / 2);
         add(shape.closure_target, shape.closure_rows);
@@ -124,6 +144,8 @@ TEST(FigureTree, NumbersOfNodesDoNotOverlap)
         for (std::size_t i = 0; i + 1 < parts.size(); ++i) ASSERT_LE(parts[i].second, parts[i + 1].first);
         ASSERT_LE(parts.back().second, shape.system_floats);
     }
+    EXPECT_GT(with_actives, 50);
+    EXPECT_GT(with_rotors, 20);
 }
 
 /// Joints between random bodies of a few components, coloured in their order.
@@ -164,8 +186,8 @@ TEST(Figures, EveryJointIsPlacedOnceAndEveryLaneIsItsOwnCopys)
         const std::uint32_t rows = 30 + static_cast<std::uint32_t>(random.below(400));
         const std::vector<JointCandidate> joints = random_heap(random, rows);
         BodyStore bodies;
-        bodies.rows(BodyKind::rigid).slot.assign(rows, 0);
-        bodies.rows(BodyKind::fixed).slot.assign(2, 0);  // the null row and the ground
+        while (bodies.rows(BodyKind::rigid).size() < rows) bodies.add({});
+        bodies.add({.motion = BodyMotion::static_body});  // the ground
         BodySets sets;
         sets.reset([&](BodyKind kind) { return bodies.rows(kind).size(); });
         for (const JointCandidate& joint : joints) sets.tie(joint.placement.a, joint.placement.b);

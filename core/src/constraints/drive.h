@@ -82,7 +82,7 @@ struct Drive : ConstraintTraits {
     };
     template <class Real, BodyKind a, BodyKind b>
     struct Impulse {
-        Real limit, motor;  ///< these five in this order for exact joints
+        Real limit, motor;  ///< all five in the order of ConstraintTraits::active_row
         Real spring;
         /// m/s or rad/s, of the rotor's speed in the substep. I_r times it is what the rotor took from the bodies.
         Real rotor_change;
@@ -132,17 +132,18 @@ struct Drive : ConstraintTraits {
     }
 
     /// Of an Euler angle, whose axis depends on the pose, at most.
-    static float rotor_load(const Definition& drive, const RigidMass& a, const RigidMass& b)
+    static float rotor_load(const Definition& drive, const BodyStore& bodies)
     {
         if (drive.armature == 0) return 0;
-        if (slides) return drive.armature * (a.inverse_mass + b.inverse_mass);
-        const auto response = [](const Sym3<float>& inverse_inertia, const JointFrame& frame) {
-            if (is_euler) return trace(inverse_inertia);
+        const auto response = [&](BodyId body, const JointFrame& frame) {
+            const RigidMass mass = bodies.rigid_mass_of(bodies.row_of(body));
+            if (slides) return mass.inverse_mass;
+            if (is_euler) return trace(mass.inverse_inertia);
             const Vec3<float> axis = axis_x(unit(frame.rotation));
-            return dot(axis, inverse_inertia * axis);
+            return dot(axis, mass.inverse_inertia * axis);
         };
         return drive.armature *
-               (response(a.inverse_inertia, drive.frame_a) + response(b.inverse_inertia, drive.frame_b));
+               (response(drive.body_a, drive.frame_a) + response(drive.body_b, drive.frame_b));
     }
 
     template <class Start, class Real, class A, class B>
@@ -304,11 +305,11 @@ struct Drive : ConstraintTraits {
                             by,
                             select(is_usable, taken_back, none),
                             here.effective_mass,
+                            -no_more,
+                            no_more,
                             give,
                             select(by_spring, given, none),
-                            rotor,
-                            -no_more,
-                            no_more};
+                            rotor};
         if constexpr (slides) {
             out.row.linear = here.axis;
             out.row.lever_a = here.levers.a;

@@ -133,9 +133,6 @@ struct SwingLimit : ConstraintTraits {
                 by,
                 impulse.limit - before,
                 here.effective_mass,
-                none,
-                none,
-                none,
                 -bearable_pull<Real>(step, a, b),
                 Real(no_bound)};
     }

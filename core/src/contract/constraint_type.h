@@ -110,7 +110,7 @@ struct ConstraintTraits {
     /// Of a joint with a rotor of inertia I_r, which exact joints hold (see equality_row.h): K I_r, by how many times the rotor is
     /// heavier than what it turns, with the response K of the two bodies alone. Else 0.
     template <class Definition>
-    static float rotor_load(const Definition&, const RigidMass& /*a*/, const RigidMass& /*b*/)
+    static float rotor_load(const Definition&, const BodyStore&)
     {
         return 0;
     }

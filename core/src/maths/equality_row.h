@@ -42,6 +42,12 @@ enum class ActiveRow : std::uint8_t {
 struct ActsBy {
     static constexpr float nothing = 0, rotor = 1, limit = 2, motor = 3, spring = 4;
 };
+/// Whether nothing but a rotor acts.
+template <class Real>
+auto is_rotor_alone(const Real& by)
+{
+    return (by > Real(ActsBy::nothing)) & (Real(ActsBy::limit) > by);
+}
 
 /// Where the Impulse of a type with a motor has a rotor, after the impulses of limit, motor and spring: what the substep has added
 /// to its speed, and that speed.
@@ -55,26 +61,27 @@ struct ActingRow {
     Real by;                ///< ActsBy
     Real taken_back;  ///< N s or N m s, to be added along the row: what has pulled or pushed too hard lets go
     Real effective_mass;  ///< K^-1 of the two bodies alone, as in SubstepRow
-    Real give;            ///< of a spring: see SoftRow; else 0
-    /// m/s or rad/s, of a spring whose substep has begun: by how much `speed` is too high for what is left of it, because the
-    /// spring has pushed already, and because its law is that of C when the substep began.
-    Real given;
-    Real rotor;  ///< kg or kg m2: I_r, or 0
     /// N s or N m s, of what acts beside a rotor: beyond these it lets go at once, and the figure is solved again without it. The
     /// limit and the motor of a row count together.
     Real least, most;
+    Real give = Real(0);  ///< of a spring: see SoftRow; else 0
+    /// m/s or rad/s, of a spring whose substep has begun: by how much `speed` is too high for what is left of it, because the
+    /// spring has pushed already, and because its law is that of C when the substep began.
+    Real given = Real(0);
+    Real rotor = Real(0);  ///< kg or kg m2: I_r, or 0
     /// How far the row gives way when the spring and the rotor hold it together.
     [[nodiscard]] Real give_of_all() const
     {
-        const auto alone = (by > Real(0)) & (Real(ActsBy::limit) > by);
+        const auto alone = is_rotor_alone(by);
         const Real beside_spring = give / (Real(1) + give * rotor);
         return select(alone, Real(1) / select(alone, rotor, Real(1)), beside_spring);
     }
 };
 
-/// How hard a limit may pull, N m s, until it lets go when the figure is factored next, where bodies have moved on. What it has
-/// pulled is taken back there, about an axis that has turned by an angle of h w, and misses by that share of itself (torque.h).
-/// A limit that pulls harder lets go at once.
+/// How hard a limit may pull, N m s, until the figure is factored next. There it lets go and its pull T is taken back, but bodies
+/// have moved on: its axis has turned by an angle of h w, with the substep h and the angular velocity w. What is missed changes
+/// the lighter body's w by up to h T tr I^-1 of itself (see torque.h), here at most a quarter. A limit that pulls harder lets go
+/// at once.
 template <class Real, class A, class B>
 Real bearable_pull(const StepConstants& step, const A& a, const B& b)
 {

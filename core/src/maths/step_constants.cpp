@@ -88,6 +88,11 @@ StepConstants relaxing(StepConstants step)
     return step;
 }
 
+bool holds_limits(const SolverSettings& settings)
+{
+    return settings.exact_limits || !settings.exact_joints;
+}
+
 StepConstants step_constants(const SolverSettings& settings, float dt, float last_substep)
 {
     StepConstants step;
@@ -97,8 +102,7 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
     // Method::direct corrects free flight itself (core/reference).
     if (settings.method != Method::direct) step.flight_excess = 0.5F * step.substep * dt;
     step.gravity = settings.gravity;
-    // Figures that are exact because of their loads hold them by limits too.
-    step.exact_limits = settings.exact_limits || !settings.exact_joints;
+    step.exact_limits = holds_limits(settings);
     step.restitution_threshold = settings.restitution_threshold;
     step.push_out_speed = settings.push_out_speed;
     // An impulse is a force times the substep, so a cached one is scaled when the substep changes; but never up,

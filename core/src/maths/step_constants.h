@@ -32,7 +32,7 @@ struct StepConstants {
     /// 1/s: the rate at which SolverSettings::exact_joints removes the error of locks. Soft steps remove all of it in a
     /// substep; relaxation then takes away the speed that this needed.
     float exact_rate = 0;
-    bool exact_limits = false;  ///< trees hold limits, motors and springs that act, and not only rotors
+    bool exact_limits = false;  ///< holds_limits()
     Softness joint, contact, static_contact;
     float push_out_speed = 0;         ///< m/s
     float slop = 0;                   ///< m, penetration that is not corrected
@@ -41,6 +41,10 @@ struct StepConstants {
     float projection_rate = 0;        ///< share of a contact's penetration removed by a projection
     Vec3<float> gravity{};
 };
+
+/// Whether trees hold limits, motors and springs: where the host asks for it, and in figures that are exact because of their loads,
+/// which would hang on swept ones.
+bool holds_limits(const SolverSettings& settings);
 
 /// The constants of relaxation: rigid, without bias and without a bound on push-out. With them `solve` relaxes.
 StepConstants relaxing(StepConstants step);

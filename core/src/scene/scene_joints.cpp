@@ -302,10 +302,8 @@ void Scene::set_joint(ConstraintId joint, const Definition& definition)
     core_->wake_island(definition.body_a.slot);
     core_->wake_island(definition.body_b.slot);
     // Locks and other joints are laid out differently, and so are rotors.
-    const RigidMass mass_a = core_->bodies.rigid_mass_of(core_->bodies.row_of(definition.body_a)),
-                    mass_b = core_->bodies.rigid_mass_of(core_->bodies.row_of(definition.body_b));
     if (Type::is_equality(definition) != Type::is_equality(now) ||
-        Type::rotor_load(definition, mass_a, mass_b) != Type::rotor_load(now, mass_a, mass_b))
+        Type::rotor_load(definition, core_->bodies) != Type::rotor_load(now, core_->bodies))
         core_->joints->change_altogether();
     store.define(index, definition);
 }

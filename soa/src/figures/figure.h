@@ -148,8 +148,8 @@ struct FigureShape {
     }
 };
 
-/// Which rotors a tree may leave to the sweeps, because no locks of the tree are between the same two bodies, or six rows are.
-/// Beside exact locks sweeps throw a light body that turns a heavier rotor.
+/// Whether a tree may leave rotors to the sweeps: those between two bodies that no lock of the tree joins, or that six rows of it
+/// join already. Beside exact locks sweeps throw a light body that turns a heavier rotor.
 enum class RotorsBesideTree { allowed, refused };
 
 /// Builds the tree of all locks of a shape and the closures of its loops. Returns false and builds neither when there
@@ -171,6 +171,11 @@ struct FigureBlock {
         const ConstraintKernels* kernels;
         BlockStreams streams;
         std::int32_t block;
+        [[nodiscard]] std::int64_t impulse_floats() const
+        {
+            return std::int64_t{kernels->impulse_floats} * block_lanes;
+        }
+        [[nodiscard]] float* impulses() const { return streams.impulses + block * impulse_floats(); }
     };
     const Joint* joints = nullptr;  ///< in the order of those of the shape
     struct Contact {

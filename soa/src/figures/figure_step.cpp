@@ -56,11 +56,6 @@ void add_up(const KernelContext& context, const FigureBlock& block)
     }
 }
 
-std::int64_t impulse_floats(const FigureBlock::Joint& joint)
-{
-    return std::int64_t{joint.kernels->impulse_floats} * block_lanes;
-}
-
 bool any_of_lanes(const float* lanes, std::int32_t count)
 {
     return std::any_of(lanes, lanes + count, [](float value) { return value != 0; });
@@ -95,7 +90,7 @@ void add_acting_rows(const KernelContext& context, const FigureBlock& block, con
     float* row = block.system + node.in_use;
     for (const FigureNode::Active& active : node.actives) {
         const FigureBlock::Joint& lanes = block.joints[active.joint];
-        const float* impulses = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
+        const float* impulses = lanes.impulses();
         const std::int32_t count = lanes.streams.counts[lanes.block];
         bool acts = active.has_rotor;
         for (int i = 0; i < lanes.kernels->active_impulses; ++i)
@@ -118,14 +113,15 @@ void make_locks_rigid(const FigureBlock& block)
         std::fill_n(block.system + node.give, node.rows * block_lanes, 0.0F);
 }
 
-/// Calls work(limit, motor or spring, its ActsBy in lanes) for all that act.
+/// Calls work(node, limit, motor or spring, its row, its ActsBy in lanes) for all that act.
 template <class Work>
 void for_each_acting(const FigureBlock& block, const Work& work)
 {
     if (!block.shape->has_actives) return;
     for (const FigureNode& node : block.shape->nodes)
-        block.for_each_acting(
-            node, [&](const FigureNode::Active& active, int, const float* by) { work(active, by); });
+        block.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float* by) {
+            work(node, active, row, by);
+        });
 }
 
 /// Forgets what has let go: see FigureNode::taken.
@@ -148,9 +144,9 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
         lanes.kernels->equality_rows(lanes.streams, lanes.block, block.body(joint.a), block.body(joint.b),
                                      rows);
         if (only != nullptr) return;
-        const std::int64_t floats = impulse_floats(lanes);
-        const float* impulses = lanes.streams.impulses + lanes.block * floats;
-        for (std::int64_t i = 0; i < floats; ++i) tensions[i] = context.step.substep * impulses[i];
+        const float* impulses = lanes.impulses();
+        for (std::int64_t i = 0; i < lanes.impulse_floats(); ++i)
+            tensions[i] = context.step.substep * impulses[i];
     };
     constexpr std::int64_t row_floats = FigureNode::row_floats;
     forget_taken(block);
@@ -172,29 +168,31 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
     kernels.factor(block);
 }
 
+/// What acts on a row has pushed so hard, in one lane, of whose impulses `limit` is the first: a spring alone, or a limit and a
+/// motor together.
+float pushed_by(float by, const float* limit, int impulses)
+{
+    if (by > ActsBy::motor) return limit[2 * block_lanes];
+    return impulses > 1 ? limit[0] + limit[block_lanes] : limit[0];
+}
+
 /// Finds the copies in which a motor, a spring or a limit has pushed harder than it may. Null where none has.
 const float* find_exceeding(const FigureBlock& block)
 {
     if (!block.shape->has_actives) return nullptr;
     float* const exceeding = block.system + block.shape->exceeding;
     std::fill_n(exceeding, block_lanes, 0.0F);
-    for (const FigureNode& node : block.shape->nodes) {
-        block.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float* by) {
+    for_each_acting(
+        block, [&](const FigureNode& node, const FigureNode::Active& active, int row, const float* by) {
             const FigureBlock::Joint& lanes = block.joints[active.joint];
-            const float* const limit = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
-            const bool has_motor = lanes.kernels->active_impulses > 1;
             const float* const least = block.system + node.least + row * block_lanes;
             const float* const most = block.system + node.most + row * block_lanes;
             for (int i = 0; i < block_lanes; ++i) {
                 if (!(by[i] > ActsBy::rotor)) continue;
-                float pushed = limit[i];
-                if (has_motor)
-                    pushed =
-                        by[i] > ActsBy::motor ? limit[2 * block_lanes + i] : pushed + limit[block_lanes + i];
+                const float pushed = pushed_by(by[i], lanes.impulses() + i, lanes.kernels->active_impulses);
                 if (pushed < least[i] || pushed > most[i]) exceeding[i] = 1;
             }
         });
-    }
     return any_of_lanes(exceeding, block.count) ? exceeding : nullptr;
 }
 
@@ -324,32 +322,28 @@ void begin_tree(const FigureBlock& block)
     forget_taken(block);
     for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
         if (!block.shape->joints[i].in_tree) continue;
-        const std::int64_t floats = impulse_floats(block.joints[i]);
-        float* impulses = block.joints[i].streams.impulses + block.joints[i].block * floats;
-        std::fill(impulses, impulses + floats, 0.0F);
+        std::fill_n(block.joints[i].impulses(), block.joints[i].impulse_floats(), 0.0F);
     }
-    if (!block.shape->has_actives) return;
-    for (const FigureNode& node : block.shape->nodes) {
-        block.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float* by) {
-            const FigureBlock::Joint& lanes = block.joints[active.joint];
-            float* impulses = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
-            // A spring's is the third; sweeps solve one beside a limit or motor that acts.
-            for (int which = 0; which < lanes.kernels->active_impulses; ++which, impulses += block_lanes)
-                for (int i = 0; i < block_lanes; ++i)
-                    impulses[i] = by[i] > (which < 2 ? ActsBy::rotor : ActsBy::motor) ? 0.0F : impulses[i];
-            if (active.has_rotor) {
-                float* const of_joint = lanes.streams.impulses + lanes.block * impulse_floats(lanes);
-                std::fill_n(of_joint + RotorImpulse::change * block_lanes, block_lanes, 0.0F);
-            }
-            // No spring has pushed in this substep.
-            float* const speed_left = block.system + node.speed_left(row, block.rows_of(node));
-            for (int i = 0; i < block_lanes; ++i) {
-                const float speed = block.system[node.speed + block_lanes * row + i];
-                speed_left[i] = active.reversed ? -speed : speed;
-                block.system[node.given + block_lanes * row + i] = 0;
-            }
-        });
-    }
+    for_each_acting(block,
+                    [&](const FigureNode& node, const FigureNode::Active& active, int row, const float* by) {
+                        const FigureBlock::Joint& lanes = block.joints[active.joint];
+                        float* const impulses = lanes.impulses();
+                        // A spring's is the third; sweeps solve one beside a limit or motor that acts.
+                        for (int which = 0; which < lanes.kernels->active_impulses; ++which) {
+                            const float above = which < 2 ? ActsBy::rotor : ActsBy::motor;
+                            for (int i = 0; i < block_lanes; ++i)
+                                if (by[i] > above) impulses[which * block_lanes + i] = 0;
+                        }
+                        if (active.has_rotor)
+                            std::fill_n(impulses + RotorImpulse::change * block_lanes, block_lanes, 0.0F);
+                        // No spring has pushed in this substep.
+                        float* const speed_left = block.system + node.speed_left(row, block.rows_of(node));
+                        for (int i = 0; i < block_lanes; ++i) {
+                            const float speed = block.system[node.speed + block_lanes * row + i];
+                            speed_left[i] = active.reversed ? -speed : speed;
+                            block.system[node.given + block_lanes * row + i] = 0;
+                        }
+                    });
 }
 
 void lengthen_steps(const FigureBlock& block)
@@ -362,7 +356,7 @@ void lengthen_steps(const FigureBlock& block)
                                       block.body(of_shape.b), block.system + joint.arm_a,
                                       block.system + joint.arm_b);
     }
-    for_each_acting(block, [&](const FigureNode::Active& active, const float* by) {
+    for_each_acting(block, [&](const FigureNode&, const FigureNode::Active& active, int, const float* by) {
         const FigureBlock::Joint& lanes = block.joints[active.joint];
         lanes.kernels->set_aside(lanes.streams, lanes.block, by);
     });

@@ -168,8 +168,8 @@ class TreeBuilder {
                 node.rotor = take(node.most_rows);
             }
             node.tension = shape_.has_actives ? take(node.rows) : node.target;
-            if (shape_.has_actives) node.taken = take(6);
             if (shape_.has_actives) {
+                node.taken = take(6);
                 node.given = take(node.most_rows);
                 node.speed = take(node.most_rows);
                 node.least = take(node.most_rows);

@@ -28,9 +28,9 @@ struct MassSpan {
 [[nodiscard]] BodyId light_between_heavy(std::span<const JointCandidate* const> joints,
                                          const BodyStore& bodies);
 
-/// Whether a rotor is more than `ratio` times as heavy as the two bodies that it turns. Sweeps solve it by these two alone and
-/// then give the other bodies of the figure energy: chains of five rods whose rotors have 7 times their inertia, 14 times what
-/// two rods resist with, gain a hundred times the energy of their fall at one substep.
+/// Whether a rotor is more than `ratio` times as heavy as the two bodies that it turns (ConstraintTraits::rotor_load). Sweeps solve
+/// it by these two alone and then give the other bodies of the figure energy: ExactRotors.GiveNoEnergyWhateverTheyTurn in
+/// motley_parallel_tests prints how much.
 [[nodiscard]] bool turns_heavy_rotor(std::span<const JointCandidate* const> joints, float ratio);
 
 /// Whether locks hang a heavy body on a light one: some body has, behind one of its locks, a body more than `ratio` times

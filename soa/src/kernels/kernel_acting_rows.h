@@ -13,13 +13,6 @@ inline Lanes where_exceeding(const FigureBlock& figure, int lane, const Lanes& n
     return select(load_lanes(figure.system + figure.shape->exceeding + lane) > Lanes(0), now, before);
 }
 
-inline float* impulse_of(const FigureBlock& figure, int joint)
-{
-    const FigureBlock::Joint& lanes = figure.joints[joint];
-    return lanes.streams.impulses +
-           static_cast<std::int64_t>(lanes.block) * lanes.kernels->impulse_floats * block_lanes;
-}
-
 /// The row of a limit, motor, spring or rotor that acts, in lanes.
 struct ActingLanes {
     const FigureBlock& figure;
@@ -41,7 +34,7 @@ struct ActingLanes {
     /// Impulse `i` of the joint: see ConstraintTraits::active_row.
     [[nodiscard]] float* impulse(int i) const
     {
-        return impulse_of(figure, active.joint) + i * block_lanes + lane;
+        return figure.joints[active.joint].impulses() + i * block_lanes + lane;
     }
 };
 
@@ -58,13 +51,13 @@ inline void set_goal(const ActingLanes& acting, const Lanes& by)
     const Lanes weight =
         load_lanes(acting.of_row(acting.node.spring_give)) * load_lanes(acting.of_row(acting.node.rotor));
     const Lanes of_both = (left + weight * speed) / (Lanes(1) + weight);
-    const auto alone = (by > Lanes(0)) & (Lanes(ActsBy::limit) > by);
-    store_lanes(acting.turned(select(alone, speed, of_both)), acting.goal());
+    store_lanes(acting.turned(select(is_rotor_alone(by), speed, of_both)), acting.goal());
 }
 
-/// Gives a rotor the speed of its row after a solve. Returns what the rest of the row has pushed: all but -I times the change.
-inline Lanes turn_rotor(const ActingLanes& acting, const Lanes& by, const Lanes& lambda, const Lanes& pushed,
-                        const Lanes& rate, TreeSweep sweep)
+/// Gives a rotor of inertia I the speed that its row has after a solve with the impulse lambda. Returns what the rest of the row
+/// has pushed: all of lambda but -I times the change of that speed.
+inline Lanes turn_rotor(const ActingLanes& acting, const Lanes& by, const Lanes& lambda, const Lanes& rate,
+                        TreeSweep sweep)
 {
     const Lanes error = load_lanes(acting.figure.system + acting.node.error_of(acting.row) + acting.lane);
     const Lanes reached = acting.turned(load_lanes(acting.goal()) - rate * error -
@@ -77,7 +70,7 @@ inline Lanes turn_rotor(const ActingLanes& acting, const Lanes& by, const Lanes&
     if (sweep == TreeSweep::corrects) more = where_exceeding(acting.figure, acting.lane, more, none);
     store_lanes(load_lanes(change) + more, change);
     store_lanes(load_lanes(speed) + more, speed);
-    return select(by > Lanes(ActsBy::rotor), pushed + rotor * more, none);
+    return select(by > Lanes(ActsBy::rotor), acting.turned(lambda) + rotor * more, none);
 }
 
 /// Adds what limits, motors and springs have just pushed to their impulses, which are in the order of ActsBy, and which
@@ -89,8 +82,8 @@ inline Lanes turn_rotor(const ActingLanes& acting, const Lanes& by, const Lanes&
     figure.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float* acts_by) {
         const ActingLanes acting{figure, node, active, row, lane};
         const Lanes by = load_lanes(acts_by + lane);
-        Lanes pushed = acting.turned(lambda[row]);
-        if (active.has_rotor) pushed = turn_rotor(acting, by, lambda[row], pushed, rate, sweep);
+        const Lanes pushed =
+            active.has_rotor ? turn_rotor(acting, by, lambda[row], rate, sweep) : acting.turned(lambda[row]);
         const int impulses = figure.joints[active.joint].kernels->active_impulses;
         for (int i = 0; i < impulses; ++i) {
             const Lanes own(ActsBy::limit + static_cast<float>(i));

@@ -123,7 +123,7 @@ inline void solve_closures(const FigureBlock& figure, float rate, TreeSweep swee
         return select(k.get(i, i) > Lanes(0), value, Lanes(0));
     });
     for (const FigureClosure& closure : shape.closures) {
-        float* impulse = impulse_of(figure, closure.joint) + lane;
+        float* impulse = figure.joints[closure.joint].impulses() + lane;
         const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
         Wrench<Lanes> sum{none, none};
         for (int i = 0; i < closure.rows; ++i) {

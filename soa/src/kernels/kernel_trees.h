@@ -224,7 +224,7 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
     });
     if (sweep == TreeSweep::answers) return;
     for (const FigureNode::Lock& lock : node.locks) {
-        float* impulse = impulse_of(figure, lock.joint) + lane;
+        float* impulse = figure.joints[lock.joint].impulses() + lane;
         for (int i = 0; i < lock.rows; ++i) {
             const Lanes pushed = lambda[lock.first_row + i];
             const Lanes before = load_lanes(impulse + i * block_lanes);

@@ -21,14 +21,14 @@ JointCandidate candidate_of(const JointStore<Type>& store, int type, std::size_t
                             const BodyStore& bodies)
 {
     const typename Type::Definition& definition = store.definitions[index];
-    const BodyRow a = bodies.row_of(definition.body_a), b = bodies.row_of(definition.body_b);
-    return {{a, b, static_cast<std::int32_t>(index), static_cast<std::uint8_t>(contact_type_count + type),
-             store.colours[index]},
-            Type::is_equality(definition) ? Type::equality_count : 0,
-            Type::locks_point,
-            Type::active_row,
-            Type::locks_place(definition),
-            Type::rotor_load(definition, bodies.rigid_mass_of(a), bodies.rigid_mass_of(b))};
+    return {
+        {bodies.row_of(definition.body_a), bodies.row_of(definition.body_b), static_cast<std::int32_t>(index),
+         static_cast<std::uint8_t>(contact_type_count + type), store.colours[index]},
+        Type::is_equality(definition) ? Type::equality_count : 0,
+        Type::locks_point,
+        Type::active_row,
+        Type::locks_place(definition),
+        Type::rotor_load(definition, bodies)};
 }
 
 void forget_impulse(JointStores& stores, int type, std::size_t index)
