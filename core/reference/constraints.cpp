@@ -204,6 +204,11 @@ Eigen::Matrix<double, 12, 12> pair_inverse_mass(const Body& a, const Body& b)
     return m;
 }
 
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& m)
+{
+    return m.completeOrthogonalDecomposition().pseudoInverse();
+}
+
 Eigen::MatrixXd effective_mass(const Jacobian& jacobian, const Body& a, const Body& b)
 {
     const Eigen::Matrix<double, 12, 12> inverse_mass = pair_inverse_mass(a, b);
@@ -211,7 +216,7 @@ Eigen::MatrixXd effective_mass(const Jacobian& jacobian, const Body& a, const Bo
     // Rows along which the pair cannot move: K is only rounding, and must not be inverted.
     if (k.diagonal().maxCoeff() < 1e-12 * inverse_mass.diagonal().maxCoeff())
         return Eigen::MatrixXd::Zero(k.rows(), k.cols());
-    return k.completeOrthogonalDecomposition().pseudoInverse();
+    return pseudo_inverse(k);
 }
 
 }  // namespace motley::reference

@@ -76,11 +76,13 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
     const double mu = static_cast<double>(point.contact.friction);
     if (mu > 0 || point.contact.restitution > 0) {
         const std::vector<Body>& of = bodies_of_response(point);
-        const Eigen::MatrixXd k =
+        using Response = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;
+        const Response k =
             row.tangents *
             pair_inverse_mass(of[static_cast<std::size_t>(point.a)], of[static_cast<std::size_t>(point.b)]) *
             row.tangents.transpose();
-        const double most = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k).eigenvalues().maxCoeff();
+        const double most =
+            Eigen::SelfAdjointEigenSolver<Response>(k, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
         const Eigen::Index rows = row.friction.size();
         const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(rows, rows);
         // Once the bodies have turned far, the largest response is used along both tangents.

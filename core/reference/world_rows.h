@@ -1,7 +1,6 @@
 // The rows of a substep, shared by the sequential and the simultaneous solution.
 #pragma once
 
-#include <Eigen/QR>
 #include <algorithm>
 
 #include "motley/reference/world.h"
@@ -41,7 +40,7 @@ inline Eigen::VectorXd bounded(const Eigen::VectorXd& held, const Eigen::VectorX
     Eigen::VectorXd next = held;
     if (most > 0) {
         const Eigen::VectorXd stride = k * (to_force * (free - held)) / most;
-        next += to_force.completeOrthogonalDecomposition().pseudoInverse() * stride;
+        next += pseudo_inverse(to_force) * stride;
     }
     const double size = (to_force * next).norm();
     if (size > bound) next *= bound / size;

@@ -341,7 +341,8 @@ void Sweeper::prepare_touched_trees()
 
 void Sweeper::begin_touched_trees()
 {
-    for_each_touched_tree([](const FigureBlock& block) { begin_tree(block); });
+    for_each_touched_tree(
+        [&](const FigureBlock& block) { begin_tree(layout_.context, layout_.kernels().figures, block); });
 }
 
 void Sweeper::lengthen_steps_beside_touched_trees()

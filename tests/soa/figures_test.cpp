@@ -31,6 +31,7 @@ FigureShape random_shape(Random& random)
         const bool moves = joint.kind_a == BodyKind::rigid || joint.kind_b == BodyKind::rigid;
         if (joint.a == joint.b || !moves) continue;
         joint.equalities = random.below(7);
+        joint.locks_point = joint.equalities >= 3;
         shape.joints.push_back(joint);
     }
     return shape;
@@ -120,8 +121,8 @@ TEST(FigureTree, NumbersOfNodesDoNotOverlap)
             for (const std::int64_t a_row_each : {node.target, node.give}) add(a_row_each, rows);
             add(node.in_use, 1);
             add(node.acts_by, static_cast<std::int64_t>(node.actives.size()));
+            add(node.tension, node.rows);
             if (shape.has_actives) {
-                add(node.tension, node.rows);
                 add(node.taken, 6);
                 for (const std::int64_t a_row_each : {node.given, node.speed, node.least, node.most})
                     add(a_row_each, rows);
@@ -133,8 +134,10 @@ TEST(FigureTree, NumbersOfNodesDoNotOverlap)
             add(node.force, 6);
             add(node.kept, 6);
             add(node.pull, 3);
+            if (node.point_tree >= 0) add(node.place, 3);
         }
-        if (shape.has_actives) add(shape.exceeding, 1);
+        for (const PointTree& tree : shape.point_trees) add(tree.rigid, PointTree::floats);
+        add(shape.exceeding, 1);
         with_actives += shape.has_actives ? 1 : 0;
         with_rotors += shape.has_rotors ? 1 : 0;
         add(shape.closure_jacobian, FigureNode::row_floats / block_lanes * shape.closure_rows);
@@ -146,6 +149,42 @@ TEST(FigureTree, NumbersOfNodesDoNotOverlap)
     }
     EXPECT_GT(with_actives, 50);
     EXPECT_GT(with_rotors, 20);
+}
+
+TEST(FigureTree, PointTreesAreTheTreesWhoseBodiesHangByPoints)
+{
+    Random random(13);
+    int with_loose_node = 0, point_trees = 0;
+    for (int trial = 0; trial < 2000; ++trial) {
+        FigureShape shape = random_shape(random);
+        if (!build_tree(shape, RotorsBesideTree::allowed)) continue;
+        const auto root_of = [&](std::size_t node) {
+            while (shape.nodes[node].parent_node >= 0)
+                node = static_cast<std::size_t>(shape.nodes[node].parent_node);
+            return node;
+        };
+        for (std::size_t i = 0; i < shape.nodes.size(); ++i) {
+            bool hang_by_points = true;
+            for (std::size_t other = 0; other < shape.nodes.size(); ++other) {
+                const FigureNode& node = shape.nodes[other];
+                if (root_of(other) == root_of(i) && node.parent >= 0 &&
+                    std::none_of(node.locks.begin(), node.locks.end(),
+                                 [](const auto& lock) { return lock.locks_point; }))
+                    hang_by_points = false;
+            }
+            const int number = shape.nodes[i].point_tree;
+            ASSERT_EQ(number >= 0, hang_by_points);
+            with_loose_node += hang_by_points ? 0 : 1;
+            if (number < 0) continue;
+            const PointTree& tree = shape.point_trees[static_cast<std::size_t>(number)];
+            EXPECT_EQ(static_cast<std::size_t>(tree.end - 1), root_of(i));
+            EXPECT_GE(static_cast<int>(i), tree.begin);
+            EXPECT_LT(static_cast<int>(i), tree.end);
+        }
+        for (const PointTree& tree : shape.point_trees) point_trees += tree.end - tree.begin > 1 ? 1 : 0;
+    }
+    EXPECT_GT(with_loose_node, 500);
+    EXPECT_GT(point_trees, 100);
 }
 
 /// Joints between random bodies of a few components, coloured in their order.

@@ -31,11 +31,12 @@ struct CopyBody {
 /// between these two that may act. Those of all nodes are solved at once, by factoring J M^-1 J^T along the tree without fill
 /// (J: their Jacobian, M: mass matrix).
 struct FigureNode {
-    int body;         ///< the child body
-    int parent;       ///< the parent body, moving or fixed; -1 for a root that floats
-    int parent_node;  ///< the parent body's node; -1 if the parent is fixed or there is none
-    int rows;         ///< of all its locks together, 0 to 6
-    int most_rows;    ///< with those of its limits and motors, at most 6
+    int body;             ///< the child body
+    int parent;           ///< the parent body, moving or fixed; -1 for a root that floats
+    int parent_node;      ///< the parent body's node; -1 if the parent is fixed or there is none
+    int point_tree = -1;  ///< of FigureShape::point_trees; -1 for a node of none
+    int rows;             ///< of all its locks together, 0 to 6
+    int most_rows;        ///< with those of its limits and motors, at most 6
     /// Where its arrays begin in FigureBlock::system, in floats. M' is the mass matrix of the child body and
     /// everything below it in the tree (articulated inertia).
     std::int64_t jacobian;     ///< EqualityRows; once factored, the form that kernel_tree_rows.h keeps
@@ -47,6 +48,7 @@ struct FigureNode {
     std::int64_t force;        ///< on the child body, from the nodes below it, six
     std::int64_t kept;         ///< copy of the velocity while responses of closures are computed, six
     std::int64_t pull;         ///< angular impulse of stiffened locks, applied at the first solve, three
+    std::int64_t place;        ///< see kernel_rigid_trees.h. Of point trees only; three
     std::int64_t taken;        ///< impulse of what has let go, applied by the next solve, six
     std::int64_t in_use;       ///< see FigureBlock::rows_of() and for_each_acting(), one
     std::int64_t acts_by;      ///< ActsBy of its limits, motors and springs, one of each
@@ -56,12 +58,11 @@ struct FigureNode {
     std::int64_t given;  ///< ActingRow::given, and give times what the spring has pushed since; one per row
     std::int64_t speed;  ///< EqualityRow::speed as act() found it; one per row
     std::int64_t least, most;  ///< of ActingRow, one per row
-    std::int64_t
-        tension;  ///< lambda of the last substep times its length, N s2; one per row of the locks. At `target` in
-                  ///< figures whose nodes have no limits or motors
+    std::int64_t tension;  ///< lambda of the last substep times its length, N s2; one per row of the locks
     // Arrays that share memory with another one, because they are not needed at the same time:
     std::int64_t pivots;       ///< at `change`: pivots of the body's own M, six
     std::int64_t mass_factor;  ///< at `mass`, which it overwrites: factors of M'
+    std::int64_t strain;       ///< at `force`: above 0 where tension may swing the body, one
     struct Lock {
         int joint;  ///< of the shape
         int first_row, rows;
@@ -79,7 +80,14 @@ struct FigureNode {
     /// Whether the node has a single lock, whose first three rows hold a point on a point along x, y and z, and whose
     /// other rows, and those of limits and motors, are purely angular.
     [[nodiscard]] bool hangs_by_point() const { return locks.size() == 1 && locks.front().locks_point; }
-    /// Where the arms of that point are, once the tree is factored: see PointRows::keep.
+    /// A lock that holds a point on a point; null if there is none.
+    [[nodiscard]] const Lock* point_lock() const
+    {
+        const auto lock =
+            std::find_if(locks.begin(), locks.end(), [](const Lock& l) { return l.locks_point; });
+        return lock == locks.end() ? nullptr : &*lock;
+    }
+    /// Where the arms of the point of hangs_by_point() are, once the tree is factored: see PointRows::keep.
     [[nodiscard]] std::int64_t arm_of_child() const { return jacobian; }
     [[nodiscard]] std::int64_t arm_of_parent() const { return jacobian + std::int64_t{3} * block_lanes; }
     static constexpr int row_floats = 11 * block_lanes;  ///< of an EqualityRow
@@ -97,6 +105,13 @@ struct FigureNode {
         return jacobian + (hangs_by_point() ? std::int64_t{6 + row} * block_lanes
                                             : std::int64_t{row} * row_floats + 9 * block_lanes);
     }
+};
+
+/// A tree whose bodies are held together at points, and that floats or hangs from a fixed body at a point.
+struct PointTree {
+    int begin, end;      ///< its nodes; the last one is its root
+    std::int64_t rigid;  ///< where it is as one rigid body in FigureBlock::system: kernel_rigid_trees.h
+    static constexpr int floats = 15;
 };
 
 /// A lock that closes a loop of the figure. It is solved exactly too, from the tree's response to it
@@ -130,10 +145,12 @@ struct FigureShape {
     Array<Joint> joints;             ///< by colour
     Array<std::uint32_t> signature;  ///< these in numbers: figures with equal ones are copies
     Array<FigureNode> nodes;         ///< children before parents; empty unless locks are solved exactly
+    Array<PointTree> point_trees;
     Array<JointAtPoint> joints_at_points;
-    bool has_actives = false;    ///< a node has limits, motors, springs or rotors
-    bool has_rotors = false;     ///< a node has rotors
-    std::int64_t exceeding = 0;  ///< with them: in which copies something has pushed harder than it may, one
+    bool has_actives = false;  ///< a node has limits, motors, springs or rotors
+    bool has_rotors = false;   ///< a node has rotors
+    /// In which copies something has pushed harder than it may, or pulls much harder than in the last substep: one.
+    std::int64_t exceeding = 0;
     Array<FigureClosure> closures;
     int closure_rows = 0;
     std::int64_t closure_jacobian = 0, closure_factor = 0, closure_target = 0;  ///< like those of a node

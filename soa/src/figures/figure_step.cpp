@@ -133,17 +133,19 @@ void forget_taken(const FigureBlock& block)
 }
 
 /// Computes the Jacobian J and the position error C of every lock at the present poses, and of the limits and motors that act,
-/// and factors the tree, stiffened by the tension of the locks. Given `only`, what acts is found out again in copies where that
-/// is not 0; all else stays, so that the factors of the other copies have the same bits as before.
+/// and factors the tree, stiffened by the tension of the locks in the last substep. Given `acting_in` and `pulled_in`, the tension is
+/// that which is there, and what acts and what pulls at the bodies is found out again in copies where they are not 0; all else stays,
+/// so that the factors of the other copies have the same bits as before.
 void factor_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
-                 const float* only = nullptr)
+                 const float* acting_in = nullptr, const float* pulled_in = nullptr)
 {
+    const bool is_first = acting_in == nullptr;
     const auto locate = [&](int which, float* rows, float* tensions) {
         const FigureShape::Joint& joint = block.shape->joints[static_cast<std::size_t>(which)];
         const FigureBlock::Joint& lanes = block.joints[which];
         lanes.kernels->equality_rows(lanes.streams, lanes.block, block.body(joint.a), block.body(joint.b),
                                      rows);
-        if (only != nullptr) return;
+        if (!is_first) return;
         const float* impulses = lanes.impulses();
         for (std::int64_t i = 0; i < lanes.impulse_floats(); ++i)
             tensions[i] = context.step.substep * impulses[i];
@@ -154,18 +156,69 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
         for (const FigureNode::Lock& lock : node.locks)
             locate(lock.joint, block.system + node.jacobian + row_floats * lock.first_row,
                    block.system + node.tension + block_lanes * lock.first_row);
-        if (only == nullptr) {
+        if (is_first) {
             add_acting_rows(context, block, node);
         } else {
             block.for_each_acting(node, [&](const FigureNode::Active& active, int row, float* by) {
-                act(context, block, node, active, row, by, only);
+                act(context, block, node, active, row, by, acting_in);
             });
         }
     }
     for (const FigureClosure& closure : block.shape->closures)
         locate(closure.joint, block.system + block.shape->closure_jacobian + row_floats * closure.first_row,
                block.system + block.shape->closure_target + block_lanes * closure.first_row);
-    kernels.factor(block);
+    kernels.factor(block, pulled_in);
+}
+
+/// The impulses of locks, and of what acts, start from zero in a substep.
+void start_impulses(const FigureBlock& block)
+{
+    // What has let go has not been applied in this substep.
+    forget_taken(block);
+    for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
+        if (!block.shape->joints[i].in_tree) continue;
+        std::fill_n(block.joints[i].impulses(), block.joints[i].impulse_floats(), 0.0F);
+    }
+    for_each_acting(block,
+                    [&](const FigureNode& node, const FigureNode::Active& active, int row, const float* by) {
+                        const FigureBlock::Joint& lanes = block.joints[active.joint];
+                        float* const impulses = lanes.impulses();
+                        // A spring's is the third; sweeps solve one beside a limit or motor that acts.
+                        for (int which = 0; which < lanes.kernels->active_impulses; ++which) {
+                            const float above = which < 2 ? ActsBy::rotor : ActsBy::motor;
+                            for (int i = 0; i < block_lanes; ++i)
+                                if (by[i] > above) impulses[which * block_lanes + i] = 0;
+                        }
+                        if (active.has_rotor)
+                            std::fill_n(impulses + RotorImpulse::change * block_lanes, block_lanes, 0.0F);
+                        // No spring has pushed in this substep.
+                        float* const speed_left = block.system + node.speed_left(row, block.rows_of(node));
+                        for (int i = 0; i < block_lanes; ++i) {
+                            const float speed = block.system[node.speed + block_lanes * row + i];
+                            speed_left[i] = active.reversed ? -speed : speed;
+                            block.system[node.given + block_lanes * row + i] = 0;
+                        }
+                    });
+}
+
+/// Whether light bodies of a copy may be under much more tension now than when the tree was factored.
+bool has_uneven_masses(const FigureBlock& block)
+{
+    const Array<PointTree>& trees = block.shape->point_trees;
+    return std::any_of(trees.begin(), trees.end(), [&](const PointTree& tree) {
+        return any_of_lanes(block.system + tree.rigid, block.count);  // RigidTree::uneven comes first
+    });
+}
+
+/// Where light bodies are under much more tension now than when the tree was factored, it is factored again.
+void follow_tension(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
+{
+    kernels.follow_tension(block, context.step.substep, context.step.exact_rate);
+    const float* const exceeding = block.system + block.shape->exceeding;
+    if (!any_of_lanes(exceeding, block.count)) return;
+    constexpr float in_none[block_lanes] = {};
+    factor_tree(context, kernels, block, in_none, exceeding);
+    start_impulses(block);
 }
 
 /// What acts on a row has pushed so hard, in one lane, of whose impulses `limit` is the first: a spring alone, or a limit and a
@@ -206,7 +259,7 @@ void solve_within_bounds(const KernelContext& context, const FigureKernels& kern
     for (int round = 0; round < 2; ++round) {
         const float* const exceeding = find_exceeding(block);
         if (exceeding == nullptr) return;
-        factor_tree(context, kernels, block, exceeding);
+        factor_tree(context, kernels, block, exceeding, exceeding);
         // What stiffened locks do to the bodies has been done by the first solve.
         for (const FigureNode& node : block.shape->nodes)
             std::fill_n(block.system + node.pull, 3 * block_lanes, 0.0F);
@@ -249,7 +302,8 @@ class CopiesRunner {
                 if (has_tree_) factor_tree(context_, kernels_, block_);
                 break;
             case Operation::begin_trees:
-                if (has_tree_) begin_tree(block_);
+                if (has_tree_) start_impulses(block_);
+                if (has_tree_ && has_uneven_masses(block_)) follow_tension(context_, kernels_, block_);
                 break;
             case Operation::warm_start:
                 sweep(context_, block_, &ConstraintKernels::warm_start_copies);
@@ -316,34 +370,12 @@ void prepare_tree(const KernelContext& context, const FigureKernels& kernels, co
     factor_tree(context, kernels, block);
 }
 
-void begin_tree(const FigureBlock& block)
+void begin_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
 {
-    // What has let go has not been applied in this substep.
-    forget_taken(block);
-    for (std::size_t i = 0; i < block.shape->joints.size(); ++i) {
-        if (!block.shape->joints[i].in_tree) continue;
-        std::fill_n(block.joints[i].impulses(), block.joints[i].impulse_floats(), 0.0F);
-    }
-    for_each_acting(block,
-                    [&](const FigureNode& node, const FigureNode::Active& active, int row, const float* by) {
-                        const FigureBlock::Joint& lanes = block.joints[active.joint];
-                        float* const impulses = lanes.impulses();
-                        // A spring's is the third; sweeps solve one beside a limit or motor that acts.
-                        for (int which = 0; which < lanes.kernels->active_impulses; ++which) {
-                            const float above = which < 2 ? ActsBy::rotor : ActsBy::motor;
-                            for (int i = 0; i < block_lanes; ++i)
-                                if (by[i] > above) impulses[which * block_lanes + i] = 0;
-                        }
-                        if (active.has_rotor)
-                            std::fill_n(impulses + RotorImpulse::change * block_lanes, block_lanes, 0.0F);
-                        // No spring has pushed in this substep.
-                        float* const speed_left = block.system + node.speed_left(row, block.rows_of(node));
-                        for (int i = 0; i < block_lanes; ++i) {
-                            const float speed = block.system[node.speed + block_lanes * row + i];
-                            speed_left[i] = active.reversed ? -speed : speed;
-                            block.system[node.given + block_lanes * row + i] = 0;
-                        }
-                    });
+    start_impulses(block);
+    if (!has_uneven_masses(block)) return;
+    kernels.load_velocities(context, block);
+    follow_tension(context, kernels, block);
 }
 
 void lengthen_steps(const FigureBlock& block)

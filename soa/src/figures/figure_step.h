@@ -17,8 +17,9 @@ void step_figure(const KernelContext& context, const FigureKernels& kernels, con
 /// Factors the tree at the present poses: before each substep; or, with relaxations, before the first substep and
 /// after each integration of positions.
 void prepare_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block);
-/// Before the first sweep of a substep: the impulses of its locks start from zero.
-void begin_tree(const FigureBlock& block);
+/// Before the first sweep of a substep: the impulses of its locks start from zero. Where its light bodies are under much more tension
+/// than in the last substep, the tree is factored again.
+void begin_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block);
 /// After the warm start: lets the joints beside the tree step as far as its locks allow (locked_point.h).
 void lengthen_steps(const FigureBlock& block);
 /// Solves the tree; after each sweep.

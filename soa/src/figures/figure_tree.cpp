@@ -34,6 +34,7 @@ class TreeBuilder {
         list_locks();
         hang_all_bodies();
         find_closures();
+        find_point_trees();
         if (closure_rows_ > most_closure_rows || nodes_.empty()) return false;
         if (rotors_ == RotorsBesideTree::refused && has_rotor_beside()) return false;
         lay_out();
@@ -149,6 +150,23 @@ class TreeBuilder {
             closure_rows_ += equalities;
         }
     }
+    /// The other nodes of a tree follow its root.
+    void find_point_trees()
+    {
+        const int count = static_cast<int>(nodes_.size());
+        const auto is_root = [&](int node) { return nodes_[at(node)].parent_node == none; };
+        for (int root = 0, end = 1; root < count; root = end++) {
+            while (end < count && !is_root(end)) ++end;
+            const bool are_held_at_points = std::all_of(
+                nodes_.begin() + root, nodes_.begin() + end,
+                [](const FigureNode& node) { return node.parent == none || node.point_lock() != nullptr; });
+            if (!are_held_at_points) continue;
+            for (int node = root; node < end; ++node)
+                nodes_[at(node)].point_tree = static_cast<int>(shape_.point_trees.size());
+            // hand_over() turns the order round.
+            shape_.point_trees.push_back({count - end, count - root, 0});
+        }
+    }
     /// Decides where the arrays of nodes and closures begin in FigureBlock::system.
     void lay_out()
     {
@@ -167,7 +185,7 @@ class TreeBuilder {
                 node.spring_give = take(node.most_rows);
                 node.rotor = take(node.most_rows);
             }
-            node.tension = shape_.has_actives ? take(node.rows) : node.target;
+            node.tension = take(node.rows);
             if (shape_.has_actives) {
                 node.taken = take(6);
                 node.given = take(node.most_rows);
@@ -179,11 +197,13 @@ class TreeBuilder {
             node.acts_by = take(static_cast<int>(node.actives.size()));
             node.change = node.pivots = take(6);
             node.mass = node.mass_factor = take(21);
-            node.force = take(6);
+            node.force = node.strain = take(6);
             node.kept = take(6);
             node.pull = take(3);
+            if (node.point_tree != none) node.place = take(3);
         }
-        if (shape_.has_actives) shape_.exceeding = take(1);
+        for (PointTree& tree : shape_.point_trees) tree.rigid = take(PointTree::floats);
+        shape_.exceeding = take(1);
         shape_.closure_jacobian = take(row_floats * closure_rows_);
         shape_.closure_factor = take(closure_rows_ * (closure_rows_ + 1) / 2);
         shape_.closure_target = shape_.closure_alone = take(closure_rows_);

@@ -49,7 +49,7 @@ float inverse_mass_of(BodyRow body, const BodyStore& bodies)
 
 BodyId light_between_heavy(std::span<const JointCandidate* const> joints, const BodyStore& bodies)
 {
-    constexpr double most_mass_ratio = 2000;
+    constexpr double most_mass_ratio = 1e6;
     LockedBodies locked(joints);
     Array<int> locks_on(locked.size(), 0);
     double of_heaviest = std::numeric_limits<double>::infinity();

@@ -21,10 +21,9 @@ struct MassSpan {
     [[nodiscard]] bool is_wider_than(float ratio) const { return of_lightest > ratio * of_heaviest; }
 };
 
-/// A body with two locks or more, in a figure without a fixed body and with a body more than 2,000 times as heavy;
-/// {} if there is none. The mass that its joints see is made of both and keeps too few digits of the light one: the
-/// joints hold, but their impulses do not cancel. Momentum changes by 3e-6 per second at 1 : 1,000 and by 3e-5 at
-/// 1 : 10,000 (light_between_heavy_test.cpp).
+/// A body with two locks or more, in a figure without a fixed body and with a body more than a million times as heavy; {} if there
+/// is none. The mass that its joints see is made of both, and a float keeps no digit of the light one
+/// (light_between_heavy_test.cpp).
 [[nodiscard]] BodyId light_between_heavy(std::span<const JointCandidate* const> joints,
                                          const BodyStore& bodies);
 

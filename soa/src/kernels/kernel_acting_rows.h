@@ -4,8 +4,8 @@
 #pragma once
 
 /// `solves`: a solve of the step. `corrects`: one in exceeding copies only (FigureShape::exceeding). `answers`: the response of
-/// the tree to an impulse while everything else is at rest.
-enum class TreeSweep { solves, corrects, answers };
+/// the tree to an impulse while everything else is at rest. `tries`: finds impulses, at FigureNode::target, and applies none.
+enum class TreeSweep { solves, corrects, answers, tries };
 
 /// `now` in exceeding copies, `before` in the others.
 inline Lanes where_exceeding(const FigureBlock& figure, int lane, const Lanes& now, const Lanes& before)

@@ -1,5 +1,5 @@
 // Locks that close loops of a figure: a small dense system, made of the tree's response to each of their rows.
-// Included inside an anonymous namespace, after kernel_trees.h.
+// Included inside an anonymous namespace, after kernel_tension.h.
 //
 // With the tree's locks held, a unit impulse along row j changes J v of row i by K_ij (J: Jacobian, v: velocities).
 // Loops are often redundant (a flat four-bar closes by five rows and needs two): rows whose pivot is only rounding
@@ -138,10 +138,10 @@ inline void solve_closures(const FigureBlock& figure, float rate, TreeSweep swee
     sweep_tree(figure, rate, sweep, lane);
 }
 
-inline void factor_trees(const FigureBlock& figure)
+inline void factor_trees(const FigureBlock& figure, const float* only)
 {
     for (int lane = 0; lane < figure.count; lane += Lanes_width) {
-        factor_tree(figure, lane);
+        factor_tree(figure, only, lane);
         if (figure.shape->closure_rows > 0) factor_closures(figure, lane);
     }
 }
@@ -152,6 +152,10 @@ inline void factor_trees(const FigureBlock& figure)
         sweep_tree(figure, rate, sweep, lane);
         if (figure.shape->closure_rows > 0) solve_closures(figure, rate, sweep, lane);
     }
+}
+inline void follow_tensions(const FigureBlock& figure, float substep, float rate)
+{
+    for (int lane = 0; lane < figure.count; lane += Lanes_width) follow_tension(figure, substep, rate, lane);
 }
 inline void solve_trees(const FigureBlock& figure, float rate)
 {

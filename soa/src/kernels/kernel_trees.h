@@ -1,5 +1,5 @@
 // Solves all locks of a figure at once: J M^-1 J^T is factored along its tree, one copy per lane. Included inside an
-// anonymous namespace, after kernel_elimination.h and kernel_acting_rows.h.
+// anonymous namespace, after kernel_stiffness.h.
 //
 // In the system
 //
@@ -48,17 +48,19 @@ void load_factor(Count rows, const float* from, Triangle<n>& to)
     });
 }
 
-/// M of a body. One that does not move gets 1 kg here, and factor_mass() clears its pivots.
+/// M of a body, without -0: what stiffened locks add may be 0. One that does not move gets 1 kg here, and factor_mass() clears its
+/// pivots.
 inline Triangle<6> mass_of(const Mover& body)
 {
     const auto moves = body.inverse_mass > Lanes(0);
     const Lanes zero(0), one(1);
     const Lanes m = select(moves, one / select(moves, body.inverse_mass, one), one);
     const Sym3<Lanes> inertia = inverse(body.inverse_inertia);
+    const Lanes xy = zero + inertia.xy, xz = zero + inertia.xz, yz = zero + inertia.yz;
     return {{m,    zero, m,    zero,       zero,       m,  //
              zero, zero, zero, inertia.xx,                 //
-             zero, zero, zero, inertia.xy, inertia.yy,     //
-             zero, zero, zero, inertia.xz, inertia.yz, inertia.zz}};
+             zero, zero, zero, xy,         inertia.yy,     //
+             zero, zero, zero, xz,         yz,         inertia.zz}};
 }
 
 /// The pivots of M.
@@ -223,6 +225,10 @@ void reach_down(const FigureBlock& figure, const FigureNode& node, float* system
         unrolled<6>([&](auto c) { change[c] = change[c] + lambda[i] * response[c]; });
     });
     if (sweep == TreeSweep::answers) return;
+    if (sweep == TreeSweep::tries) {
+        repeat(rows, [&](auto i) { store_lanes(lambda[i], system + node.target + i * block_lanes); });
+        return;
+    }
     for (const FigureNode::Lock& lock : node.locks) {
         float* impulse = figure.joints[lock.joint].impulses() + lane;
         for (int i = 0; i < lock.rows; ++i) {
@@ -259,56 +265,12 @@ void with_rows(const FigureNode& node, int row_count, const Work& work)
     }
 }
 
-/// Between light bodies under heavy load a taut joint is a stiff spring against rotation. A substep that takes the
-/// joint's force f as constant swings the bodies wider each time, however exactly it holds the joint. So the angular
-/// velocity w' at the end of the substep is taken into account: (M + h2 K) w' = M w + ..., with
-/// K = (f . r)(1 - n n^T) and n = r / |r|, where M is the inertia, h the substep, w the angular velocity before, and
-/// r the lever arm at which f pulls; `tension` is h2 f. (M. Tournier and others, Stable Constrained Dynamics, 2015;
-/// S. Andrews and others, Geometric Stiffness, 2017.) Only the part of K that an explicit substep cannot follow is
-/// used.
-inline void stiffen(const Mover& body, const Vec3<Lanes>& lever, const Vec3<Lanes>& tension, float* mass,
-                    float* pull)
-{
-    const Sym3<Lanes>& i = body.inverse_inertia;
-    const Lanes zero(0);
-    const Lanes bearable = Lanes(0.5F) * inverse_or_zero(i.xx + i.yy + i.zz);
-    const Lanes excess = maximum(dot(tension, lever) - bearable, zero);
-    const Vec3<Lanes> n = square_root(inverse_or_zero(dot(lever, lever))) * lever;
-    const Sym3<Lanes> k{excess - excess * n.x * n.x, -(excess * n.x * n.y), -(excess * n.x * n.z),
-                        excess - excess * n.y * n.y, -(excess * n.y * n.z), excess - excess * n.z * n.z};
-    auto m = load_row<Triangle<6>>(mass);
-    m.at(3, 3) = m.at(3, 3) + k.xx;
-    m.at(4, 3) = m.at(4, 3) + k.xy;
-    m.at(4, 4) = m.at(4, 4) + k.yy;
-    m.at(5, 3) = m.at(5, 3) + k.xz;
-    m.at(5, 4) = m.at(5, 4) + k.yz;
-    m.at(5, 5) = m.at(5, 5) + k.zz;
-    store_row(m, mass);
-    store_row(load_row<Vec3<Lanes>>(pull) - k * body.angular, pull);
-}
-
-inline void stiffen_locks(const FigureBlock& figure, const FigureNode& node, float* system, int lane)
-{
-    for (const FigureNode::Lock& lock : node.locks) {
-        if (!lock.locks_point) continue;
-        const float* rows = system + node.jacobian + lock.first_row * FigureNode::row_floats;
-        const auto x = load_row<EqualityRow<Lanes>>(rows);
-        const auto y = load_row<EqualityRow<Lanes>>(rows + FigureNode::row_floats);
-        auto tension = load_row<Vec3<Lanes>>(system + node.tension + lock.first_row * block_lanes);
-        if (lock.reversed) tension = -tension;
-        stiffen(load_row<Mover>(figure.body(node.body) + lane), lever_of_point(x.lever_b, y.lever_b), tension,
-                system + node.mass, system + node.pull);
-        if (node.parent_node < 0) continue;
-        const FigureNode& parent = figure.shape->nodes[static_cast<std::size_t>(node.parent_node)];
-        stiffen(load_row<Mover>(figure.body(node.parent) + lane), lever_of_point(x.lever_a, y.lever_a),
-                -tension, system + parent.mass, system + parent.pull);
-    }
-}
-
-inline void factor_tree(const FigureBlock& figure, int lane)
+/// `only`: if given, what pulls at the bodies is found in copies where that is not 0, and stays in the others.
+inline void factor_tree(const FigureBlock& figure, const float* only, int lane)
 {
     const Array<FigureNode>& nodes = figure.shape->nodes;
     float* system = figure.system + lane;
+    const Lanes anew = only == nullptr ? Lanes(1) : load_lanes(only + lane);
     for (const FigureNode& node : nodes) {
         for (const FigureNode::Lock& lock : node.locks) {
             for (int i = lock.first_row; lock.reversed && i < lock.first_row + lock.rows; ++i)
@@ -323,9 +285,13 @@ inline void factor_tree(const FigureBlock& figure, int lane)
         pivots_of(body, mass, pivots);
         store_row(mass, system + node.mass);
         store_array(pivots, system + node.pivots);
-        store_row(Vec3<Lanes>{Lanes(0), Lanes(0), Lanes(0)}, system + node.pull);
+        const auto pull = load_row<Vec3<Lanes>>(system + node.pull);
+        const auto kept = [&](const Lanes& of_before) {
+            return select(anew > Lanes(0), Lanes(0), of_before);
+        };
+        store_row(Vec3<Lanes>{kept(pull.x), kept(pull.y), kept(pull.z)}, system + node.pull);
     }
-    for (const FigureNode& node : nodes) stiffen_locks(figure, node, system, lane);
+    stiffen_trees(figure, anew, lane);
     for (const FigureNode& node : nodes) {
         const Mover body = load_row<Mover>(figure.body(node.body) + lane);
         Row6 pivots_alone;
@@ -372,7 +338,7 @@ inline void factor_tree(const FigureBlock& figure, int lane)
         store_row(pulls ? load_row<Vec3<Lanes>>(system + node.pull) : none,
                   system + node.force + 3 * block_lanes);
         if (!pulls) continue;
-        store_row(none, system + node.pull);
+        if (sweep != TreeSweep::tries) store_row(none, system + node.pull);
         if (figure.shape->has_actives) apply_taken(node, system);
         if (figure.shape->has_rotors) follow_rotors(figure, node, lane);
     }
@@ -395,6 +361,7 @@ inline void factor_tree(const FigureBlock& figure, int lane)
             reach_down<Rows>(figure, node, system, parent_change, change, Lanes(rate), sweep, lane);
         });
         store_array(change, system + node.change);
+        if (sweep == TreeSweep::tries) continue;
         Mover body = load_row<Mover>(figure.body(node.body) + lane);
         if (sweep == TreeSweep::corrects) {
             // x + -0 is x for every x, also for -0.
@@ -404,4 +371,6 @@ inline void factor_tree(const FigureBlock& figure, int lane)
         body.angular = body.angular + Vec3<Lanes>{change[3], change[4], change[5]};
         store_copy_velocity(body, figure.body(node.body) + lane);
     }
+    if (sweep == TreeSweep::tries) return;
+    for (const PointTree& tree : figure.shape->point_trees) keep_momentum(figure, tree, sweep, lane);
 }

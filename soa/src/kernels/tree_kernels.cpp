@@ -18,7 +18,13 @@ namespace {
 
 #include "kernels/kernel_acting_rows.h"
 #include "kernels/kernel_elimination.h"
+#include "kernels/kernel_rigid_trees.h"
+
+#include "kernels/kernel_stiffness.h"
+
 #include "kernels/kernel_trees.h"
+
+#include "kernels/kernel_tension.h"
 
 #include "kernels/kernel_closures.h"
 
@@ -28,6 +34,7 @@ template <>
 void enter_tree_kernels<Isa::MOTLEY_ISA>(FigureKernels& figures)
 {
     figures.factor = factor_trees;
+    figures.follow_tension = follow_tensions;
     figures.solve = solve_trees;
     figures.correct = correct_trees;
 }

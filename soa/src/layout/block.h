@@ -212,7 +212,12 @@ struct FigureKernels {
     Move store_velocities = nullptr;
     Move integrate_velocities = nullptr;
     Move integrate_positions = nullptr;
-    void (*factor)(const FigureBlock&) = nullptr;  ///< factors the tree; after equality_rows of each lock
+    /// Factors the tree; after equality_rows of each lock. `only`: null, or a number for each copy, 0 for those whose bodies are
+    /// pulled at as before.
+    void (*factor)(const FigureBlock&, const float* only) = nullptr;
+    /// Finds the copies whose light bodies are under much more tension in this substep than in the last one: FigureShape::exceeding,
+    /// FigureNode::tension. `substep` is its length, s; `rate` as of solve().
+    void (*follow_tension)(const FigureBlock&, float substep, float rate) = nullptr;
     /// Changes velocities v and impulses so that J v + rate C = 0 for every lock (J: Jacobian, C: position error).
     void (*solve)(const FigureBlock&, float rate) = nullptr;
     /// The same in copies where FigureShape::exceeding is not 0; the others keep their bits.

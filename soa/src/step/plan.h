@@ -27,7 +27,7 @@ enum class Operation : std::uint8_t {
     add_up_impulses,             ///< adds the impulses of the last substep to the sums
     integrate_velocities,        ///< v += h a
     factor_trees,                ///< of exact joints, at the present poses
-    begin_trees,                 ///< impulses of exact joints start from zero
+    begin_trees,                 ///< impulses of exact joints start from zero; much more tension is followed
     warm_start,                  ///< applies the impulses of the last substep
     lengthen_steps,              ///< of limits and motors beside exact joints: see locked_point.h
     solve_trees,                 ///< exact joints, once

@@ -73,8 +73,8 @@ struct StepReport {
     std::int64_t joints = 0;              ///< likewise
     std::int64_t joints_in_lockstep = 0;  ///< joints of copies of a figure that touched no other moving body
     /// With SolverSettings::exact_joints: number of locks that sweeps solve nevertheless. They belong to figures
-    /// without a fixed body in which a body with two or more locks has less than 1/2,000 of the mass of another: solved
-    /// exactly in float, these would not keep momentum.
+    /// without a fixed body in which a body with two or more locks has less than a millionth of the mass of another: too
+    /// little for float to solve them exactly.
     std::int64_t exact_joints_refused = 0;
     BodyId first_light_body{};  ///< such a light body, if there is one
     /// With SolverSettings::exact_contacts: islands whose contacts are solved at once, those that are left to the sweeps

@@ -61,6 +61,9 @@ Jacobian swing_jacobian(const Body& a, const Body& b, const Frame& frame_a, cons
 Jacobian direction_jacobian(const Eigen::Vector3d& direction, const Eigen::Vector3d& arm_a,
                             const Eigen::Vector3d& arm_b);
 
+/// The Moore-Penrose inverse.
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& m);
+
 /// M^-1 of a pair, 12 x 12.
 Eigen::Matrix<double, 12, 12> pair_inverse_mass(const Body& a, const Body& b);
 /// (J M^-1 J^T)^+: the pseudo-inverse, so that directions in which no body can move get no impulse.

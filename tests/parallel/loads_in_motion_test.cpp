@@ -1,0 +1,197 @@
+// Heavy loads on light links that whirl, swing and float: whether the motion is kept, and not only the joints. Independent evidence:
+// conservation of energy and of angular momentum.
+#include <cmath>
+#include <vector>
+
+#include "rig.h"
+
+namespace motley {
+namespace {
+
+using Vector = Vec3<double>;
+using testing::length;
+
+constexpr double link = 0.2, load_mass = 10;
+
+/// Cubes of 0.2 m in a row along x, joined by ball-sockets where they touch: loads of 10 kg at the end, or at both ends, and light
+/// links.
+struct Row {
+    Scene scene;
+    std::vector<BodyId> bodies;
+    std::vector<double> masses;
+
+    void add(float mass, double x)
+    {
+        BodyDefinition body;
+        body.position = {x, 0, 0};
+        body.mass = mass;
+        const float moment = mass * 0.04F / 6;
+        body.inertia = {moment, 0, 0, moment, 0, moment};
+        const BodyId before = bodies.empty() ? scene.ground() : bodies.back();
+        bodies.push_back(scene.add_body(body));
+        masses.push_back(static_cast<double>(mass));
+        if (before == scene.ground()) return;
+        join(before, {0.1F, 0, 0});
+    }
+    void join(BodyId a, Vec3<float> at)
+    {
+        scene.add_joint(BallSocketDefinition{a, bodies.back(), at, {-0.1F, 0, 0}});
+    }
+    /// Turns the whole row about z and the origin.
+    void whirl(double speed)
+    {
+        for (const BodyId body : bodies)
+            scene.set_velocity(body, {0, static_cast<float>(speed * scene.state(body).position.x), 0},
+                               {0, 0, static_cast<float>(speed)});
+    }
+    [[nodiscard]] Vector angular_momentum() const
+    {
+        Vector sum{};
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            const double moment = masses[i] * 0.04 / 6;
+            sum = sum + testing::angular_momentum(scene.state(bodies[i]), masses[i],
+                                                  Vector{moment, moment, moment});
+        }
+        return sum;
+    }
+    /// Kinetic, and potential from the lowest place that the row can hang to. Velocities are those of the middle of a substep, which
+    /// moved positions by them: so are the heights here.
+    [[nodiscard]] double energy(double g, double substep = 0) const
+    {
+        double sum = scene.errors().kinetic_energy;
+        const double lowest = -link * (static_cast<double>(bodies.size()) - 0.5);
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            const BodyState state = scene.state(bodies[i]);
+            const double moved = substep * static_cast<double>(state.linear_velocity.y);
+            sum += masses[i] * g * (state.position.y - moved / 2 - lowest);
+        }
+        return sum;
+    }
+};
+
+/// So many light links from the origin, with a load at the end.
+Row hanging(int links, float mass)
+{
+    Row row;
+    for (int i = 0; i <= links; ++i) {
+        row.add(i == links ? static_cast<float>(load_mass) : mass, link * (i + 0.5));
+        if (i == 0) row.join(row.scene.ground(), {});
+    }
+    return row;
+}
+/// So many light links between two loads, with its middle in the origin.
+Row floating(int links, float mass)
+{
+    Row row;
+    for (int i = 0; i < links + 2; ++i)
+        row.add(i == 0 || i == links + 1 ? static_cast<float>(load_mass) : mass,
+                link * (i - 0.5 * (links + 1)));
+    return row;
+}
+
+SolverSettings exact(int substeps, float gravity = 0)
+{
+    SolverSettings settings = testing::with_gravity({0, -gravity, 0});
+    settings.substeps = substeps;
+    settings.exact_joints = true;
+    return settings;
+}
+
+/// A sling, without gravity.
+TEST(LoadsInMotion, AreWhirledForEver)
+{
+    for (const bool by_default : {false, true}) {
+        for (const int links : {1, 5}) {
+            for (const float mass : {0.5F, 0.05F, 5e-3F, 5e-4F}) {
+                for (const float speed : {1.0F, 5.0F}) {
+                    for (const int substeps : {1, 4}) {
+                        Row row = hanging(links, mass);
+                        row.whirl(static_cast<double>(speed));
+                        const double energy = row.energy(0);
+                        const Vector before = row.angular_momentum();
+                        SolverSettings settings = exact(substeps);
+                        settings.exact_joints = !by_default;
+                        Solver solver(settings);
+                        testing::run(row.scene, solver, 5);
+                        // A step takes what it turns by for a straight line.
+                        const double turned = static_cast<double>(speed) / (60 * substeps);
+                        const double most = 2 * turned * turned;
+                        EXPECT_NEAR(row.energy(0) / energy, 1, most)
+                            << links << " links of " << mass << " kg, " << speed << " rad/s, " << substeps;
+                        EXPECT_LT(length(row.angular_momentum() - before), most * length(before))
+                            << links << " links of " << mass << " kg, " << speed << " rad/s, " << substeps;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A load that is let go beside the point at which its links hang, and falls into them and swings.
+TEST(LoadsInMotion, SwingOnAfterAFall)
+{
+    for (const int links : {1, 5}) {
+        for (const float mass : {0.5F, 0.05F, 5e-3F, 5e-4F}) {
+            Row row = hanging(links, mass);
+            const double energy = row.energy(9.81);
+            Solver solver(exact(4, 9.81F));
+            double most = 0;
+            for (int i = 0; i < 300; ++i) {
+                solver.step(row.scene, testing::frame_time);
+                most = std::max(most, row.energy(9.81, 1.0 / 240));
+            }
+            std::printf("%d links of %g kg: %.3f of the energy after 5 s\n", links, static_cast<double>(mass),
+                        row.energy(9.81, 1.0 / 240) / energy);
+            EXPECT_LT(most, 1.01 * energy) << links << " links of " << mass << " kg";
+            EXPECT_GT(row.energy(9.81, 1.0 / 240), 0.88 * energy) << links << " links of " << mass << " kg";
+        }
+    }
+}
+
+/// Two loads that circle each other on a chain, which is not straight.
+TEST(LoadsInMotion, CircleEachOther)
+{
+    for (const int links : {1, 5, 20}) {
+        for (const float mass : {0.5F, 0.05F, 5e-3F, 5e-4F}) {
+            for (const float speed : {1.0F, 5.0F}) {
+                for (const int substeps : {1, 4}) {
+                    Row row = floating(links, mass);
+                    row.whirl(static_cast<double>(speed));
+                    for (std::size_t i = 0; i < row.bodies.size(); ++i) {
+                        BodyState state = row.scene.state(row.bodies[i]);
+                        const float aside = i % 2 == 0 ? speed : -speed;
+                        row.scene.set_velocity(
+                            row.bodies[i],
+                            state.linear_velocity + Vec3<float>{0, 0.1F * aside, 0.05F * aside},
+                            state.angular_velocity + Vec3<float>{0.2F * aside, 0, 0});
+                    }
+                    Solver solver(exact(substeps));
+                    // A first, very short step makes the velocities satisfy the joints.
+                    solver.step(row.scene, 1e-6F);
+                    const double energy = row.energy(0);
+                    const Vector before = row.angular_momentum();
+                    double most = 0, turned = 0;
+                    for (int i = 0; i < 300; ++i) {
+                        solver.step(row.scene, testing::frame_time);
+                        most = std::max(most, row.energy(0) / energy);
+                        turned = std::max(turned, length(row.angular_momentum() - before) / length(before));
+                    }
+                    std::printf(
+                        "%d links of %g kg, %g rad/s, %d substeps: L changes by %.2g, energy ends at %.3f, "
+                        "most %.3f\n",
+                        links, static_cast<double>(mass), static_cast<double>(speed), substeps, turned,
+                        row.energy(0) / energy, most);
+                    EXPECT_LT(turned, 1e-4)
+                        << links << " links of " << mass << " kg, " << speed << " rad/s, " << substeps;
+                    EXPECT_GT(row.energy(0), 0.985 * energy)
+                        << links << " links of " << mass << " kg, " << speed << " rad/s, " << substeps;
+                    EXPECT_LT(most, 1.005)
+                        << links << " links of " << mass << " kg, " << speed << " rad/s, " << substeps;
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace motley
