@@ -133,19 +133,18 @@ void forget_taken(const FigureBlock& block)
 }
 
 /// Computes the Jacobian J and the position error C of every lock at the present poses, and of the limits and motors that act,
-/// and factors the tree, stiffened by the tension of the locks in the last substep. Given `acting_in` and `pulled_in`, the tension is
-/// that which is there, and what acts and what pulls at the bodies is found out again in copies where they are not 0; all else stays,
-/// so that the factors of the other copies have the same bits as before.
+/// and factors the tree, stiffened by the tension of the locks in the last substep. Given `only`, the tension is that which is
+/// there, and what acts and what pulls at the bodies is found out again in copies where that is not 0; all else stays, so that the
+/// factors of the other copies have the same bits as before.
 void factor_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block,
-                 const float* acting_in = nullptr, const float* pulled_in = nullptr)
+                 const float* only = nullptr)
 {
-    const bool is_first = acting_in == nullptr;
     const auto locate = [&](int which, float* rows, float* tensions) {
         const FigureShape::Joint& joint = block.shape->joints[static_cast<std::size_t>(which)];
         const FigureBlock::Joint& lanes = block.joints[which];
         lanes.kernels->equality_rows(lanes.streams, lanes.block, block.body(joint.a), block.body(joint.b),
                                      rows);
-        if (!is_first) return;
+        if (only != nullptr) return;
         const float* impulses = lanes.impulses();
         for (std::int64_t i = 0; i < lanes.impulse_floats(); ++i)
             tensions[i] = context.step.substep * impulses[i];
@@ -156,18 +155,18 @@ void factor_tree(const KernelContext& context, const FigureKernels& kernels, con
         for (const FigureNode::Lock& lock : node.locks)
             locate(lock.joint, block.system + node.jacobian + row_floats * lock.first_row,
                    block.system + node.tension + block_lanes * lock.first_row);
-        if (is_first) {
+        if (only == nullptr) {
             add_acting_rows(context, block, node);
         } else {
             block.for_each_acting(node, [&](const FigureNode::Active& active, int row, float* by) {
-                act(context, block, node, active, row, by, acting_in);
+                act(context, block, node, active, row, by, only);
             });
         }
     }
     for (const FigureClosure& closure : block.shape->closures)
         locate(closure.joint, block.system + block.shape->closure_jacobian + row_floats * closure.first_row,
                block.system + block.shape->closure_target + block_lanes * closure.first_row);
-    kernels.factor(block, pulled_in);
+    kernels.factor(block, only);
 }
 
 /// The impulses of locks, and of what acts, start from zero in a substep.
@@ -201,9 +200,11 @@ void start_impulses(const FigureBlock& block)
                     });
 }
 
-/// Whether light bodies of a copy may be under much more tension now than when the tree was factored.
-bool has_uneven_masses(const FigureBlock& block)
+/// Whether light bodies of a copy may be under much more tension now than when the tree was factored. Not looked at beside limits,
+/// motors and springs of the tree: how hard they may push is seen only once it is solved.
+bool may_come_taut(const FigureBlock& block)
 {
+    if (block.shape->has_actives) return false;
     const Array<PointTree>& trees = block.shape->point_trees;
     return std::any_of(trees.begin(), trees.end(), [&](const PointTree& tree) {
         return any_of_lanes(block.system + tree.rigid, block.count);  // RigidTree::uneven comes first
@@ -216,9 +217,7 @@ void follow_tension(const KernelContext& context, const FigureKernels& kernels, 
     kernels.follow_tension(block, context.step.substep, context.step.exact_rate);
     const float* const exceeding = block.system + block.shape->exceeding;
     if (!any_of_lanes(exceeding, block.count)) return;
-    constexpr float in_none[block_lanes] = {};
-    factor_tree(context, kernels, block, in_none, exceeding);
-    start_impulses(block);
+    factor_tree(context, kernels, block, exceeding);
 }
 
 /// What acts on a row has pushed so hard, in one lane, of whose impulses `limit` is the first: a spring alone, or a limit and a
@@ -259,7 +258,7 @@ void solve_within_bounds(const KernelContext& context, const FigureKernels& kern
     for (int round = 0; round < 2; ++round) {
         const float* const exceeding = find_exceeding(block);
         if (exceeding == nullptr) return;
-        factor_tree(context, kernels, block, exceeding, exceeding);
+        factor_tree(context, kernels, block, exceeding);
         // What stiffened locks do to the bodies has been done by the first solve.
         for (const FigureNode& node : block.shape->nodes)
             std::fill_n(block.system + node.pull, 3 * block_lanes, 0.0F);
@@ -303,7 +302,7 @@ class CopiesRunner {
                 break;
             case Operation::begin_trees:
                 if (has_tree_) start_impulses(block_);
-                if (has_tree_ && has_uneven_masses(block_)) follow_tension(context_, kernels_, block_);
+                if (has_tree_ && may_come_taut(block_)) follow_tension(context_, kernels_, block_);
                 break;
             case Operation::warm_start:
                 sweep(context_, block_, &ConstraintKernels::warm_start_copies);
@@ -373,7 +372,7 @@ void prepare_tree(const KernelContext& context, const FigureKernels& kernels, co
 void begin_tree(const KernelContext& context, const FigureKernels& kernels, const FigureBlock& block)
 {
     start_impulses(block);
-    if (!has_uneven_masses(block)) return;
+    if (!may_come_taut(block)) return;
     kernels.load_velocities(context, block);
     follow_tension(context, kernels, block);
 }
