@@ -39,20 +39,20 @@ struct FigureNode {
     int most_rows;        ///< with those of its limits and motors, at most 6
     /// Where its arrays begin in FigureBlock::system, in floats. M' is the mass matrix of the child body and
     /// everything below it in the tree (articulated inertia).
-    std::int64_t jacobian;     ///< EqualityRows; once factored, the form that kernel_tree_rows.h keeps
-    std::int64_t response;     ///< M'^-1 J^T, six floats per row
-    std::int64_t factor;       ///< factors of K = J M'^-1 J^T
-    std::int64_t target;       ///< K^-1 times the right-hand side of the rows; one float per row
-    std::int64_t change;       ///< of the child body's velocity, six
-    std::int64_t mass;         ///< M': lower triangle
-    std::int64_t force;        ///< on the child body, from the nodes below it, six
-    std::int64_t kept;         ///< copy of the velocity while responses of closures are computed, six
-    std::int64_t pull;         ///< angular impulse of stiffened locks, applied at the first solve, three
-    std::int64_t place;        ///< see kernel_rigid_trees.h. Of point trees only; three
-    std::int64_t taken;        ///< impulse of what has let go, applied by the next solve, six
-    std::int64_t in_use;       ///< see FigureBlock::rows_of() and for_each_acting(), one
-    std::int64_t acts_by;      ///< ActsBy of its limits, motors and springs, one of each
-    std::int64_t give;         ///< ActingRow::give_of_all(), one per row; 0 of locks
+    std::int64_t jacobian;  ///< EqualityRows; once factored, the form that kernel_tree_rows.h keeps
+    std::int64_t response;  ///< M'^-1 J^T, six floats per row
+    std::int64_t factor;    ///< factors of K = J M'^-1 J^T
+    std::int64_t target;    ///< K^-1 times the right-hand side of the rows; one float per row
+    std::int64_t change;    ///< of the child body's velocity, six
+    std::int64_t mass;      ///< M': lower triangle
+    std::int64_t force;     ///< on the child body, from the nodes below it, six
+    std::int64_t kept;      ///< copy of the velocity while responses of closures are computed, six
+    std::int64_t pull;      ///< angular impulse of stiffened locks, applied at the first solve, three
+    std::int64_t place;     ///< of the body, from its tree's root: place_bodies(). Of point trees only; three
+    std::int64_t taken;     ///< impulse of what has let go, applied by the next solve, six
+    std::int64_t in_use;    ///< see FigureBlock::rows_of() and for_each_acting(), one
+    std::int64_t acts_by;   ///< ActsBy of its limits, motors and springs, one of each
+    std::int64_t give;      ///< ActingRow::give_of_all(), one per row; 0 of locks
     std::int64_t spring_give;  ///< ActingRow::give, one per row. At `give` in figures without rotors
     std::int64_t rotor;        ///< ActingRow::rotor, one per row. Of figures with rotors only
     std::int64_t given;  ///< ActingRow::given, and give times what the spring has pushed since; one per row

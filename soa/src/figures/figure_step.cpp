@@ -301,8 +301,9 @@ class CopiesRunner {
                 if (has_tree_) factor_tree(context_, kernels_, block_);
                 break;
             case Operation::begin_trees:
-                if (has_tree_) start_impulses(block_);
-                if (has_tree_ && may_come_taut(block_)) follow_tension(context_, kernels_, block_);
+                if (!has_tree_) break;
+                start_impulses(block_);
+                if (may_come_taut(block_)) follow_tension(context_, kernels_, block_);
                 break;
             case Operation::warm_start:
                 sweep(context_, block_, &ConstraintKernels::warm_start_copies);

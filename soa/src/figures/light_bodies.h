@@ -22,7 +22,7 @@ struct MassSpan {
 };
 
 /// A body with two locks or more, in a figure without a fixed body and with a body more than a million times as heavy; {} if there
-/// is none. The mass that its joints see is made of both, and a float keeps no digit of the light one
+/// is none. The mass that its joints see is made of both, and a float keeps hardly a digit of the light one
 /// (light_between_heavy_test.cpp).
 [[nodiscard]] BodyId light_between_heavy(std::span<const JointCandidate* const> joints,
                                          const BodyStore& bodies);

@@ -8,7 +8,8 @@
 enum class TreeSweep { solves, corrects, answers, tries };
 
 /// `now` in exceeding copies, `before` in the others.
-inline Lanes where_exceeding(const FigureBlock& figure, int lane, const Lanes& now, const Lanes& before)
+template <class Value>
+Value where_exceeding(const FigureBlock& figure, int lane, const Value& now, const Value& before)
 {
     return select(load_lanes(figure.system + figure.shape->exceeding + lane) > Lanes(0), now, before);
 }

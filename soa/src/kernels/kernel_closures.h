@@ -72,13 +72,13 @@ inline void factor_closures(const FigureBlock& figure, int lane)
     const Vec3<Lanes> still{Lanes(0), Lanes(0), Lanes(0)};
     const auto stop = [&] {
         for (const FigureNode& node : shape.nodes) {
-            Mover body = load_row<Mover>(figure.body(node.body) + lane);
+            Mover body = body_of(figure, node, lane);
             body.linear = body.angular = still;
             store_copy_velocity(body, figure.body(node.body) + lane);
         }
     };
     for (const FigureNode& node : shape.nodes) {
-        const Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        const Mover body = body_of(figure, node, lane);
         Row6 velocity;
         put(body.linear, body.angular, velocity);
         store_array(velocity, figure.system + node.kept + lane);
@@ -97,7 +97,7 @@ inline void factor_closures(const FigureBlock& figure, int lane)
     for (const FigureNode& node : shape.nodes) {
         Row6 velocity;
         load_array(figure.system + node.kept + lane, velocity);
-        Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        Mover body = body_of(figure, node, lane);
         body.linear = {velocity[0], velocity[1], velocity[2]};
         body.angular = {velocity[3], velocity[4], velocity[5]};
         store_copy_velocity(body, figure.body(node.body) + lane);

@@ -27,6 +27,16 @@ void for_each_moving_copy(const FigureBlock& figure, const Work& work)
     });
 }
 
+inline const FigureNode& node_of(const FigureBlock& figure, int node)
+{
+    return figure.shape->nodes[static_cast<std::size_t>(node)];
+}
+/// The child body of a node.
+inline Mover body_of(const FigureBlock& figure, const FigureNode& node, int lane)
+{
+    return load_row<Mover>(figure.body(node.body) + lane);
+}
+
 inline void load_field_quads(const float* fields, Lanes (&out)[4])
 {
     for (int i = 0; i < 3; ++i) out[i] = load_lanes(fields + i * block_lanes);

@@ -14,6 +14,7 @@
 #include "kernels/kernel_entries.h"
 #include "kernels/prefetch.h"
 #include "maths/any_body.h"
+#include "maths/bounded_impulse.h"
 #include "maths/equality_row.h"
 #include "maths/lane_body.h"
 #include "maths/lane_residual.h"

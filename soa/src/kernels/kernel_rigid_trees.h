@@ -7,7 +7,7 @@
 #pragma once
 
 struct RigidTree {
-    Lanes uneven;          ///< above 0 in lanes with masses that are not even: see even_masses
+    Lanes uneven;          ///< above 0 in lanes where the masses are further apart than even_masses
     Lanes keeps_momentum;  ///< above 0 in lanes whose momentum would change too much
     Lanes inverse_mass;
     Vec3<Lanes> centre;           ///< of mass, from the root body's; 0 for a tree that hangs
@@ -16,21 +16,13 @@ struct RigidTree {
 };
 static_assert(fields_of<RigidTree> == PointTree::floats);
 
-/// Rounding changes the momentum of a tree by more than 1e-5 of it in a second when its heaviest body has more than this times the
-/// mass of its lightest one (LightBetweenHeavy.MomentumIsKept).
+/// Up to this ratio of its heaviest body's mass to its lightest one's, rounding changes the momentum of a tree by less than 1e-5 of it
+/// in a second (LightBetweenHeavy.MomentumIsKept). The tension of one beyond is followed within a substep (kernel_tension.h).
 constexpr float even_masses = 100;
 
 inline float* rigid_tree(const FigureBlock& figure, const PointTree& tree, int lane)
 {
     return figure.system + tree.rigid + lane;
-}
-inline const FigureNode& node_of(const FigureBlock& figure, int node)
-{
-    return figure.shape->nodes[static_cast<std::size_t>(node)];
-}
-inline Mover body_of(const FigureBlock& figure, const FigureNode& node, int lane)
-{
-    return load_row<Mover>(figure.body(node.body) + lane);
 }
 /// Calls work(node, body, where its centre of mass is from `centre`) for the nodes of a tree.
 template <class Work>
@@ -82,28 +74,25 @@ inline Vec3<Lanes> place_bodies(const FigureBlock& figure, const PointTree& tree
     return velocity;
 }
 
-/// Finds the rigid body that has the mass, the inertia and the angular momentum of a tree, and stores all of it.
+/// Finds the rigid body that has the mass, the inertia and the angular momentum of a tree. `lightest`: the mass of its lightest body.
 [[gnu::noinline, gnu::cold]] inline void gather_tree(const FigureBlock& figure, const PointTree& tree,
-                                                     const Lanes& uneven, const Lanes& strained, int lane)
+                                                     const Lanes& lightest, int lane, RigidTree& rigid)
 {
     const Vec3<Lanes> velocity = place_bodies(figure, tree, lane);
     const Lanes zero(0);
     const Vec3<Lanes> none{zero, zero, zero};
-    Lanes mass(0), lightest(std::numeric_limits<float>::infinity());
+    Lanes mass(0);
     Vec3<Lanes> moment = none;
     for_each_body(figure, tree, none, lane,
                   [&](const FigureNode&, const Mover& body, const Vec3<Lanes>& place) {
                       const Lanes m = inverse_or_zero(body.inverse_mass);
                       mass = mass + m;
-                      lightest = minimum(lightest, m);
                       moment = moment + m * place;
                   });
     const bool hangs = node_of(figure, tree.end - 1).parent >= 0;
-    // A body that may not move holds the tree, in its lane.
+    // A body without mass does not move: it holds the tree, in its lane.
     const auto moves = lightest > zero;
-    RigidTree rigid;
-    rigid.uneven = uneven;
-    rigid.keeps_momentum = hangs ? zero : select(moves, maximum(uneven, strained), zero);
+    rigid.keeps_momentum = hangs ? zero : select(moves, rigid.keeps_momentum, zero);
     rigid.inverse_mass = inverse_or_zero(mass);
     rigid.centre = hangs ? none : rigid.inverse_mass * moment;
     Sym3<Lanes> inertia{zero, zero, zero, zero, zero, zero};
@@ -122,10 +111,7 @@ inline Vec3<Lanes> place_bodies(const FigureBlock& figure, const PointTree& tree
                       spin = spin + (own * body.angular + cross(d, m * (body.linear - velocity)));
                   });
     rigid.inverse_inertia = inverse(inertia);
-    const Vec3<Lanes> rotation = rigid.inverse_inertia * spin;
-    rigid.rotation = {select(moves, rotation.x, zero), select(moves, rotation.y, zero),
-                      select(moves, rotation.z, zero)};
-    store_row(rigid, rigid_tree(figure, tree, lane));
+    rigid.rotation = select(moves, rigid.inverse_inertia * spin, none);
 }
 
 /// Takes back by how much a solve has changed the momentum and the angular momentum of a tree that floats.
@@ -134,7 +120,8 @@ inline Vec3<Lanes> place_bodies(const FigureBlock& figure, const PointTree& tree
 {
     const auto rigid = load_row<RigidTree>(rigid_tree(figure, tree, lane));
     if (!any(rigid.keeps_momentum > Lanes(0))) return;
-    Vec3<Lanes> push{Lanes(0), Lanes(0), Lanes(0)}, turn = push;
+    const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
+    Vec3<Lanes> push = none, turn = none;
     for_each_body(figure, tree, rigid.centre, lane,
                   [&](const FigureNode& node, const Mover& body, const Vec3<Lanes>& d) {
                       Row6 change;
@@ -148,11 +135,8 @@ inline Vec3<Lanes> place_bodies(const FigureBlock& figure, const PointTree& tree
     // x - 0 is x for every x, also for -0.
     const auto keeps = rigid.keeps_momentum > Lanes(0);
     const auto where_kept = [&](const Vec3<Lanes>& back) {
-        const auto kept = [&](const Lanes& component) {
-            const Lanes here = select(keeps, component, Lanes(0));
-            return sweep == TreeSweep::corrects ? where_exceeding(figure, lane, here, Lanes(0)) : here;
-        };
-        return Vec3<Lanes>{kept(back.x), kept(back.y), kept(back.z)};
+        const Vec3<Lanes> kept = select(keeps, back, none);
+        return sweep == TreeSweep::corrects ? where_exceeding(figure, lane, kept, none) : kept;
     };
     const Vec3<Lanes> linear = rigid.inverse_mass * push, angular = rigid.inverse_inertia * turn;
     for_each_body(figure, tree, rigid.centre, lane,

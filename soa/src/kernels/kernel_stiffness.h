@@ -26,17 +26,23 @@ struct TautLock {
     PointArms arms;
     Lanes excess_of_child, excess_of_parent;  ///< see excess_of(); 0 for a fixed parent
 };
-[[gnu::noinline]] inline void find_tension(const FigureBlock& figure, const FigureNode& child,
-                                           const FigureNode::Lock& lock, int lane, TautLock& out)
+/// FigureNode::tension of the point that a lock holds, with the sign of the node.
+inline Vec3<Lanes> tension_of(const FigureBlock& figure, const FigureNode& node, const FigureNode::Lock& lock,
+                              int lane)
 {
-    out.arms = arms_of(figure, child, lock, lane);
-    auto tension = load_row<Vec3<Lanes>>(figure.system + child.tension + lock.first_row * block_lanes + lane);
-    if (lock.reversed) tension = -tension;
-    out.excess_of_child = excess_of(body_of(figure, child, lane), out.arms.of_child, tension);
-    out.excess_of_parent = child.parent_node < 0
-                               ? Lanes(0)
-                               : excess_of(body_of(figure, node_of(figure, child.parent_node), lane),
-                                           out.arms.of_parent, -tension);
+    const auto tension =
+        load_row<Vec3<Lanes>>(figure.system + node.tension + lock.first_row * block_lanes + lane);
+    return lock.reversed ? -tension : tension;
+}
+[[gnu::noinline]] inline TautLock taut_lock(const FigureBlock& figure, const FigureNode& child,
+                                            const FigureNode::Lock& lock, int lane)
+{
+    const PointArms arms = arms_of(figure, child, lock, lane);
+    const Vec3<Lanes> tension = tension_of(figure, child, lock, lane);
+    return {arms, excess_of(body_of(figure, child, lane), arms.of_child, tension),
+            child.parent_node < 0 ? Lanes(0)
+                                  : excess_of(body_of(figure, node_of(figure, child.parent_node), lane),
+                                              arms.of_parent, -tension)};
 }
 /// Calls work(child node, TautLock) for each lock of the figure's trees that holds a point on a point.
 template <class Work>
@@ -44,10 +50,7 @@ void for_each_taut_lock(const FigureBlock& figure, int lane, const Work& work)
 {
     for (const FigureNode& child : figure.shape->nodes) {
         for (const FigureNode::Lock& lock : child.locks) {
-            if (!lock.locks_point) continue;
-            TautLock taut;
-            find_tension(figure, child, lock, lane, taut);
-            work(child, taut);
+            if (lock.locks_point) work(child, taut_lock(figure, child, lock, lane));
         }
     }
 }
@@ -83,12 +86,11 @@ inline void gather_trees(const FigureBlock& figure, int lane)
             strained = maximum(strained, load_lanes(system + node.strain));
         }
         const Lanes zero(0);
-        const Lanes uneven = select(heaviest > Lanes(even_masses) * lightest, Lanes(1), zero);
-        if (any(maximum(uneven, strained) > zero)) {
-            gather_tree(figure, tree, uneven, strained, lane);
-        } else {
-            store_row(RigidTree{}, rigid_tree(figure, tree, lane));
-        }
+        RigidTree rigid{};
+        rigid.uneven = select(heaviest > Lanes(even_masses) * lightest, Lanes(1), zero);
+        rigid.keeps_momentum = maximum(rigid.uneven, strained);
+        if (any(rigid.keeps_momentum > zero)) gather_tree(figure, tree, lightest, lane, rigid);
+        store_row(rigid, rigid_tree(figure, tree, lane));
     }
 }
 
@@ -111,9 +113,8 @@ inline void gather_trees(const FigureBlock& figure, int lane)
     m.at(5, 5) = m.at(5, 5) + k.zz;
     store_row(m, system + node.mass);
     const Vec3<Lanes> against = k * (body_of(figure, node, lane).angular - rotation);
-    const auto where_anew = [&](const Lanes& pull) { return select(anew > Lanes(0), pull, Lanes(0)); };
-    store_row(load_row<Vec3<Lanes>>(system + node.pull) -
-                  Vec3<Lanes>{where_anew(against.x), where_anew(against.y), where_anew(against.z)},
+    const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
+    store_row(load_row<Vec3<Lanes>>(system + node.pull) - select(anew > Lanes(0), against, none),
               system + node.pull);
 }
 

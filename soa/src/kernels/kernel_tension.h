@@ -2,9 +2,10 @@
 //
 // Locks are stiffened by the tension of the last substep. Where a heavy body suddenly pulls at light ones, that is much too little, and
 // the substep throws them. So the tree is first solved on trial; where that finds much more tension, it is factored again with it.
+// (Not beside limits, motors and springs: see may_come_taut() in figures/figure_step.cpp.)
 #pragma once
 
-/// How many times stiffer than it was taken for a pull may be.
+/// A pull may be this many times as stiff as it was taken for before the tree is factored again.
 constexpr float most_growth = 1.25F;
 
 /// Calls work(node, lock, lever arms, tension before, tension found by the trial) for each lock of a node that holds a point on a
@@ -20,10 +21,8 @@ void for_each_tried_lock(const FigureBlock& figure, const FigureNode& node, floa
                                    ? PointArms{load_row<Vec3<Lanes>>(system + node.arm_of_child()),
                                                load_row<Vec3<Lanes>>(system + node.arm_of_parent())}
                                    : arms_of(figure, node, lock, lane);
-        const std::int64_t row = std::int64_t{lock.first_row} * block_lanes;
-        auto before = load_row<Vec3<Lanes>>(system + node.tension + row);
-        if (lock.reversed) before = -before;
-        work(lock, arms, before, Lanes(substep) * load_row<Vec3<Lanes>>(system + node.target + row));
+        const auto impulse = load_row<Vec3<Lanes>>(system + node.target + lock.first_row * block_lanes);
+        work(lock, arms, tension_of(figure, node, lock, lane), Lanes(substep) * impulse);
     }
 }
 
@@ -60,16 +59,12 @@ inline void follow_tension(const FigureBlock& figure, float substep, float rate,
     if (!any(grows)) return;
     store_lanes(select(grows, Lanes(1), Lanes(0)), exceeding);
     for (const FigureNode& node : shape.nodes) {
-        for_each_tried_lock(
-            figure, node, substep, lane,
-            [&](const FigureNode::Lock& lock, const PointArms&, const Vec3<Lanes>& before,
-                const Vec3<Lanes>& now) {
-                const auto one = [&](const Lanes& was, const Lanes& is) {
-                    const Lanes tension = select(grows, is, was);
-                    return lock.reversed ? -tension : tension;
-                };
-                store_row(Vec3<Lanes>{one(before.x, now.x), one(before.y, now.y), one(before.z, now.z)},
-                          system + node.tension + std::int64_t{lock.first_row} * block_lanes);
-            });
+        for_each_tried_lock(figure, node, substep, lane,
+                            [&](const FigureNode::Lock& lock, const PointArms&, const Vec3<Lanes>& before,
+                                const Vec3<Lanes>& now) {
+                                const Vec3<Lanes> tension = select(grows, now, before);
+                                store_row(lock.reversed ? -tension : tension,
+                                          system + node.tension + lock.first_row * block_lanes);
+                            });
     }
 }

@@ -163,7 +163,7 @@ void reach_up(const FigureBlock& figure, const FigureNode& node, float* system, 
 {
     const Rows j = Rows::kept(system + node.jacobian, figure.rows_of(node));
     const auto rows = j.count();
-    const Mover body = load_row<Mover>(figure.body(node.body) + lane);
+    const Mover body = body_of(figure, node, lane);
     Row6 child, parent;
     put(body.linear, body.angular, child);
     if (node.parent_node >= 0 || sweep != TreeSweep::answers) {
@@ -271,6 +271,7 @@ inline void factor_tree(const FigureBlock& figure, const float* only, int lane)
     const Array<FigureNode>& nodes = figure.shape->nodes;
     float* system = figure.system + lane;
     const Lanes anew = only == nullptr ? Lanes(1) : load_lanes(only + lane);
+    const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
     for (const FigureNode& node : nodes) {
         for (const FigureNode::Lock& lock : node.locks) {
             for (int i = lock.first_row; lock.reversed && i < lock.first_row + lock.rows; ++i)
@@ -279,28 +280,24 @@ inline void factor_tree(const FigureBlock& figure, const float* only, int lane)
         figure.for_each_acting(node, [&](const FigureNode::Active& active, int row, const float*) {
             if (active.reversed) turn_round(system + node.jacobian + row * FigureNode::row_floats);
         });
-        const Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        const Mover body = body_of(figure, node, lane);
         const Triangle<6> mass = mass_of(body);
         Row6 pivots;
         pivots_of(body, mass, pivots);
         store_row(mass, system + node.mass);
         store_array(pivots, system + node.pivots);
-        const auto pull = load_row<Vec3<Lanes>>(system + node.pull);
-        const auto kept = [&](const Lanes& of_before) {
-            return select(anew > Lanes(0), Lanes(0), of_before);
-        };
-        store_row(Vec3<Lanes>{kept(pull.x), kept(pull.y), kept(pull.z)}, system + node.pull);
+        store_row(select(anew > Lanes(0), none, load_row<Vec3<Lanes>>(system + node.pull)),
+                  system + node.pull);
     }
     stiffen_trees(figure, anew, lane);
     for (const FigureNode& node : nodes) {
-        const Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        const Mover body = body_of(figure, node, lane);
         Row6 pivots_alone;
         load_array(system + node.pivots, pivots_alone);
         auto factor = load_row<Triangle<6>>(system + node.mass);
         factor_mass(body, pivots_alone, factor);
         store_row(factor, system + node.mass_factor);
-        float* parent_mass =
-            node.parent_node < 0 ? nullptr : system + nodes[static_cast<std::size_t>(node.parent_node)].mass;
+        float* parent_mass = node.parent_node < 0 ? nullptr : system + node_of(figure, node.parent_node).mass;
         const int row_count = figure.rows_of(node);
         with_rows(node, row_count, [&]<class Rows>(Rows*) {
             factor_locks<Rows>(body, node, row_count, system, parent_mass, factor);
@@ -328,8 +325,7 @@ inline void factor_tree(const FigureBlock& figure, const float* only, int lane)
     const Array<FigureNode>& nodes = figure.shape->nodes;
     float* system = figure.system + lane;
     const auto parent_of = [&](const FigureNode& node, std::int64_t FigureNode::*part) {
-        return node.parent_node < 0 ? nullptr
-                                    : system + nodes[static_cast<std::size_t>(node.parent_node)].*part;
+        return node.parent_node < 0 ? nullptr : system + node_of(figure, node.parent_node).*part;
     };
     const Vec3<Lanes> none{Lanes(0), Lanes(0), Lanes(0)};
     for (const FigureNode& node : nodes) {
@@ -362,7 +358,7 @@ inline void factor_tree(const FigureBlock& figure, const float* only, int lane)
         });
         store_array(change, system + node.change);
         if (sweep == TreeSweep::tries) continue;
-        Mover body = load_row<Mover>(figure.body(node.body) + lane);
+        Mover body = body_of(figure, node, lane);
         if (sweep == TreeSweep::corrects) {
             // x + -0 is x for every x, also for -0.
             for (Lanes& entry : change) entry = where_exceeding(figure, lane, entry, Lanes(-0.0F));
