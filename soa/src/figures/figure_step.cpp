@@ -1,6 +1,7 @@
 // Runs a plan over a block of copies.
 #include "figures/figure_step.h"
 
+#include "kernels/prefetch.h"
 #include "layout/colouring.h"
 
 namespace motley {
@@ -32,13 +33,21 @@ void sweep(const KernelContext& context, const FigureBlock& block,
 void transfer(const KernelContext& context, const FigureBlock& block, std::span<const ConstraintData> data,
               ConstraintKernels::Transfer ConstraintKernels::*kernel)
 {
-    const auto run = [&](const FigureBlock::Joint& lanes, int type) {
-        (lanes.kernels->*kernel)(context, lanes.streams, data[static_cast<std::size_t>(type)], lanes.block,
-                                 lanes.block + 1);
+    const auto prefetch = kernel == &ConstraintKernels::prepare ? prefetch_to_prepare : prefetch_to_store;
+    const auto& joints = block.shape->joints;
+    const std::size_t count = joints.size() + block.contacts.size();
+    const auto lanes_of = [&](std::size_t i) -> const FigureBlock::Joint& {
+        return i < joints.size() ? block.joints[i] : block.contacts[i - joints.size()].lanes;
     };
-    for (std::size_t i = 0; i < block.shape->joints.size(); ++i)
-        run(block.joints[i], block.shape->joints[i].type);
-    for (const FigureBlock::Contact& contact : block.contacts) run(contact.lanes, contact.type);
+    const auto data_of = [&](std::size_t i) -> const ConstraintData& {
+        const int type = i < joints.size() ? joints[i].type : block.contacts[i - joints.size()].type;
+        return data[static_cast<std::size_t>(type)];
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + 1 < count) prefetch(lanes_of(i + 1).streams, data_of(i + 1), lanes_of(i + 1).block);
+        const auto& [kernels, streams, which] = lanes_of(i);
+        (kernels->*kernel)(context, streams, data_of(i), which, which + 1);
+    }
 }
 
 /// Adds the impulses of a finished substep to the sums, for contacts and joints outside the tree; the tree adds its own

@@ -116,11 +116,16 @@ class Figures {
     /// Blocks that are alone in this step, and those with a tree that are not.
     [[nodiscard]] std::span<const std::int32_t> lone() const { return lone_; }
     [[nodiscard]] std::span<const std::int32_t> touched_trees() const { return touched_trees_; }
-    /// Whether a rigid row belongs to a block that is alone.
-    [[nodiscard]] bool is_alone(std::size_t row) const
+    /// Which of sixteen consecutive rigid rows (BodyRows::rows_per_group) belong to blocks that are alone, a bit each.
+    [[nodiscard]] std::uint16_t alone_in(std::size_t group) const
     {
-        const std::int32_t block = block_of(row);
-        return block >= 0 && alone_[static_cast<std::size_t>(block)] != 0;
+        const std::size_t first = group * BodyRows::rows_per_group;
+        unsigned rows = 0;
+        for (std::size_t i = 0; i < BodyRows::rows_per_group; ++i) {
+            const std::int32_t block = block_of(first + i);
+            if (block >= 0 && alone_[static_cast<std::size_t>(block)] != 0) rows |= 1U << i;
+        }
+        return static_cast<std::uint16_t>(rows);
     }
     /// The number of joints in blocks that are alone.
     [[nodiscard]] std::int64_t lone_joints() const { return is_empty() ? 0 : lone_joints_; }

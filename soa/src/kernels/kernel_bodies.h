@@ -225,6 +225,7 @@ Vec3<Lanes> free_acceleration(const StepConstants& step, const BodyArrays& array
 /// After a body has turned: says so where it may have changed the responses of contacts.
 inline void tell_contacts(const Body<BodyKind::rigid>& body, const BodyArrays& arrays)
 {
-    if (arrays.turned_far != nullptr && any(change_at_most(body) > Lanes(most_change)))
+    if (arrays.turned_far == nullptr || arrays.turned_far->load(std::memory_order_relaxed)) return;
+    if (any(change_at_most(body) > Lanes(most_change)))
         arrays.turned_far->store(true, std::memory_order_relaxed);
 }

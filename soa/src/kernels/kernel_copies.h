@@ -115,17 +115,51 @@ inline void integrate_copy_velocities(const KernelContext& context, const Figure
     tell_contacts(body, arrays);
 }
 
+/// A body of a block of copies, and where it is in the arrays of its kind.
+struct TurningCopy {
+    float* lanes;
+    const std::int32_t* offsets;
+    Tumble tumble;
+};
+
+/// Integrates the positions of a few bodies, which are taken through the parts of Tumble together. One function for all places
+/// that call it.
+[[gnu::noinline]] inline void turn_together(const KernelContext& context, TurningCopy* bodies, int count)
+{
+    const Lanes h(context.step.substep);
+    const auto for_each = [&](const auto& work) {
+        for (int i = 0; i < count; ++i) work(bodies[i], load_row<Mover>(bodies[i].lanes));
+    };
+    const auto start_of = [](const TurningCopy& body) {
+        return load_row<Sym3<Lanes>>(body.lanes + CopyBody::start_inertia * block_lanes);
+    };
+    begin_to_tumble(
+        [&](const auto& work) {
+            for_each([&](TurningCopy& body, const Mover& mover) {
+                work(body.tumble, mover, [&] { return start_of(body); });
+            });
+        },
+        h);
+    for_each([&](const TurningCopy& body, Mover mover) {
+        mover.delta = mover.delta + h * mover.linear;
+        // Never again for fixed bodies, whose offsets are not of these arrays: without inertia they have no spread.
+        if (body.tumble.end(mover, start_of(body))) [[unlikely]]
+            rotate_copies_again(mover, context.bodies[static_cast<int>(BodyKind::rigid)], body.offsets,
+                                body.lanes, context.step.substep);
+        store_row(mover, body.lanes);
+    });
+}
+
 inline void integrate_copy_positions(const KernelContext& context, const FigureBlock& figure)
 {
-    const float h = context.step.substep;
-    const BodyArrays& arrays = context.bodies[static_cast<int>(BodyKind::rigid)];
+    TurningCopy bodies[tumbling_together];
+    int count = 0;
     for_each_copy(figure, [&](BodyKind, float* lanes, const std::int32_t* offsets, int) {
-        auto body = load_row<Mover>(lanes);
-        body.delta = body.delta + Lanes(h) * body.linear;
-        // Never again for fixed bodies, whose offsets are not of these arrays: without inertia they have no spread.
-        if (tumble(body, load_row<Sym3<Lanes>>(lanes + CopyBody::start_inertia * block_lanes), Lanes(h)))
-            [[unlikely]]
-            rotate_copies_again(body, arrays, offsets, lanes, h);
-        store_row(body, lanes);
+        bodies[count].lanes = lanes;
+        bodies[count].offsets = offsets;
+        if (++count < tumbling_together) return;
+        turn_together(context, bodies, count);
+        count = 0;
     });
+    turn_together(context, bodies, count);
 }

@@ -10,7 +10,7 @@ namespace motley {
 /// Kernels are compiled in four shares, optimised for speed or for size.
 enum class KernelShare {
     swept,  ///< run in every substep, for usual pairs (see is_usual): for speed
-    once,  ///< run at the start and end of a step, for usual pairs: for size; joints not with AVX-512 (once_lanes_of)
+    once,   ///< run at the start and end of a step, for usual pairs: not with AVX-512 (once_lanes_of)
     unusual,  ///< run in every substep, for the other pairs: for speed; not on every instruction set (rare_lanes_of)
     rare,  ///< run only with some settings, or at the start and end for the other pairs: for size; likewise
 };

@@ -43,7 +43,10 @@ class Lanes {
     friend Lanes operator+(const Lanes& x, const Lanes& y) { return Lanes(x.v + y.v); }
     friend Lanes operator-(const Lanes& x, const Lanes& y) { return Lanes(x.v - y.v); }
     friend Lanes operator*(const Lanes& x, const Lanes& y) { return Lanes(x.v * y.v); }
-    friend Lanes operator/(const Lanes& x, const Lanes& y) { return Lanes(quotient(x.v, y.v)); }
+    [[gnu::always_inline]] friend Lanes operator/(const Lanes& x, const Lanes& y)
+    {
+        return Lanes(quotient(x.v, y.v));
+    }
     friend Lanes operator-(const Lanes& x) { return Lanes(x.v ^ xsimd::batch<float, Arch>(-0.0F)); }
     friend Mask operator<(const Lanes& x, const Lanes& y) { return Mask(x.v < y.v); }
     friend Mask operator>(const Lanes& x, const Lanes& y) { return Mask(x.v > y.v); }

@@ -1,5 +1,7 @@
 #include "kernels/prefetch.h"
 
+#include <span>
+
 namespace motley {
 
 namespace {
@@ -15,6 +17,22 @@ void prefetch_rows(const BodyArrays& arrays, const std::int32_t* offsets, bool w
     }
 }
 
+std::span<const std::int32_t> constraints_of(const BlockStreams& streams, std::int64_t block)
+{
+    return {streams.constraints[block].lane, streams.counts[block]};
+}
+
+constexpr std::int64_t cache_line_floats = 16;
+
+/// Prefetches `entry` of a table whose entries have `stride` floats.
+template <bool to_write>
+void prefetch_entry(const float* table, std::int64_t stride, std::int32_t entry)
+{
+    const float* const first = table + stride * entry;
+    for (std::int64_t i = 0; i < stride; i += cache_line_floats) __builtin_prefetch(first + i, to_write);
+    __builtin_prefetch(first + stride - 1, to_write);
+}
+
 }  // namespace
 
 void prefetch_bodies(const KernelContext& context, const BlockStreams& streams, std::int64_t block,
@@ -23,6 +41,23 @@ void prefetch_bodies(const KernelContext& context, const BlockStreams& streams, 
     const BlockBodies& bodies = streams.bodies[block];
     prefetch_rows(context.bodies[static_cast<int>(streams.kind_a)], bodies.a, with_delta);
     prefetch_rows(context.bodies[static_cast<int>(streams.kind_b)], bodies.b, with_delta);
+}
+
+void prefetch_to_prepare(const BlockStreams& streams, const ConstraintData& data, std::int64_t block)
+{
+    for (const std::int32_t constraint : constraints_of(streams, block)) {
+        prefetch_entry<false>(data.parameters, data.parameter_stride, constraint);
+        if (data.memory_index == nullptr)
+            prefetch_entry<false>(data.memory_in, data.memory_stride, constraint);
+    }
+}
+
+void prefetch_to_store(const BlockStreams& streams, const ConstraintData& data, std::int64_t block)
+{
+    for (const std::int32_t constraint : constraints_of(streams, block)) {
+        prefetch_entry<true>(data.memory_out, data.memory_stride, constraint);
+        prefetch_entry<true>(data.step_out, data.step_stride, constraint);
+    }
 }
 
 }  // namespace motley

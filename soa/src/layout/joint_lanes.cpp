@@ -202,27 +202,36 @@ bool JointLanes::place_new(ColourMasks& masks)
     return true;
 }
 
-/// Whether the joints that have stayed lead from one body to the other by a short way. No way leads over a fixed body.
+/// Whether the joints that have stayed lead from one body to the other by a short way, sought from both ends in turn. No way leads
+/// over a fixed body.
 bool JointLanes::are_connected(const BodyStore& bodies, BodyRow from, BodyRow to)
 {
-    Array<BodyRow>& reached = component_.bodies;
-    reached.assign(1, from);
-    bool found = false;
-    const auto reach = [&](BodyRow body) {
-        if (body.kind() == BodyKind::fixed) return;
-        found = found || body == to;
-        if (std::find(reached.begin(), reached.end(), body) == reached.end()) reached.push_back(body);
+    if (to.kind() == BodyKind::fixed) return false;
+    reached_[0].assign(1, from);
+    reached_[1].assign(1, to);
+    const auto has = [&](std::size_t end, BodyRow body) {
+        return std::find(reached_[end].begin(), reached_[end].end(), body) != reached_[end].end();
     };
-    for (std::size_t i = 0; i < reached.size() && reached.size() <= Figures::most_bodies && !found; ++i) {
-        joints_->for_each_on(first_end_of(bodies, reached[i]), [&](const JointStores::Slot& entry) {
+    for (std::size_t i = 0; reached_[0].size() + reached_[1].size() <= Figures::most_bodies; ++i) {
+        const std::size_t end = i % 2;
+        if (i / 2 == reached_[end].size()) return false;  // it is connected to no others
+        const BodyRow body = reached_[end][i / 2];
+        bool found = false;
+        const auto reach = [&](BodyRow other) {
+            if (other.kind() == BodyKind::fixed) return;
+            found = found || has(1 - end, other);
+            if (!has(end, other)) reached_[end].push_back(other);
+        };
+        joints_->for_each_on(first_end_of(bodies, body), [&](const JointStores::Slot& entry) {
             const Place& place = place_of(entry);
             if (place.is_new || !place.is_in_lane()) return;
             const Placement joint = batches_.placement_in(place.lane);
             reach(joint.a);
             reach(joint.b);
         });
+        if (found) return true;
     }
-    return found;
+    return false;
 }
 
 /// Finds the components of the bodies whose joints have changed. The small ones may be figures, and their bodies are new

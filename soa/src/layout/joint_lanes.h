@@ -72,7 +72,8 @@ class JointLanes {
         Array<BodyRow> bodies;
         Array<JointCandidate> joints;
     } component_;
-    JointColumns columns_;  ///< of joints_
+    std::array<Array<BodyRow>, 2> reached_;  ///< by are_connected(), from each end
+    JointColumns columns_;                   ///< of joints_
 
     void look_at(JointStores& joints);
     void note_changes(const SceneCore& scene);

@@ -18,9 +18,6 @@
 namespace motley {
 namespace {
 
-/// Bodies per range: a few microseconds of streaming.
-constexpr std::int32_t rows_per_range = 512;
-
 /// The size of a core's second level cache, bytes. Bodies that fit it arrive in time without prefetching, which is a
 /// quarter of a small kernel's instructions: without it a sweep of 10,000 people is 1.4 times as fast, and one of a
 /// million 0.8 times.
@@ -190,67 +187,6 @@ void Layout::cut(SceneCore& scene, std::span<const Contact> list, bool tells_apa
     if (may_keep) cut_ = wanted;
 }
 
-/// Notes which bodies are awake. Returns whether they are those of the last call.
-bool Layout::note_awake(const BodyStore& bodies)
-{
-    bool same = true;
-    for (std::size_t kind = 0; kind < body_kind_count; ++kind) {
-        const BodyRows& rows = bodies.rows(static_cast<BodyKind>(kind));
-        const bool may_skip = bodies.sleepers > 0 && static_cast<BodyKind>(kind) != BodyKind::fixed;
-        Array<std::uint16_t>& noted = awake_[kind];
-        same = same && noted.size() == rows.awake.size();
-        noted.resize(rows.awake.size());
-        for (std::size_t group = 0; group < noted.size(); ++group) {
-            const std::uint16_t now = may_skip ? rows.awake[group] : std::uint16_t{0xFFFF};
-            same = same && noted[group] == now;
-            noted[group] = now;
-        }
-    }
-    return same;
-}
-
-void Layout::list_rows(const SceneCore& scene)
-{
-    for (int kind = 0; kind < body_kind_count; ++kind) {
-        Array<RowRange>& ranges = rows_[static_cast<std::size_t>(kind)];
-        const auto size = static_cast<std::int32_t>(scene.bodies.rows(static_cast<BodyKind>(kind)).size());
-        const bool has_lone = static_cast<BodyKind>(kind) == BodyKind::rigid && !figures.lone().empty();
-        ranges.clear();
-        if (size == 1) continue;  // the null row alone
-        if (intake.patches.are_wanted())
-            beside_[static_cast<std::size_t>(kind)].resize(static_cast<std::size_t>(size));
-        const auto add = [&](std::int32_t first, std::int32_t last) {
-            for_each_even_piece<block_lanes>(first, last, rows_per_range,
-                                             [&](std::int32_t begin, std::int32_t end) {
-                                                 ranges.push_back({begin, end});
-                                             });
-        };
-        constexpr auto a_group = static_cast<std::int32_t>(BodyRows::rows_per_group);
-        const Array<std::uint16_t>& awake = awake_[static_cast<std::size_t>(kind)];
-        // Whole groups fill lanes, but where lone figures leave gaps, sleepers need not fill these.
-        const auto add_unless_alone = [&](std::int32_t first, std::int32_t last) {
-            if (!has_lone) return add(first, last);
-            for_each_run(
-                first, last,
-                [&](std::int32_t row) {
-                    return (awake[static_cast<std::size_t>(row / a_group)] >> row % a_group & 1) != 0 &&
-                           !figures.is_alone(static_cast<std::size_t>(row));
-                },
-                add);
-        };
-        // Room for as many ranges as those who sleep may ever leave, so that it is not sought when they do: at most every
-        // second of the least runs, and of those longer than a range four pieces more than ranges.
-        const std::int32_t least_run = has_lone ? 1 : a_group;
-        ranges.reserve(static_cast<std::size_t>(size / (2 * least_run) + 5 * (size / rows_per_range) + 6));
-        for_each_run(
-            0, static_cast<std::int32_t>(awake.size()),
-            [&](std::int32_t group) { return awake[static_cast<std::size_t>(group)] != 0; },
-            [&](std::int32_t first, std::int32_t last) {
-                add_unless_alone(first * a_group, std::min(last * a_group, size));
-            });
-    }
-}
-
 void Layout::list_discs(SceneCore& scene)
 {
     disc_chunks_.clear();
@@ -275,25 +211,6 @@ void Layout::list_discs(SceneCore& scene)
         }
         disc_bands_.push_back({first, static_cast<std::int32_t>(disc_chunks_.size())});
     }
-}
-
-void Layout::list_beside_patches(BodyKind kind, std::int64_t i)
-{
-    RowRange& range = rows_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
-    BodyRow* const first = beside_[static_cast<std::size_t>(kind)].data() + range.begin;
-    BodyRow* last = first;
-    for (std::int32_t row = range.begin; row < range.end; ++row) {
-        *last = BodyRow(kind, static_cast<std::uint32_t>(row));
-        last += intake.patches.lists(*last) ? 0 : 1;
-    }
-    range.beside = static_cast<std::int32_t>(last - first);
-}
-
-std::span<const BodyRow> Layout::beside_patches(BodyKind kind, std::int64_t i) const
-{
-    const RowRange& range = rows(static_cast<int>(kind))[static_cast<std::size_t>(i)];
-    return {beside_[static_cast<std::size_t>(kind)].data() + range.begin,
-            static_cast<std::size_t>(range.beside)};
 }
 
 void Layout::point_at_data(SceneCore& scene, std::span<const Contact> list)

@@ -136,7 +136,8 @@ class Layout {
     std::array<AlignedVector<float>, body_kind_count> decay_;        ///< see BodyArrays
     std::atomic<bool> overloaded_ = false, turned_far_ = false;
     std::array<Array<std::uint16_t>, body_kind_count>
-        awake_;  ///< BodyRows::awake, or all where nobody sleeps
+        awake_;                   ///< BodyRows::awake, or all where nobody sleeps
+    Array<std::uint16_t> swept_;  ///< of `awake_` of rigid bodies, those that are in no lone figure
     std::array<Array<RowRange>, body_kind_count> rows_;
     std::array<AlignedVector<BodyRow>, body_kind_count> beside_;  ///< in no patch; at the range's first row
     ColourMasks joint_masks_, masks_;

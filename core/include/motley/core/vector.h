@@ -122,8 +122,12 @@ Quat<R> normalised(const Quat<R>& q)
 template <class R>
 Sym3<R> rotate_tensor(const Quat<R>& q, const Sym3<R>& m)
 {
-    const Vec3<R> ex = rotate(q, Vec3<R>{R(1), R(0), R(0)});
-    const Vec3<R> ey = rotate(q, Vec3<R>{R(0), R(1), R(0)});
+    // rotate() of the unit vectors, without the products with 0; adding 0 makes a zero positive, as it does there.
+    const R x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+    const R xx = q.x * x2, yy = q.y * y2, zz = q.z * z2, xy = q.x * y2, xz = q.x * z2, yz = q.y * z2;
+    const R wx = q.w * x2, wy = q.w * y2, wz = q.w * z2;
+    const Vec3<R> ex{R(1) - (yy + zz), (R(0) + wz) + xy, (R(0) - wy) + xz};
+    const Vec3<R> ey{(R(0) - wz) + xy, R(1) - (zz + xx), (R(0) + wx) + yz};
     const Vec3<R> ez = cross(ex, ey);
     // Rows of R in terms of the columns ex, ey, ez.
     const Vec3<R> r0{ex.x, ey.x, ez.x}, r1{ex.y, ey.y, ez.y}, r2{ex.z, ey.z, ez.z};
