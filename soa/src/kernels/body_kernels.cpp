@@ -10,6 +10,8 @@ namespace {
 
 #include "kernels/kernel_bodies.h"
 
+#include "kernels/kernel_tumble.h"
+
 #include "kernels/kernel_integration.h"
 
 #include "kernels/kernel_commit.h"
