@@ -28,7 +28,6 @@ void Sweeper::make_room()
 
 void Sweeper::transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel)
 {
-    const auto prefetch = kernel == &ConstraintKernels::prepare ? prefetch_to_prepare : prefetch_to_store;
     const TransferList& transfers = layout_.transfers();
     runner_.run(static_cast<std::int64_t>(transfers.tiles.size()), [&](std::int64_t i) {
         const TransferTile& tile = transfers.tiles[static_cast<std::size_t>(i)];
@@ -36,7 +35,7 @@ void Sweeper::transfer(ConstraintKernels::Transfer ConstraintKernels::*kernel)
             const TransferTile::Part& part = transfers.parts[static_cast<std::size_t>(p)];
             const ConstraintData& data = layout_.data(part.type);
             for (std::int32_t block = part.begin; block < part.end; ++block) {
-                if (block + 1 < part.end) prefetch(part.streams, data, block + 1);
+                if (block + 1 < part.end) prefetch_constraints(kernel, part.streams, data, block + 1);
                 (part.kernels->*kernel)(layout_.context, part.streams, data, block, block + 1);
             }
         }

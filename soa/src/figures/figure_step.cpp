@@ -33,7 +33,6 @@ void sweep(const KernelContext& context, const FigureBlock& block,
 void transfer(const KernelContext& context, const FigureBlock& block, std::span<const ConstraintData> data,
               ConstraintKernels::Transfer ConstraintKernels::*kernel)
 {
-    const auto prefetch = kernel == &ConstraintKernels::prepare ? prefetch_to_prepare : prefetch_to_store;
     const auto& joints = block.shape->joints;
     const std::size_t count = joints.size() + block.contacts.size();
     const auto lanes_of = [&](std::size_t i) -> const FigureBlock::Joint& {
@@ -44,7 +43,8 @@ void transfer(const KernelContext& context, const FigureBlock& block, std::span<
         return data[static_cast<std::size_t>(type)];
     };
     for (std::size_t i = 0; i < count; ++i) {
-        if (i + 1 < count) prefetch(lanes_of(i + 1).streams, data_of(i + 1), lanes_of(i + 1).block);
+        if (i + 1 < count)
+            prefetch_constraints(kernel, lanes_of(i + 1).streams, data_of(i + 1), lanes_of(i + 1).block);
         const auto& [kernels, streams, which] = lanes_of(i);
         (kernels->*kernel)(context, streams, data_of(i), which, which + 1);
     }

@@ -122,8 +122,8 @@ struct TurningCopy {
     Tumble tumble;
 };
 
-/// Integrates the positions of a few bodies, which are taken through the parts of Tumble together. One function for all places
-/// that call it.
+/// Integrates the positions of a few bodies together: see Tumble. Not inlined, because integrate_copy_positions() would have four
+/// copies of it.
 [[gnu::noinline]] inline void turn_together(const KernelContext& context, TurningCopy* bodies, int count)
 {
     const Lanes h(context.step.substep);

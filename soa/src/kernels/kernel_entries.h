@@ -10,7 +10,8 @@ namespace motley {
 /// Kernels are compiled in four shares, optimised for speed or for size.
 enum class KernelShare {
     swept,  ///< run in every substep, for usual pairs (see is_usual): for speed
-    once,   ///< run at the start and end of a step, for usual pairs: not with AVX-512 (once_lanes_of)
+    /// Run at the start and end of a step, for usual pairs: with AVX2 for speed, else for size; not with AVX-512 (once_lanes_of).
+    once,
     unusual,  ///< run in every substep, for the other pairs: for speed; not on every instruction set (rare_lanes_of)
     rare,  ///< run only with some settings, or at the start and end for the other pairs: for size; likewise
 };

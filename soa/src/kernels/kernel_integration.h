@@ -214,8 +214,8 @@ template <BodyKind kind, bool runs_on>
     }
 }
 
-/// Integrates positions and, with `runs_on`, the velocities of the next substep, of as many bundles of rigid bodies as index_of()
-/// has numbers for.
+/// Integrates positions and, with `runs_on`, the velocities of the next substep, of `bundles` bundles of rigid bodies together: see
+/// Tumble. There are at most tumbling_together; index_of(i) is the RowIndex of bundle i.
 template <bool runs_on, class IndexOf>
 [[gnu::always_inline]] inline void move_rigid_on(const KernelContext& context, int bundles,
                                                  const IndexOf& index_of)

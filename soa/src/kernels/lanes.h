@@ -43,6 +43,7 @@ class Lanes {
     friend Lanes operator+(const Lanes& x, const Lanes& y) { return Lanes(x.v + y.v); }
     friend Lanes operator-(const Lanes& x, const Lanes& y) { return Lanes(x.v - y.v); }
     friend Lanes operator*(const Lanes& x, const Lanes& y) { return Lanes(x.v * y.v); }
+    // Where kernels are compiled for size, g++ would call a function for this one instruction, which is larger.
     [[gnu::always_inline]] friend Lanes operator/(const Lanes& x, const Lanes& y)
     {
         return Lanes(quotient(x.v, y.v));

@@ -1,7 +1,5 @@
 #include "kernels/prefetch.h"
 
-#include <span>
-
 namespace motley {
 
 namespace {
@@ -15,11 +13,6 @@ void prefetch_rows(const BodyArrays& arrays, const std::int32_t* offsets, bool w
         if (with_delta) __builtin_prefetch(arrays.delta + first);
         if (arrays.kind == BodyKind::rigid) __builtin_prefetch(arrays.world_inverse_inertia + first);
     }
-}
-
-std::span<const std::int32_t> constraints_of(const BlockStreams& streams, std::int64_t block)
-{
-    return {streams.constraints[block].lane, streams.counts[block]};
 }
 
 constexpr std::int64_t cache_line_floats = 16;
@@ -43,20 +36,21 @@ void prefetch_bodies(const KernelContext& context, const BlockStreams& streams, 
     prefetch_rows(context.bodies[static_cast<int>(streams.kind_b)], bodies.b, with_delta);
 }
 
-void prefetch_to_prepare(const BlockStreams& streams, const ConstraintData& data, std::int64_t block)
+void prefetch_constraints(ConstraintKernels::Transfer ConstraintKernels::*kernel, const BlockStreams& streams,
+                          const ConstraintData& data, std::int64_t block)
 {
-    for (const std::int32_t constraint : constraints_of(streams, block)) {
-        prefetch_entry<false>(data.parameters, data.parameter_stride, constraint);
-        if (data.memory_index == nullptr)
-            prefetch_entry<false>(data.memory_in, data.memory_stride, constraint);
-    }
-}
-
-void prefetch_to_store(const BlockStreams& streams, const ConstraintData& data, std::int64_t block)
-{
-    for (const std::int32_t constraint : constraints_of(streams, block)) {
-        prefetch_entry<true>(data.memory_out, data.memory_stride, constraint);
-        prefetch_entry<true>(data.step_out, data.step_stride, constraint);
+    const bool prepares = kernel == &ConstraintKernels::prepare;
+    for (int lane = 0; lane < streams.counts[block]; ++lane) {
+        const std::int32_t constraint = streams.constraints[block].lane[lane];
+        if (prepares) {
+            prefetch_entry<false>(data.parameters, data.parameter_stride, constraint);
+            // The memory of a contact is where its index says, which is not read for this.
+            if (data.memory_index == nullptr)
+                prefetch_entry<false>(data.memory_in, data.memory_stride, constraint);
+        } else {
+            prefetch_entry<true>(data.memory_out, data.memory_stride, constraint);
+            prefetch_entry<true>(data.step_out, data.step_stride, constraint);
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-// Prefetching what blocks are about to read, the same for every constraint type and instruction set.
+// Prefetching what kernels are about to read or write, the same for every constraint type and instruction set.
 #pragma once
 
 #include "layout/block.h"
@@ -10,9 +10,9 @@ namespace motley {
 void prefetch_bodies(const KernelContext& context, const BlockStreams& streams, std::int64_t block,
                      bool with_delta);
 
-/// Prefetches what `prepare` reads of the constraints of a block in the stores of the scene, or what `store` writes there. Copies of a
-/// figure were added one after the other, so that the constraints of a block lie far apart.
-void prefetch_to_prepare(const BlockStreams& streams, const ConstraintData& data, std::int64_t block);
-void prefetch_to_store(const BlockStreams& streams, const ConstraintData& data, std::int64_t block);
+/// Prefetches what `kernel`, which is prepare or store, reads or writes of the constraints of a block in the stores of the scene.
+/// They lie far apart there: a block has those of one colour, or of copies of a figure, which were added one after the other.
+void prefetch_constraints(ConstraintKernels::Transfer ConstraintKernels::*kernel, const BlockStreams& streams,
+                          const ConstraintData& data, std::int64_t block);
 
 }  // namespace motley
