@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <functional>
 #include <tuple>
+
+#include "small_solve.h"
 
 namespace motley::reference {
 
@@ -16,34 +18,47 @@ void BlockSystem::lay_out(int nodes, int first_waiting, const std::vector<std::p
         neighbours[static_cast<std::size_t>(b)].push_back(a);
     }
     std::vector<bool> waits(count, false);
-    std::set<std::tuple<bool, std::size_t, int>> candidates;
+    // A node comes once for every change of its neighbours; entries from before the last change are passed over.
+    using Candidate = std::tuple<bool, std::size_t, int>;
+    std::vector<Candidate> candidates;
+    candidates.reserve(count + 2 * pairs.size());
     const auto candidate = [&](int node) {
         const auto i = static_cast<std::size_t>(node);
-        return std::tuple(static_cast<bool>(waits[i]), neighbours[i].size(), node);
+        return Candidate(static_cast<bool>(waits[i]), neighbours[i].size(), node);
+    };
+    const auto add_candidate = [&](int node) {
+        candidates.push_back(candidate(node));
+        std::push_heap(candidates.begin(), candidates.end(), std::greater<>());
     };
     for (int i = 0; i < nodes; ++i) {
         std::vector<int>& mine = neighbours[static_cast<std::size_t>(i)];
         std::sort(mine.begin(), mine.end());
         mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
         waits[static_cast<std::size_t>(i)] = i >= first_waiting;
-        candidates.insert(candidate(i));
+        add_candidate(i);
     }
     order_.clear();
     place_.assign(count, 0);
     beside_.assign(count, {});
     int blocks = 0;
     std::vector<int> merged;
+    std::vector<bool> is_eliminated(count, false);
     while (!candidates.empty()) {
-        const int pivot = std::get<int>(*candidates.begin());
-        candidates.erase(candidates.begin());
+        std::pop_heap(candidates.begin(), candidates.end(), std::greater<>());
+        const Candidate least = candidates.back();
+        candidates.pop_back();
+        const int pivot = std::get<int>(least);
+        if (is_eliminated[static_cast<std::size_t>(pivot)] || least != candidate(pivot)) continue;
+        is_eliminated[static_cast<std::size_t>(pivot)] = true;
         place_[static_cast<std::size_t>(pivot)] = static_cast<int>(order_.size());
         order_.push_back(pivot);
         const std::vector<int> left = std::move(neighbours[static_cast<std::size_t>(pivot)]);
-        for (const int node : left) beside_[static_cast<std::size_t>(pivot)].push_back({node, blocks++});
+        std::vector<Beside>& later = beside_[static_cast<std::size_t>(pivot)];
+        later.reserve(left.size());
+        for (const int node : left) later.push_back({node, blocks++});
         // Elimination connects its remaining neighbours with each other.
         for (const int node : left) {
             std::vector<int>& mine = neighbours[static_cast<std::size_t>(node)];
-            candidates.erase(candidate(node));
             merged.clear();
             std::set_union(mine.begin(), mine.end(), left.begin(), left.end(), std::back_inserter(merged));
             merged.erase(std::remove_if(merged.begin(), merged.end(),
@@ -51,7 +66,7 @@ void BlockSystem::lay_out(int nodes, int first_waiting, const std::vector<std::p
                          merged.end());
             mine.swap(merged);
             waits[static_cast<std::size_t>(node)] = false;
-            candidates.insert(candidate(node));
+            add_candidate(node);
         }
     }
     diagonal_.resize(count);
@@ -86,7 +101,8 @@ bool BlockSystem::factor()
 {
     for (const int pivot : order_) {
         Block& diagonal = diagonal_[static_cast<std::size_t>(pivot)];
-        const Block inverse = diagonal.partialPivLu().inverse();
+        Block inverse = Block::Identity();
+        solve_small(diagonal, inverse);
         if (!inverse.allFinite()) return false;
         diagonal = inverse;
         const std::vector<Beside>& row = beside_[static_cast<std::size_t>(pivot)];

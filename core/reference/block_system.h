@@ -1,7 +1,7 @@
 // A sparse system of 6 x 6 blocks: factored once, solved often.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <utility>
 #include <vector>
 

@@ -1,7 +1,7 @@
 // Linear complementarity with bounds and cones over the velocities of bodies, solved to the rounding of doubles.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 #include <deque>
 #include <vector>

@@ -1,6 +1,8 @@
 // Constraint functions and their Jacobians, as in textbooks.
 #include "motley/reference/constraints.h"
 
+#include "symmetric_modes.h"
+
 namespace motley::reference {
 namespace {
 
@@ -206,17 +208,25 @@ Eigen::Matrix<double, 12, 12> pair_inverse_mass(const Body& a, const Body& b)
 
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& m)
 {
-    return m.completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::MatrixXd square = m.lazyProduct(m.transpose());
+    return m.transpose().lazyProduct(symmetric_pseudo_inverse(square));
+}
+
+Eigen::MatrixXd response(const Jacobian& jacobian, const Eigen::Matrix<double, 12, 12>& inverse_mass)
+{
+    // For these few rows Eigen's ordinary product would be slower, and far larger.
+    const Jacobian moved = jacobian.lazyProduct(inverse_mass);
+    return moved.lazyProduct(jacobian.transpose());
 }
 
 Eigen::MatrixXd effective_mass(const Jacobian& jacobian, const Body& a, const Body& b)
 {
     const Eigen::Matrix<double, 12, 12> inverse_mass = pair_inverse_mass(a, b);
-    const Eigen::MatrixXd k = jacobian * inverse_mass * jacobian.transpose();
+    const Eigen::MatrixXd k = response(jacobian, inverse_mass);
     // Rows along which the pair cannot move: K is only rounding, and must not be inverted.
     if (k.diagonal().maxCoeff() < 1e-12 * inverse_mass.diagonal().maxCoeff())
         return Eigen::MatrixXd::Zero(k.rows(), k.cols());
-    return pseudo_inverse(k);
+    return symmetric_pseudo_inverse(k);
 }
 
 }  // namespace motley::reference

@@ -110,7 +110,7 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
             // The bound is a ball of torques: rows G w = s are solved as w = G^-1 s, whose impulse is the torque.
             const Eigen::MatrixXd turn = block.jacobian.rightCols<3>();
             const Eigen::MatrixXd inverse = pseudo_inverse(turn);
-            jacobian = inverse * jacobian;
+            jacobian = inverse.lazyProduct(block.jacobian);
             bias = inverse * bias;
             guess = turn.transpose() * guess;
             at.to_rows = inverse.transpose();

@@ -87,7 +87,7 @@ class Assembly {
         for (const auto& jacobian : group.jacobian) {
             if (jacobian.rows() == 0) continue;  // of no body
             const auto rows = jacobian.middleRows(first, count);
-            group.softness.block(first, first, count, count) += share * (rows * rows.transpose());
+            group.softness.block(first, first, count, count) += share * rows.lazyProduct(rows.transpose());
         }
     }
     [[nodiscard]] RowGroup& group(std::size_t at) { return problem_.groups[at]; }

@@ -11,9 +11,8 @@
 // one impulse. When everything rotates as a whole, so do the forces, and there must be no resistance. So the rows see
 // velocities relative to a common spin, an artificial body with nearly no inertia: it takes nearly no angular momentum,
 // and rotation as a whole is not slowed down.
-#include <Eigen/Eigenvalues>
-
 #include "direct_rows.h"
+#include "symmetric_modes.h"
 #include "world_rows.h"
 
 namespace motley::reference {
@@ -75,14 +74,15 @@ std::vector<World::StiffRow> World::find_stiff_rows(const Islands& islands, doub
             scale.block<3, 3>(6 * end, 6 * end) = of_body.linear.asDiagonal();
             scale.block<3, 3>(6 * end + 3, 6 * end + 3) = of_body.angular;
         }
-        const PairMatrix scaled = scale.transpose() * stiffness * scale;
+        const PairMatrix half_scaled = stiffness.lazyProduct(scale);
+        const PairMatrix scaled = scale.transpose().lazyProduct(half_scaled);
         if (scaled.cwiseAbs().rowwise().sum().maxCoeff() < bearable) continue;
-        const Eigen::SelfAdjointEigenSolver<PairMatrix> modes(scaled);
+        const SymmetricModes<PairMatrix> modes(scaled);
         for (Index mode = 0; mode < 12; ++mode) {
-            const double stiff = modes.eigenvalues()(mode);
+            const double stiff = modes.values(mode);
             if (!(stiff > bearable)) continue;
             const bool moves_a = here[0]->motion == BodyMotion::dynamic_body;
-            const Vector12 row = stiffness * (scale * modes.eigenvectors().col(mode)) / stiff;
+            const Vector12 row = stiffness * (scale * modes.vectors.col(mode)) / stiff;
             // Speed along the row for a common spin about the centre of a, or of b where a is fixed.
             const Eigen::Vector3d centre = here[moves_a ? 0 : 1]->position;
             Eigen::Vector3d turn = Eigen::Vector3d::Zero();

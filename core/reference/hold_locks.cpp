@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "direct_rows.h"
+#include "symmetric_modes.h"
 #include "world_rows.h"
 
 namespace motley::reference {
@@ -45,7 +46,7 @@ struct Spin {
         const Eigen::Vector3d middle = moment / mass;
         const Eigen::Matrix3d about_middle = inertia + mass * skew(middle) * skew(middle);
         if (in_plane) return {0, 0, about_middle(2, 2) > 0 ? wanted.z() / about_middle(2, 2) : 0};
-        return about_middle.completeOrthogonalDecomposition().solve(wanted);
+        return symmetric_pseudo_inverse(about_middle) * wanted;
     }
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "small_solve.h"
+
 namespace motley::reference {
 namespace {
 
@@ -84,11 +86,16 @@ void linearise(MappedGroup& unit, double epsilon)
             if (group.lambda(normal) > 0) e.block(cone.first, normal, cone.count, 1) -= cone.bound * along;
         }
     }
-    if (group.softness.size() > 0) e.noalias() += f * group.softness;
+    if (group.softness.size() > 0) e += f.lazyProduct(group.softness);
     if (unit.node >= 0) return;
-    const Eigen::PartialPivLU<Square> factors(e);
-    unit.law = factors.solve(f);
-    unit.drive = -factors.solve(unit.map);
+    // E (D s) = (F -map), both at once.
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, RowGroup::most_rows,
+                  RowGroup::most_rows + 1>
+        solved(n, n + 1);
+    solved << f, -unit.map;
+    solve_small(e, solved);
+    unit.law = solved.leftCols(n);
+    unit.drive = solved.col(n);
 }
 
 void sweep_group(MappedGroup& unit, Eigen::VectorXd& change)

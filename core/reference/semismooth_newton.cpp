@@ -213,8 +213,8 @@ class Part {
         system_.at(unit.node, unit.node).topLeftCorner(n, n) = unit.e;
         for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
             if (unit.bodies[side] < 0) continue;
-            system_.at(unit.node, unit.bodies[side]).topRows(n).noalias() +=
-                unit.f * unit.group->jacobian[side];
+            system_.at(unit.node, unit.bodies[side]).topRows(n) +=
+                unit.f.lazyProduct(unit.group->jacobian[side]);
             system_.at(unit.bodies[side], unit.node).leftCols(n) -= unit.group->jacobian[side].transpose();
         }
     }
@@ -223,10 +223,10 @@ class Part {
         for (std::size_t a = 0; a < RowGroup::most_bodies; ++a) {
             if (unit.bodies[a] < 0) continue;
             const Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, RowGroup::most_rows> left =
-                unit.group->jacobian[a].transpose() * unit.law;
+                unit.group->jacobian[a].transpose().lazyProduct(unit.law);
             for (std::size_t b = 0; b < RowGroup::most_bodies; ++b) {
                 if (unit.bodies[b] >= 0)
-                    system_.at(unit.bodies[a], unit.bodies[b]).noalias() += left * unit.group->jacobian[b];
+                    system_.at(unit.bodies[a], unit.bodies[b]) += left.lazyProduct(unit.group->jacobian[b]);
             }
         }
     }

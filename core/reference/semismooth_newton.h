@@ -1,7 +1,7 @@
 // The solver of one part of a problem.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 #include "complementarity.h"

@@ -27,7 +27,7 @@ void World::apply(int a, int b, const Jacobian& jacobian, const Eigen::VectorXd&
     Body& body_a = bodies[static_cast<std::size_t>(a)];
     Body& body_b = bodies[static_cast<std::size_t>(b)];
     const Eigen::Matrix<double, 12, 1> change =
-        pair_inverse_mass(body_a, body_b) * jacobian.transpose() * impulse;
+        pair_inverse_mass(body_a, body_b) * (jacobian.transpose() * impulse);
     body_a.velocity += change.head<6>();
     body_b.velocity += change.tail<6>();
 }

@@ -1,5 +1,4 @@
 // Contacts in the reference: those of the list, and the points of manifolds.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "as_eigen.h"
@@ -76,14 +75,13 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
     const double mu = static_cast<double>(point.contact.friction);
     if (mu > 0 || point.contact.restitution > 0) {
         const std::vector<Body>& of = bodies_of_response(point);
-        using Response = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;
-        const Response k =
-            row.tangents *
-            pair_inverse_mass(of[static_cast<std::size_t>(point.a)], of[static_cast<std::size_t>(point.b)]) *
-            row.tangents.transpose();
-        const double most =
-            Eigen::SelfAdjointEigenSolver<Response>(k, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+        const Eigen::MatrixXd k = response(
+            row.tangents,
+            pair_inverse_mass(of[static_cast<std::size_t>(point.a)], of[static_cast<std::size_t>(point.b)]));
         const Eigen::Index rows = row.friction.size();
+        // The larger eigenvalue.
+        const double most =
+            rows == 1 ? k(0, 0) : (k(0, 0) + k(1, 1)) / 2 + std::hypot((k(0, 0) - k(1, 1)) / 2, k(0, 1));
         const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(rows, rows);
         // Once the bodies have turned far, the largest response is used along both tangents.
         Eigen::MatrixXd inverse = effective_mass_along(point, row.tangents);
@@ -143,7 +141,7 @@ void World::project_contacts(const Joint& joint, const SolverSettings& settings)
             std::clamp(block.error(0) + static_cast<double>(settings.penetration_slop), -0.2, 0.0);
         const double left = static_cast<double>(settings.baumgarte) * deep + (block.jacobian * move)(0);
         const double lambda = std::max(-mass_of(joint, block)(0, 0) * left, 0.0);
-        move += pair_inverse_mass(a, b) * block.jacobian.transpose() * lambda;
+        move += pair_inverse_mass(a, b) * (block.jacobian.transpose() * lambda);
     }
     a.displace(move.head<6>());
     b.displace(move.tail<6>());
@@ -155,7 +153,7 @@ void World::project(std::vector<ContactRow>& contacts, const SolverSettings& set
         Body& body_a = bodies[static_cast<std::size_t>(a)];
         Body& body_b = bodies[static_cast<std::size_t>(b)];
         const Eigen::Matrix<double, 12, 1> change =
-            pair_inverse_mass(body_a, body_b) * jacobian.transpose() * push;
+            pair_inverse_mass(body_a, body_b) * (jacobian.transpose() * push);
         body_a.displace(change.head<6>());
         body_b.displace(change.tail<6>());
     };

@@ -63,7 +63,7 @@ void World::begin_joint(Joint& joint, double h, const SolverSettings& settings, 
         if (block.bounds_torque) {
             row.response = inverse_mass.block<3, 3>(3, 3) + inverse_mass.block<3, 3>(9, 9);
         } else {
-            row.response = block.jacobian * inverse_mass * block.jacobian.transpose();
+            row.response = response(block.jacobian, inverse_mass);
             if (block.armature > 0) row.response(0, 0) = 1 / row.mass(0, 0);
         }
         apply(joint, block.jacobian, row.impulse());

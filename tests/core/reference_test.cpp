@@ -1,6 +1,7 @@
 // The reference itself: its Jacobians against finite differences of C along random motions, for every pair of
 // body models that makes sense; its effective masses and its conservation of momentum.
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "mixed_scene.h"
 #include "motley/reference/world.h"

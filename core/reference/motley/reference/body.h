@@ -1,8 +1,8 @@
 // A body of the reference: state in double, inverse mass as an explicit 6 x 6 matrix in the world.
 #pragma once
 
-#include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <optional>
 
 #include "motley/core/body.h"

@@ -66,6 +66,8 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& m);
 
 /// M^-1 of a pair, 12 x 12.
 Eigen::Matrix<double, 12, 12> pair_inverse_mass(const Body& a, const Body& b);
+/// J M^-1 J^T: what the rows of J answer to their own impulses.
+Eigen::MatrixXd response(const Jacobian& jacobian, const Eigen::Matrix<double, 12, 12>& inverse_mass);
 /// (J M^-1 J^T)^+: the pseudo-inverse, so that directions in which no body can move get no impulse.
 Eigen::MatrixXd effective_mass(const Jacobian& jacobian, const Body& a, const Body& b);
 
