@@ -420,9 +420,11 @@ TEST(CStructs, HaveTheSizesThatHostsWereBuiltWith)
     EXPECT_EQ(sizeof(motley_manifold_definition), 168U);
     EXPECT_EQ(sizeof(motley_screw_definition), 64U);
     EXPECT_EQ(sizeof(motley_six_dof_definition), 360U);
+    EXPECT_EQ(sizeof(motley_weld_definition), 96U);
     EXPECT_EQ(sizeof(motley_wheel_definition), 104U);
     EXPECT_EQ(sizeof(motley_joint_report), 36U);
     EXPECT_EQ(sizeof(motley_break_event), 16U);
+    EXPECT_EQ(sizeof(motley_weld), 16U);
     EXPECT_EQ(sizeof(motley_wheel), 32U);
     EXPECT_EQ(c::first_size<motley_solver_settings>, 112U);
     EXPECT_EQ(sizeof(motley_solver_options), 32U);

@@ -280,6 +280,20 @@ TEST(CInterface, WheelsAndJointsOfSixCoordinatesMakeTheSameJoints)
     EXPECT_EQ(made.spring.generation, 0U);
     steer(both.scene, expected_wheel, wheel, 0.2F);
     ASSERT_TRUE(done(motley_scene_steer(both.c_scene, &made, &c_wheel, 0.2F)));
+
+    const WeldDefinition weld{
+        .body_a = a, .body_b = b, .frame_a = {{0.25F, 0, 0}}, .linear_hertz = 4, .angular_damping_ratio = 3};
+    motley_weld_definition c_weld = motley_default_weld_definition();
+    c_weld.body_a = as_c<motley_body_id>(a);
+    c_weld.body_b = as_c<motley_body_id>(b);
+    c_weld.frame_a.position = {0.25F, 0, 0};
+    c_weld.linear_hertz = 4;
+    c_weld.angular_damping_ratio = 3;
+    motley_weld made_weld;
+    const Weld expected_weld = add_weld(both.scene, weld);
+    ASSERT_TRUE(done(motley_scene_add_weld(both.c_scene, &c_weld, &made_weld)));
+    EXPECT_EQ(made_weld.rotation.slot, expected_weld.rotation.slot);
+    EXPECT_EQ(made_weld.position.slot, expected_weld.position.slot);
     for (int step = 0; step < steps; ++step) ASSERT_NO_FATAL_FAILURE(both.step());
 }
 

@@ -12,6 +12,7 @@
 #include "motley/core/snapshot.h"
 #include "motley/core/step_report.h"
 #include "motley/core/wall_index.h"
+#include "motley/core/weld.h"
 #include "motley/core/wheel.h"
 #include "motley/parallel/executor.h"
 #include "motley/parallel/parallel_for.h"

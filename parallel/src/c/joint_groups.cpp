@@ -3,6 +3,7 @@
 #include "joint_mirrors.h"
 #include "motley/c/joints.h"
 #include "motley/core/six_dof.h"
+#include "motley/core/weld.h"
 #include "motley/core/wheel.h"
 
 namespace motley::c {
@@ -30,6 +31,18 @@ struct Mirror<motley_six_dof_definition, SixDofDefinition>
                    MOTLEY_FIELD(max_swing), MOTLEY_FIELD(stiffness));
 };
 template <>
+struct Mirror<motley_weld_definition, WeldDefinition> : Pair<motley_weld_definition, WeldDefinition> {
+    static constexpr const char* name = "motley_weld_definition";
+    static constexpr auto fields =
+        std::tuple(MOTLEY_FIELD(body_a), MOTLEY_FIELD(body_b), MOTLEY_FIELD(frame_a), MOTLEY_FIELD(frame_b),
+                   MOTLEY_FIELD(linear_hertz), MOTLEY_FIELD(linear_damping_ratio),
+                   MOTLEY_FIELD(angular_hertz), MOTLEY_FIELD(angular_damping_ratio));
+};
+template <>
+struct Mirror<motley_weld, Weld> : Pair<motley_weld, Weld> {
+    static constexpr auto fields = std::tuple(MOTLEY_FIELD(position), MOTLEY_FIELD(rotation));
+};
+template <>
 struct Mirror<motley_wheel_definition, WheelDefinition> : Pair<motley_wheel_definition, WheelDefinition> {
     static constexpr const char* name = "motley_wheel_definition";
     static constexpr auto fields = std::tuple(
@@ -50,6 +63,7 @@ using namespace motley;
 using namespace motley::c;
 
 MOTLEY_DEFINE_DEFAULT(six_dof_definition, SixDofDefinition)
+MOTLEY_DEFINE_DEFAULT(weld_definition, WeldDefinition)
 MOTLEY_DEFINE_DEFAULT(wheel_definition, WheelDefinition)
 
 motley_status motley_scene_add_six_dof(motley_scene* scene, const motley_six_dof_definition* definition,
@@ -66,6 +80,14 @@ motley_status motley_figure_add_six_dof(motley_figure* figure, const motley_six_
 {
     return call(__func__,
                 [&] { figure_of(figure).add_six_dof(read<SixDofDefinition>(definition, "definition")); });
+}
+
+motley_status motley_scene_add_weld(motley_scene* scene, const motley_weld_definition* definition,
+                                    motley_weld* weld)
+{
+    return call(__func__, [&] {
+        give_handle(weld, add_weld(scene_of(scene), read<WeldDefinition>(definition, "definition")));
+    });
 }
 
 motley_status motley_scene_add_wheel(motley_scene* scene, const motley_wheel_definition* definition,

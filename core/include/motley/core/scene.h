@@ -24,6 +24,7 @@ namespace motley {
 
 struct [[gnu::visibility("hidden")]] SceneCore;
 struct SixDofDefinition;
+struct WeldDefinition;
 struct WheelDefinition;
 extern template class __attribute__((visibility("default"))) Boxed<SceneCore>;
 
@@ -151,11 +152,13 @@ class Scene {
     ConstraintId add_joint(const Definition& definition);
     /// Definitions that make several joints have functions of their own; the error names them.
     template <class Definition>
-    requires(std::is_same_v<Definition, SixDofDefinition> ||
+    requires(std::is_same_v<Definition, SixDofDefinition> || std::is_same_v<Definition, WeldDefinition> ||
              std::is_same_v<Definition, WheelDefinition>) ConstraintId add_joint(const Definition&)
     {
         static_assert(!std::is_same_v<Definition, SixDofDefinition>,
                       "a SixDofDefinition makes several joints: call add_six_dof(scene, definition)");
+        static_assert(!std::is_same_v<Definition, WeldDefinition>,
+                      "a WeldDefinition may make two joints: call add_weld(scene, definition)");
         static_assert(!std::is_same_v<Definition, WheelDefinition>,
                       "a WheelDefinition makes several joints: call add_wheel(scene, definition)");
         return {};

@@ -121,6 +121,28 @@ enum { MOTLEY_SIX_DOF_JOINTS = 16 };
 motley_status motley_scene_add_six_dof(motley_scene* scene, const motley_six_dof_definition* definition,
                                        motley_constraint_id* joints, size_t* count);
 
+/// A fixed joint that may give, in translation and in rotation by stiffnesses of their own: where a frequency is above 0 it is a
+/// spring. Frames and bodies as in motley_fixed_definition.
+typedef struct motley_weld_definition {
+    size_t struct_size;
+    motley_body_id body_a, body_b;
+    motley_joint_frame frame_a, frame_b;
+    float linear_hertz;           ///< Hz, 0 to 1e6; 0, which is the default: rigid
+    float linear_damping_ratio;   ///< 0 to 1e6; 1, which is the default, is critical
+    float angular_hertz;          ///< Hz, likewise of the rotation
+    float angular_damping_ratio;  ///< likewise
+} motley_weld_definition;
+MOTLEY_DECLARE_DEFAULT(weld_definition)
+
+/// The joints of a weld. `rotation` is a null handle where both of its parts are rigid. This struct never changes.
+typedef struct motley_weld {
+    motley_constraint_id position, rotation;
+} motley_weld;
+
+/// Adds the joints of a weld. Refuses values out of the ranges above, and what the joints refuse; then nothing is added.
+motley_status motley_scene_add_weld(motley_scene* scene, const motley_weld_definition* definition,
+                                    motley_weld* weld);
+
 /// A wheel b on a chassis a, composed of joints: its centre on the line of the suspension, its axle parallel to the one on
 /// the chassis, and, only if asked for, a spring with stops along the suspension and a motor or brake about the axle.
 typedef struct motley_wheel_definition {

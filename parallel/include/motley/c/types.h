@@ -12,7 +12,7 @@ extern "C" {
 
 /// The version of the binary interface that this header describes. It grows when a struct gets a field or the library a
 /// function; a library serves hosts of every version up to its own.
-#define MOTLEY_C_VERSION 1
+#define MOTLEY_C_VERSION 2
 /// MOTLEY_C_VERSION of the library that is linked. A host that finds a lower one than its header's was built for a newer
 /// library.
 int32_t motley_c_version(void);
