@@ -13,17 +13,8 @@ if(TARGET motley_python)
     install(DIRECTORY ${PROJECT_BINARY_DIR}/parallel/python/motley DESTINATION lib/python3/dist-packages COMPONENT python
         PATTERN __pycache__ EXCLUDE)
 endif()
-# What <motley/motley.h> includes, and nothing of the inside.
-file(GLOB definitions CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/core/include/motley/core
-    core/include/motley/core/constraints/*_definition.h)
-foreach(header assembly body boxed contact_events crowd crowd_index ids invalid_input joint_definitions joint_report memory polygon
-        scene settings shapes six_dof snapshot step_report strided_span vector wall_index wheel)
-    install(FILES ${PROJECT_SOURCE_DIR}/core/include/motley/core/${header}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/motley/core)
-endforeach()
-foreach(header IN LISTS definitions)
-    install(FILES ${PROJECT_SOURCE_DIR}/core/include/motley/core/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/motley/core/constraints)
-endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/soa/include/ ${PROJECT_SOURCE_DIR}/parallel/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+motley_install_unfolded(motley/motley.h)
+motley_install_unfolded(motley/c/motley.h)
 install(EXPORT motleyTargets NAMESPACE motley:: DESTINATION ${package_dir})
 # Who links the static library links oneTBB too.
 set(MOTLEY_NEEDS_TBB OFF)

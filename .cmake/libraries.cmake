@@ -22,7 +22,7 @@ function(motley_add_reader name export reads_by)
     target_include_directories(${library} PRIVATE ${PROJECT_SOURCE_DIR}/core/src)
     target_link_libraries(${library} PUBLIC motley PRIVATE ${reads_by} $<BUILD_INTERFACE:motley_flags>)
     install(TARGETS ${library} EXPORT motley${export}Targets LIBRARY COMPONENT readers NAMELINK_COMPONENT development)
-    install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    motley_install_beside(motley/${name}/${name}.h)
     install(EXPORT motley${export}Targets NAMESPACE motley:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/motley)
 endfunction()
 
