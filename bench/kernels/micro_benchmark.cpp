@@ -366,7 +366,7 @@ void enter_all()
                 ->Unit(benchmark::kMillisecond);
         }
     }
-    for (const int base : {4, 8, 12, 16}) {
+    for (const int base : {4, 8, 12, 16, 57}) {
         const int rows = 6 * base * (base + 1);  // twelve a cube
         benchmark::RegisterBenchmark(fmt::format("direct/rows:{}", rows).c_str(), [base](
                                                                                       benchmark::State& s) {

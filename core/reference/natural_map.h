@@ -13,7 +13,7 @@ namespace motley::reference {
 enum class Where : std::uint8_t { inside, low, high, slides };
 /// Rows of a group, with what a Newton step knows of them.
 struct MappedGroup {
-    RowGroup* group;
+    RowGroup* group = nullptr;
     std::array<int, RowGroup::most_bodies> bodies{-1, -1, -1};
     int node = -1;                                 ///< of a joint that stays in the system
     RowGroup::Rows<1> offset{}, share{}, scale{};  ///< scale: 1 / K_ii; 0 of a row that cannot move

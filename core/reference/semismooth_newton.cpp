@@ -62,13 +62,13 @@ class Part {
     {
         units_.reserve(groups.size());
         for (RowGroup* group : groups) {
-            MappedGroup unit{.group = group};
+            MappedGroup& unit = units_.emplace_back();
+            unit.group = group;
             for (std::size_t side = 0; side < RowGroup::most_bodies; ++side) {
                 const int body = group->bodies[side];
                 unit.bodies[side] = body < 0 ? -1 : place[static_cast<std::size_t>(body)];
             }
             if (group->cones.empty() && !group->is_contact && group->size() <= 6) unit.node = nodes_++;
-            units_.push_back(unit);
         }
         const double largest = prepare_scales();
         for (MappedGroup& unit : units_) {

@@ -16,6 +16,8 @@ void solve_small(Square& a, Columns& b)
     using Column =
         Eigen::Matrix<double, Square::RowsAtCompileTime, 1, Eigen::ColMajor, Square::MaxRowsAtCompileTime, 1>;
     const Index rows = a.rows(), columns = b.cols();
+    Column over = Column::Zero(rows);  // 1 / pivot
+    // Columns are shortened by zeros, so that those of a fixed size stay so.
     for (Index k = 0; k < rows; ++k) {
         Index pivot = k;
         for (Index i = k + 1; i < rows; ++i) {
@@ -25,16 +27,19 @@ void solve_small(Square& a, Columns& b)
             a.row(k).swap(a.row(pivot));
             b.row(k).swap(b.row(pivot));
         }
-        const double over = 1 / a(k, k);
-        Column others = a.col(k);
-        others(k) = 0;
-        const auto eliminate = [&](auto column) {
-            const double x = over * column(k);
-            column -= x * others;
-            column(k) = x;
-        };
-        for (Index j = k + 1; j < rows; ++j) eliminate(a.col(j));
-        for (Index j = 0; j < columns; ++j) eliminate(b.col(j));
+        over(k) = 1 / a(k, k);
+        Column below = over(k) * a.col(k);
+        below.head(k + 1).setZero();
+        for (Index j = k + 1; j < rows; ++j) a.col(j) -= a(k, j) * below;
+        for (Index j = 0; j < columns; ++j) b.col(j) -= b(k, j) * below;
+    }
+    for (Index k = rows; k-- > 0;) {
+        Column above = a.col(k);
+        above.tail(rows - k).setZero();
+        for (Index j = 0; j < columns; ++j) {
+            b(k, j) *= over(k);
+            b.col(j) -= b(k, j) * above;
+        }
     }
 }
 

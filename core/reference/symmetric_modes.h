@@ -34,8 +34,9 @@ struct SymmetricModes {
                     if (s(p, q) == 0) continue;
                     beside += s(p, q) * s(p, q);
                     const double ratio = (s(q, q) - s(p, p)) / (2 * s(p, q));
-                    const double tangent = std::copysign(1 / (std::abs(ratio) + std::hypot(ratio, 1)), ratio);
-                    const double cosine = 1 / std::hypot(tangent, 1), sine = tangent * cosine;
+                    const double length = std::abs(ratio) + std::sqrt(ratio * ratio + 1);
+                    const double tangent = std::copysign(1 / length, ratio);
+                    const double cosine = 1 / std::sqrt(tangent * tangent + 1), sine = tangent * cosine;
                     rotate(s.col(p), s.col(q), cosine, sine);
                     rotate(s.row(p), s.row(q), cosine, sine);
                     rotate(vectors.col(p), vectors.col(q), cosine, sine);
