@@ -5,7 +5,7 @@
 #include <functional>
 #include <tuple>
 
-#include "small_solve.h"
+#include "small_inverse.h"
 
 namespace motley::reference {
 
@@ -101,14 +101,12 @@ bool BlockSystem::factor()
 {
     for (const int pivot : order_) {
         Block& diagonal = diagonal_[static_cast<std::size_t>(pivot)];
-        Block inverse = Block::Identity();
-        solve_small(diagonal, inverse);
-        if (!inverse.allFinite()) return false;
-        diagonal = inverse;
+        invert_small(diagonal);
+        if (!diagonal.allFinite()) return false;
         const std::vector<Beside>& row = beside_[static_cast<std::size_t>(pivot)];
         for (const Beside& i : row) {
             Block& lower = lower_[static_cast<std::size_t>(i.block)];
-            lower = (lower * inverse).eval();
+            lower = (lower * diagonal).eval();
             for (const Beside& k : row)
                 at(i.node, k.node).noalias() -= lower * upper_[static_cast<std::size_t>(k.block)];
         }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "small_solve.h"
+#include "small_inverse.h"
 
 namespace motley::reference {
 namespace {
@@ -88,14 +88,9 @@ void linearise(MappedGroup& unit, double epsilon)
     }
     if (group.softness.size() > 0) e += f.lazyProduct(group.softness);
     if (unit.node >= 0) return;
-    // E (D s) = (F -map), both at once.
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, RowGroup::most_rows,
-                  RowGroup::most_rows + 1>
-        solved(n, n + 1);
-    solved << f, -unit.map;
-    solve_small(e, solved);
-    unit.law = solved.leftCols(n);
-    unit.drive = solved.col(n);
+    invert_small(e);
+    unit.law = e.lazyProduct(f);
+    unit.drive = -e.lazyProduct(unit.map);
 }
 
 void sweep_group(MappedGroup& unit, Eigen::VectorXd& change)
