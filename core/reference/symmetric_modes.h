@@ -1,5 +1,5 @@
 // The modes of small symmetric matrices. Eigen's decompositions are made for large ones: the three that would be used here took most
-// of the time to compile this folder, and a tenth of the library's code.
+// of the time to compile this folder, and a fifth of its code.
 #pragma once
 
 #include <Eigen/Core>
