@@ -13,8 +13,8 @@ if(TARGET motley_python)
     install(DIRECTORY ${PROJECT_BINARY_DIR}/parallel/python/motley DESTINATION lib/python3/dist-packages COMPONENT python
         PATTERN __pycache__ EXCLUDE)
 endif()
-motley_install_unfolded(motley/motley.h)
-motley_install_unfolded(motley/c/motley.h)
+motley_install_amalgamated(motley/motley.h)
+motley_install_amalgamated(motley/c/motley.h)
 install(EXPORT motleyTargets NAMESPACE motley:: DESTINATION ${package_dir})
 # Who links the static library links oneTBB too.
 set(MOTLEY_NEEDS_TBB OFF)

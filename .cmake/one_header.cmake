@@ -1,13 +1,14 @@
 # Installed headers: one for each library that a host may link. Each has in itself what it includes of motley, so that a host sees
 # one page, and finds nothing else to include.
 
-# Puts into the variable `result` the text of a header, named as it is included, with the text of each header of motley that it
-# includes in place of the line that does so. Each comes once: `motley_unfolded` lists those that have come.
-function(motley_unfold name result)
-    get_property(unfolded GLOBAL PROPERTY motley_unfolded)
+# Puts into the variable `result` the text of a header, in which each line that includes a header of motley is replaced by the text of
+# that header, the first time that it is included, or by nothing. `name` is as in the line: motley/motley.h. The global property
+# motley_amalgamated lists the headers that have been put in.
+function(motley_amalgamate name result)
+    get_property(amalgamated GLOBAL PROPERTY motley_amalgamated)
     set(text "")
-    if(NOT name IN_LIST unfolded)
-        set_property(GLOBAL APPEND PROPERTY motley_unfolded ${name})
+    if(NOT name IN_LIST amalgamated)
+        set_property(GLOBAL APPEND PROPERTY motley_amalgamated ${name})
         foreach(room core soa parallel)
             set(file ${PROJECT_SOURCE_DIR}/${room}/include/${name})
             if(EXISTS ${file})
@@ -24,7 +25,7 @@ function(motley_unfold name result)
             string(LENGTH "${line}" length)
             math(EXPR place "${place} + ${length}")
             string(SUBSTRING "${rest}" ${place} -1 rest)
-            motley_unfold(${included} inside)
+            motley_amalgamate(${included} inside)
             string(REPLACE "#pragma once\n" "" inside "${inside}")
             string(APPEND text "${before}${inside}")
         endwhile()
@@ -33,13 +34,18 @@ function(motley_unfold name result)
     set(${result} "${text}" PARENT_SCOPE)
 endfunction()
 
-# Installs a header of the library with all that it includes of motley.
-function(motley_install_unfolded name)
-    set_property(GLOBAL PROPERTY motley_unfolded "")
-    motley_unfold(${name} text)
+# Installs a header with this text.
+function(motley_install_header_text name text)
     file(WRITE ${PROJECT_BINARY_DIR}/include/${name} "${text}")
     get_filename_component(folder ${name} DIRECTORY)
     install(FILES ${PROJECT_BINARY_DIR}/include/${name} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+endfunction()
+
+# Installs a header of the library with all that it includes of motley.
+function(motley_install_amalgamated name)
+    set_property(GLOBAL PROPERTY motley_amalgamated "")
+    motley_amalgamate(${name} text)
+    motley_install_header_text(${name} "${text}")
 endfunction()
 
 # Installs the header `name` of a library beside motley, which lies in include/ here. What it includes of motley is
@@ -49,7 +55,5 @@ function(motley_install_beside name)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
     file(READ ${file} text)
     string(REGEX REPLACE "(#include \"motley/[a-z0-9_/]+\\.h\"\n)+" "#include \"motley/motley.h\"\n" text "${text}")
-    file(WRITE ${PROJECT_BINARY_DIR}/include/${name} "${text}")
-    get_filename_component(folder ${name} DIRECTORY)
-    install(FILES ${PROJECT_BINARY_DIR}/include/${name} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+    motley_install_header_text(${name} "${text}")
 endfunction()

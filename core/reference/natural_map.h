@@ -27,7 +27,7 @@ struct MappedGroup {
 double radius(const Cone& cone, const RowGroup::Rows<1>& lambda);
 /// Computes `map` and `where` from the present impulses and `w`.
 void find_map(MappedGroup& unit);
-/// Computes E and F of a group, an element of the generalised derivative, and of a contact D and s.
+/// Computes E and F of a group, an element of the generalised derivative; of a contact D and s, and then `e` is the inverse of E.
 void linearise(MappedGroup& unit, double epsilon);
 /// A sweep of projected Gauss-Seidel over the rows and cones of a group. `change`: y, which follows the impulses.
 void sweep_group(MappedGroup& unit, Eigen::VectorXd& change);

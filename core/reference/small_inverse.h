@@ -5,12 +5,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace motley::reference {
 
-/// Inverts in place by Gauss and Jordan's elimination, with the largest pivot of each column; at most 12 rows. The inverse of a
-/// singular matrix is not finite.
+/// Inverts a matrix of bounded size in place by Gauss-Jordan elimination with row exchanges. The inverse of a singular matrix is not
+/// finite.
 template <class Square>
 void invert_small(Square& a)
 {
@@ -18,15 +17,15 @@ void invert_small(Square& a)
     using Column =
         Eigen::Matrix<double, Square::RowsAtCompileTime, 1, Eigen::ColMajor, Square::MaxRowsAtCompileTime, 1>;
     const Index rows = a.rows();
-    std::array<Index, 12> pivots{};
+    std::array<Index, Square::MaxRowsAtCompileTime> pivots{};
     for (Index k = 0; k < rows; ++k) {
         Index pivot = k;
         for (Index i = k + 1; i < rows; ++i) {
             if (std::abs(a(i, k)) > std::abs(a(pivot, k))) pivot = i;
         }
         pivots[static_cast<std::size_t>(k)] = pivot;
-        for (Index j = 0; j < rows && pivot != k; ++j) std::swap(a(k, j), a(pivot, j));
-        // The column that is eliminated makes room for that of the inverse.
+        if (pivot != k) a.row(k).swap(a.row(pivot));
+        // Column k, which elimination makes a unit vector, is replaced by column k of the inverse.
         const double over = 1 / a(k, k);
         Column others = a.col(k);
         others(k) = 0;
@@ -38,7 +37,7 @@ void invert_small(Square& a)
             a(k, j) = x;
         }
     }
-    // Exchanged rows are exchanged columns of the inverse.
+    // Rows that were exchanged are columns of the inverse.
     for (Index k = rows; k-- > 0;) {
         const Index pivot = pivots[static_cast<std::size_t>(k)];
         if (pivot != k) a.col(k).swap(a.col(pivot));

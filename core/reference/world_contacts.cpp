@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "as_eigen.h"
+#include "symmetric_modes.h"
 #include "world_rows.h"
 
 namespace motley::reference {
@@ -79,9 +80,7 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
             row.tangents,
             pair_inverse_mass(of[static_cast<std::size_t>(point.a)], of[static_cast<std::size_t>(point.b)]));
         const Eigen::Index rows = row.friction.size();
-        // The larger eigenvalue.
-        const double most =
-            rows == 1 ? k(0, 0) : (k(0, 0) + k(1, 1)) / 2 + std::hypot((k(0, 0) - k(1, 1)) / 2, k(0, 1));
+        const double most = SymmetricModes<Eigen::MatrixXd>(k).values.maxCoeff();
         const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(rows, rows);
         // Once the bodies have turned far, the largest response is used along both tangents.
         Eigen::MatrixXd inverse = effective_mass_along(point, row.tangents);

@@ -1,10 +1,14 @@
 // The reference itself: its Jacobians against finite differences of C along random motions, for every pair of
 // body models that makes sense; its effective masses and its conservation of momentum.
 #include <gtest/gtest.h>
+
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
 #include "mixed_scene.h"
 #include "motley/reference/world.h"
+#include "small_inverse.h"
+#include "symmetric_modes.h"
 
 namespace motley::reference {
 namespace {
@@ -264,6 +268,48 @@ TEST(Reference, APairOfImpulsesConservesMomentumAboutTheCommonPoint)
         EXPECT_LT(force.norm(), 1e-12);
         EXPECT_LT(torque.norm(), 1e-12);
     });
+}
+
+/// A random matrix of `rows` rows and columns.
+Eigen::MatrixXd random_square(motley::testing::Random& random, Eigen::Index rows)
+{
+    return Eigen::MatrixXd::NullaryExpr(rows, rows,
+                                        [&](Eigen::Index, Eigen::Index) { return random.symmetric(); });
+}
+
+/// Evidence: Eigen's solvers, which the reference itself does not use.
+TEST(Reference, SmallMatricesHaveTheInversesAndModesThatEigenFinds)
+{
+    motley::testing::Random random;
+    for (Eigen::Index rows = 1; rows <= 12; ++rows) {
+        for (int k = 0; k < 20; ++k) {
+            const Eigen::MatrixXd any = random_square(random, rows);
+            Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 12, 12> inverse = any;
+            invert_small(inverse);
+            const Eigen::MatrixXd expected = any.completeOrthogonalDecomposition().pseudoInverse();
+            EXPECT_LT((inverse - expected).norm(), 1e-11 * expected.norm() * any.norm() * expected.norm());
+
+            // Of half the rank: the other values are 0.
+            const Eigen::MatrixXd half = any.leftCols((rows + 1) / 2);
+            const Eigen::MatrixXd symmetric = half * half.transpose();
+            const SymmetricModes<Eigen::MatrixXd> modes(symmetric);
+            Eigen::VectorXd values = modes.values;
+            std::sort(values.begin(), values.end());
+            const Eigen::VectorXd those_of_eigen =
+                Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric).eigenvalues();
+            const double size = symmetric.norm();
+            EXPECT_LT((values - those_of_eigen).norm(), 1e-13 * size);
+            const Eigen::MatrixXd again =
+                modes.vectors * modes.values.asDiagonal() * modes.vectors.transpose();
+            EXPECT_LT((again - symmetric).norm(), 1e-13 * size);
+            const Eigen::MatrixXd of_eigen = symmetric.completeOrthogonalDecomposition().pseudoInverse();
+            EXPECT_LT((symmetric_pseudo_inverse(symmetric) - of_eigen).norm(),
+                      1e-11 * of_eigen.norm() * size * of_eigen.norm());
+        }
+    }
+    Eigen::Matrix3d singular = Eigen::Matrix3d::Ones();
+    invert_small(singular);
+    EXPECT_FALSE(singular.allFinite());
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 #pragma GCC visibility push(default)
 namespace motley {
 
-/// Holds frame b on frame a. Where a frequency is 0 the weld is rigid in translation or in rotation, as exactly as joints are; where
-/// it is not, the weld is a spring there, in every method, that resists with the inertia the pair has in that direction.
-/// Frames and bodies as in FixedDefinition.
+/// Holds frame b on frame a, in translation and in rotation. Of these a part whose frequency is 0 is rigid, as the locks of other
+/// joints are; the other is a spring in every method. Frequencies are those of the pair's own mass and inertia, as in
+/// JointStiffness. Frames and bodies as in FixedDefinition.
 struct WeldDefinition {
     BodyId body_a{};
     BodyId body_b{};

@@ -61,7 +61,7 @@ Jacobian swing_jacobian(const Body& a, const Body& b, const Frame& frame_a, cons
 Jacobian direction_jacobian(const Eigen::Vector3d& direction, const Eigen::Vector3d& arm_a,
                             const Eigen::Vector3d& arm_b);
 
-/// The Moore-Penrose inverse.
+/// The Moore-Penrose inverse, from that of m m^T: of rows that are nearly dependent it has half of the digits.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& m);
 
 /// M^-1 of a pair, 12 x 12.
