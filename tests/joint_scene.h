@@ -11,7 +11,8 @@ class JointScene {
     Scene scene;
     std::vector<BodyId> bodies;
 
-    JointScene()
+    /// Scenes that begin as copies of one, which is empty, have the same handles.
+    explicit JointScene(const Scene& empty = Scene()) : scene(empty)
     {
         Random random(77);
         for_each_joint_type(JointTypes{}, [&]<class Definition>() {

@@ -30,7 +30,7 @@ constexpr double fastest = 100;  ///< m/s: five times a blow
 constexpr std::int64_t save_every = 1000;
 
 /// Somebody who fell: a torso and four limbs.
-struct Figure {
+struct FallenPerson {
     std::vector<BodyId> bodies;
     std::vector<std::uint64_t> numbers;  ///< of each body, for contact keys
     std::vector<ConstraintId> joints;
@@ -87,11 +87,11 @@ class Town {
         people_.steer(scene, solver.executor());
         const std::span<const Contact> among_people = people_.find_contacts(scene, solver.executor());
         contacts_.assign(among_people.begin(), among_people.end());
-        for (const Figure& figure : figures_) add_contacts(figure);
+        for (const FallenPerson& figure : figures_) add_contacts(figure);
 
         const StepReport report = solver.step(scene, frame, contacts_);
         ++counted.steps;
-        for (Figure& figure : figures_) ++figure.age;
+        for (FallenPerson& figure : figures_) ++figure.age;
         if (report.status != StepStatus::done) return "the step was refused: " + report.error;
         if (report.bodies_contained > 0) return fmt::format("{} bodies frozen", report.bodies_contained);
         for (const BreakEvent& event : std::vector(scene.break_events().begin(), scene.break_events().end()))
@@ -106,7 +106,7 @@ class Town {
     std::size_t wanted_;
     double side_;
     Crowd people_;
-    std::deque<Figure> figures_;
+    std::deque<FallenPerson> figures_;
     std::vector<Contact> contacts_;
     std::uint64_t next_part_ = 0;
     std::deque<BodyId> dead_;  ///< the bodies removed last
@@ -144,7 +144,7 @@ class Town {
     {
         const BodyState from = scene.state(people_.agents[who].body);
         remove_person(who);
-        Figure figure;
+        FallenPerson figure;
         const auto add = [&](Vec3<double> offset, float mass, float radius) {
             BodyDefinition body;
             body.position = {from.position.x + offset.x, from.position.y + offset.y, 1 + offset.z};
@@ -178,7 +178,7 @@ class Town {
         figures_.push_back(std::move(figure));
         ++counted.fallen;
     }
-    void watch(Figure& figure, ConstraintId joint)
+    void watch(FallenPerson& figure, ConstraintId joint)
     {
         scene.set_break_limit(joint, {.force = bears});
         figure.joints.push_back(joint);
@@ -186,7 +186,7 @@ class Town {
     /// Turns the figure that has lain longest back into a planar person.
     void rise()
     {
-        const Figure figure = std::move(figures_.front());
+        const FallenPerson figure = std::move(figures_.front());
         figures_.pop_front();
         const Vec3<double> at = scene.state(figure.bodies.front()).position;
         scene.remove_bodies(figure.bodies);
@@ -197,7 +197,7 @@ class Town {
     void strike()
     {
         const auto which = static_cast<std::size_t>(random_.uniform() * static_cast<double>(figures_.size()));
-        const Figure& figure = figures_[which];
+        const FallenPerson& figure = figures_[which];
         const auto part = static_cast<std::size_t>(random_.uniform() * 5);
         const auto speed = static_cast<float>(20 * random_.uniform());
         const float angle = static_cast<float>(6.28 * random_.uniform());
@@ -206,7 +206,7 @@ class Town {
     }
     void break_joint(ConstraintId joint)
     {
-        for (Figure& figure : figures_) {
+        for (FallenPerson& figure : figures_) {
             const auto at = std::find(figure.joints.begin(), figure.joints.end(), joint);
             if (at == figure.joints.end()) continue;
             figure.joints.erase(at);
@@ -218,7 +218,7 @@ class Town {
 
     /// Contacts of the figure's parts, which are balls, with the floor, the walls and people, who are taken as
     /// cylinders up to z = 1.9 m.
-    void add_contacts(const Figure& figure)
+    void add_contacts(const FallenPerson& figure)
     {
         constexpr std::uint64_t of_parts = std::uint64_t{3} << 62, no_person = 0xffffffff;
         for (std::size_t i = 0; i < figure.bodies.size(); ++i) {
@@ -284,7 +284,7 @@ class Town {
         for (const Agent& agent : people_.agents) {
             if (const char* what = wrong(agent.body, 0.5)) return what;
         }
-        for (const Figure& figure : figures_) {
+        for (const FallenPerson& figure : figures_) {
             for (const BodyId body : figure.bodies) {
                 if (const char* what = wrong(body, 1)) return what;
             }
@@ -330,6 +330,8 @@ SoakResult soak(const SoakOptions& options)
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / fmt::format("motley-soak-{}.scene", getpid());
     Town one(options, 1), two(options, 2);
+    two.scene =
+        one.scene;  // so that a host of either may go on with the scene of the other: handles are the same
     SoakResult& result = one.counted;
     const Progress progress(options);
     double said = 0;

@@ -41,7 +41,7 @@ TEST(BadCapsule, IsRefusedByFieldValueAndRange)
     using Spoilt = CapsuleDefinition;
     const Case<Spoilt> cases[] = {
         {[](const Bodies& b, Spoilt& c) { c.body = b.removed; },
-         "CapsuleDefinition.body is slot 5 generation 1, not alive; expected a body of this scene"},
+         "CapsuleDefinition.body is slot 5, not alive; expected a body of this scene"},
         {[](const Bodies&, Spoilt& c) { c.from.y = nan; },
          "CapsuleDefinition.from.y is nan; expected a finite value from -1e6 to 1e6 (m)"},
         {[](const Bodies&, Spoilt& c) { c.to.z = 2e6F; },
@@ -77,7 +77,7 @@ TEST(BadHalfSpace, IsRefusedByFieldValueAndRange)
     using Spoilt = HalfSpaceDefinition;
     const Case<Spoilt> cases[] = {
         {[](const Bodies& b, Spoilt& h) { h.body = b.removed; },
-         "HalfSpaceDefinition.body is slot 5 generation 1, not alive; expected a body of this scene"},
+         "HalfSpaceDefinition.body is slot 5, not alive; expected a body of this scene"},
         {[](const Bodies& b, Spoilt& h) { h.body = b.rigid; },
          "HalfSpaceDefinition.body is a dynamic body; expected a static or kinematic body"},
         {[](const Bodies&, Spoilt& h) { h.point.x = std::nan(""); },
@@ -111,7 +111,7 @@ TEST(BadShapes, AreRefusedByHandleAndCount)
     EXPECT_EQ(message_of([&] { bodies.scene.remove_shape({}); }),
               "remove_shape.shape is slot 0, not alive; expected a shape of this scene");
     EXPECT_EQ(message_of([&] { (void)bodies.scene.shape_contacts_of(bodies.removed); }),
-              "shape_contacts_of.body is slot 5 generation 1, not alive; expected a body of this scene");
+              "shape_contacts_of.body is slot 5, not alive; expected a body of this scene");
     Figure figure;
     EXPECT_EQ(
         message_of([&] { figure.add_capsule({}); }),

@@ -1,12 +1,15 @@
-// Handles of bodies and joints against a map that is updated in the same way. RapidCheck decides what is added and
-// removed.
+// Handles of bodies and joints against a map that is updated in the same way, of which RapidCheck decides what is added and removed;
+// and handles of other scenes.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
+#include <functional>
 #include <map>
 #include <vector>
 
 #include "motley/motley.h"
+#include "stores/generations.h"
 
 namespace motley {
 namespace {
@@ -84,6 +87,97 @@ RC_GTEST_PROP(Handles, NameWhoTheyNamedUntilRemovedAndNobodyAfterwards,
     }
     for (const BodyId id : dead) RC_ASSERT_THROWS_AS(scene.remove_body(id), InvalidInput);
     for (const ConstraintId id : dead_joints) RC_ASSERT_THROWS_AS(scene.remove_joint(id), InvalidInput);
+}
+
+/// A scene with one of everything that has a handle.
+struct OneOfEach {
+    Scene scene;
+    BodyId ground = scene.ground(), body = scene.add_body({}),
+           person = scene.add_body({.model = BodyModel::planar});
+    ConstraintId joint = scene.add_joint(BallSocketDefinition{ground, body, {}, {}});
+    ShapeId shape = scene.add_capsule({.body = body});
+    std::vector<Vec2<double>> corners{{0, 0}, {1, 0}};
+    WallId wall = scene.add_wall({.points = corners});
+
+    [[nodiscard]] bool all_alive_in(const Scene& other) const
+    {
+        return other.is_alive(ground) && other.is_alive(body) && other.is_alive(person) &&
+               other.is_alive(joint) && other.is_alive(shape) && other.is_alive(wall);
+    }
+};
+
+/// The second scene is built as the first one: all slots are the same.
+TEST(Handles, OfAnotherSceneAreRefused)
+{
+    const OneOfEach one;
+    OneOfEach other;
+    ASSERT_EQ(one.body.slot, other.body.slot);
+    Scene& scene = other.scene;
+    EXPECT_TRUE(one.all_alive_in(one.scene));
+    EXPECT_FALSE(scene.is_alive(one.ground) || scene.is_alive(one.body) || scene.is_alive(one.person));
+    EXPECT_FALSE(scene.is_alive(one.joint) || scene.is_alive(one.shape) || scene.is_alive(one.wall));
+    const std::function<void()> calls[] = {
+        [&] { (void)scene.state(one.body); },
+        [&] {
+            scene.set_velocity(one.body, {1, 0, 0}, {});
+        },
+        [&] { scene.remove_body(one.body); },
+        [&] {
+            scene.add_joint(BallSocketDefinition{one.ground, other.body, {}, {}});
+        },
+        [&] {
+            scene.add_joint(BallSocketDefinition{other.ground, one.body, {}, {}});
+        },
+        [&] { scene.add_capsule({.body = one.body}); },
+        [&] { scene.set_discs(std::vector{one.person}, std::vector{DiscDefinition{}}); },
+        [&] { scene.add_wall({.points = one.corners, .body = one.ground}); },
+        [&] { (void)scene.joint_report(one.joint); },
+        [&] { scene.remove_joint(one.joint); },
+        [&] { scene.remove_shape(one.shape); },
+        [&] { scene.remove_wall(one.wall); },
+    };
+    const std::vector<std::byte> before = save_scene(scene);
+    for (std::size_t i = 0; i < std::size(calls); ++i) EXPECT_THROW(calls[i](), InvalidInput) << "call " << i;
+    EXPECT_EQ(save_scene(scene), before);
+
+    Contact contact;
+    contact.body_a = one.body;
+    contact.body_b = other.body;
+    Solver solver;
+    EXPECT_EQ(solver.step(scene, 0.01F, {&contact, 1}).status, StepStatus::refused);
+}
+
+/// A slot that is used again, too, and what is added later.
+TEST(Handles, OfASceneAreThoseOfItsCopies)
+{
+    OneOfEach one;
+    const Scene copy = one.scene;
+    EXPECT_TRUE(one.all_alive_in(copy));
+    Scene read = load_scene(save_scene(one.scene));
+    EXPECT_TRUE(one.all_alive_in(read));
+    const auto renew = [&](Scene& scene) {
+        scene.remove_body(one.person);
+        return std::pair(scene.add_body({}), scene.add_body({}));
+    };
+    EXPECT_EQ(renew(one.scene), renew(read));
+    Scene moved = std::move(read);
+    EXPECT_TRUE(moved.is_alive(one.body));
+    EXPECT_FALSE(OneOfEach{}.all_alive_in(moved));
+}
+
+/// As ids.h says.
+TEST(Handles, OfManyScenesBeginFarApart)
+{
+    for (const auto& [scenes, apart] : {std::pair(1000U, 970'000U), std::pair(10'000U, 140'000U)}) {
+        std::vector<std::uint32_t> begins(scenes);
+        for (std::uint32_t i = 0; i < scenes; ++i) begins[i] = first_generation(i);
+        std::sort(begins.begin(), begins.end());
+        EXPECT_GT(begins.front(), 0U);
+        std::uint32_t least = begins.front() + 0x80000000U - begins.back();
+        for (std::uint32_t i = 1; i < scenes; ++i) least = std::min(least, begins[i] - begins[i - 1]);
+        EXPECT_GE(least, apart) << scenes;
+    }
+    EXPECT_EQ(next_generation(UINT32_MAX), 1U) << "0 is the null handle's";
 }
 
 }  // namespace

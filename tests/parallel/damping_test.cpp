@@ -248,14 +248,17 @@ TEST(DampingOfBodies, IsChangedInPlaceWithTheBitsOfBodiesThatWereAddedWithIt)
         };
         fill(added, 0.4F, 2);
         fill(changed, 0, 1);
-        std::vector<BodyId> bodies;
-        changed.read_bodies(bodies);
-        for (const BodyId body : bodies) changed.set_damping(body, 0.4F, 2);
+        const auto bodies_of = [](const Scene& scene) {
+            std::vector<BodyId> bodies;
+            scene.read_bodies(bodies);
+            return bodies;
+        };
+        for (const BodyId body : bodies_of(changed)) changed.set_damping(body, 0.4F, 2);
         Scene read = load_scene(save_scene(changed));
         Solver one(settings), two(settings), three(settings);
         for (int step = 0; step < 60; ++step) {
             if (step == 30) {
-                for (Scene* scene : {&added, &changed, &read}) scene->set_damping(bodies[4], 0, 0);
+                for (Scene* scene : {&added, &changed, &read}) scene->set_damping(bodies_of(*scene)[4], 0, 0);
             }
             one.step(added, frame_time);
             two.step(changed, frame_time);

@@ -45,7 +45,7 @@ constexpr FallenFigures::Options everything{.copies = 16 + 13, .all_touches = tr
 TEST(FallenFigures, HaveTheBitsOfOrdinarySweepsAfterEveryStep)
 {
     for (const SolverSettings& settings : every_way(false)) {
-        FallenFigures fallen(everything), ordinary(everything);
+        FallenFigures fallen(everything), ordinary = fallen;
         Solver solver(settings), reference(testing::swept(settings));
         std::size_t most = 0;
         // Sanitizers stop once all of them touch the floor.
@@ -124,7 +124,7 @@ TEST(FallenFigures, ManyHaveTheBitsOfOrdinarySweeps)
 {
     if (testing::long_run(10) < 10) GTEST_SKIP() << "the tests of fewer figures access the same memory";
     const FallenFigures::Options many{.copies = 3500};
-    FallenFigures fallen(many), ordinary(many);
+    FallenFigures fallen(many), ordinary = fallen;
     const SolverSettings settings = every_way().front();
     Solver solver(settings, {.threads = 2}), reference(testing::swept(settings), {.threads = 2});
     std::size_t most = 0;
@@ -144,7 +144,7 @@ TEST(FallenFigures, ManyHaveTheBitsOfOrdinarySweeps)
 TEST(FallenFigures, ACopyThatTouchesWhatMovesOrHasTooManyContactsKeepsTheBitsOfOrdinarySweeps)
 {
     for (const SolverSettings& settings : every_way()) {
-        FallenFigures fallen({.copies = 40}), ordinary({.copies = 40});
+        FallenFigures fallen({.copies = 40}), ordinary = fallen;
         const BodyId stone = fallen.scene.add_body(testing::box({0, 9, 0}, 5));
         ordinary.scene.add_body(testing::box({0, 9, 0}, 5));
         Solver solver(settings), reference(testing::swept(settings));
@@ -187,8 +187,7 @@ TEST(FallenFigures, ACopyThatTouchesWhatMovesOrHasTooManyContactsKeepsTheBitsOfO
 TEST(FallenFigures, ACopyThatComesToGriefIsFrozenAndTheOthersKeepTheirBits)
 {
     for (const SolverSettings& settings : every_way()) {
-        FallenFigures fallen({.copies = 16, .all_touches = true}),
-            ordinary({.copies = 16, .all_touches = true});
+        FallenFigures fallen({.copies = 16, .all_touches = true}), ordinary = fallen;
         Solver solver(settings), reference(testing::swept(settings));
         std::int64_t contained = 0;
         for (int step = 0; step < 120; ++step) {

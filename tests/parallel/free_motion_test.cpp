@@ -14,7 +14,7 @@ using testing::angular_momentum;
 using testing::length;
 
 /// A chain of boxes that turn relative to each other.
-struct Figure {
+struct FloatingChain {
     Scene scene;
     std::vector<BodyId> bodies;
     static constexpr int count = 16;
@@ -23,7 +23,7 @@ struct Figure {
 
     enum class Ties { ball_sockets, hinges, fixed_joints, rods, springs };
 
-    explicit Figure(Ties ties = Ties::ball_sockets)
+    explicit FloatingChain(Ties ties = Ties::ball_sockets)
     {
         for (int i = 0; i < count; ++i) {
             BodyDefinition body;
@@ -206,9 +206,9 @@ TEST(FreeTumbling, KeepsItsAngularMomentumAndTurnsToSecondOrder)
 }
 
 /// The share of its angular momentum that a figure loses in a second of flight.
-double lost_in_flight(Figure::Ties ties, const SolverSettings& settings)
+double lost_in_flight(FloatingChain::Ties ties, const SolverSettings& settings)
 {
-    Figure figure(ties);
+    FloatingChain figure(ties);
     Solver solver(settings);
     EXPECT_EQ(solver.step(figure.scene, 1e-6F).status, StepStatus::done);
     const Vector start = figure.spin_about_centre();
@@ -226,7 +226,8 @@ TEST(FreeFigure, KeepsItsAngularMomentum)
             SolverSettings settings;
             settings.exact_joints = exact;
             settings.relaxations = relaxations;
-            EXPECT_LT(lost_in_flight(Figure::Ties::ball_sockets, settings), 1e-6) << exact << relaxations;
+            EXPECT_LT(lost_in_flight(FloatingChain::Ties::ball_sockets, settings), 1e-6)
+                << exact << relaxations;
         }
     }
 }
@@ -235,8 +236,8 @@ TEST(FreeFigure, KeepsItsAngularMomentum)
 /// all the same.
 TEST(FreeFigure, KeepsItsAngularMomentumWithEveryLockOfAPointAndPullAlongALine)
 {
-    using enum Figure::Ties;
-    for (const Figure::Ties ties : {ball_sockets, hinges, fixed_joints, rods, springs}) {
+    using enum FloatingChain::Ties;
+    for (const FloatingChain::Ties ties : {ball_sockets, hinges, fixed_joints, rods, springs}) {
         for (const int substeps : {1, 4, 16}) {
             for (const int relaxations : {1, 3}) {
                 SolverSettings settings;
@@ -251,9 +252,9 @@ TEST(FreeFigure, KeepsItsAngularMomentumWithEveryLockOfAPointAndPullAlongALine)
 
 /// The same figure, computed from the forces in its joints: those that keep coincident anchors together, given the
 /// accelerations of both bodies (Newton and Euler). Integrated by fourth order Runge-Kutta in steps of 0.25 ms.
-class FigureByForces {
+class FloatingChainByForces {
   public:
-    explicit FigureByForces(const Figure& figure)
+    explicit FloatingChainByForces(const FloatingChain& figure)
     {
         for (const BodyId id : figure.bodies) {
             const BodyState state = figure.scene.state(id);
@@ -308,7 +309,7 @@ class FigureByForces {
     static Bodies rate(const Bodies& x)
     {
         const std::size_t count = x.size();
-        const Vec3<double> i0 = convert<double>(Figure::moments);
+        const Vec3<double> i0 = convert<double>(FloatingChain::moments);
         const Vector3 moments(i0.x, i0.y, i0.z);
         const Vector3 anchor(static_cast<double>(0.2F), 0, 0);
         std::vector<Matrix3> inverse(count);
@@ -327,7 +328,7 @@ class FigureByForces {
             return gyration[i].cross(r) + x[i].spin.cross(x[i].spin.cross(r));
         };
         const auto response = [&](std::size_t i, double to, double from) -> Matrix3 {
-            return Matrix3::Identity() / Figure::mass -
+            return Matrix3::Identity() / FloatingChain::mass -
                    crossed(to * lever[i]) * inverse[i] * crossed(from * lever[i]);
         };
         // Joint i pulls body i by f_i at its far end and body i + 1 by -f_i: a block tridiagonal system, eliminated
@@ -353,7 +354,7 @@ class FigureByForces {
             const Vector3& w = x[i].spin;
             const Eigen::Vector4d& q = x[i].turned;
             rates[i].position = x[i].velocity;
-            rates[i].velocity = (far + near) / Figure::mass;
+            rates[i].velocity = (far + near) / FloatingChain::mass;
             rates[i].spin = gyration[i] + inverse[i] * (lever[i].cross(far) - lever[i].cross(near));
             const Vector3 v(q[1], q[2], q[3]);
             const Vector3 turning = 0.5 * (q[0] * w + w.cross(v));
@@ -368,13 +369,13 @@ class FigureByForces {
 /// The rms angle in rad between the bodies of a figure after a second of flight and their true orientations.
 double after_a_flight(bool exact, int substeps)
 {
-    Figure figure;
+    FloatingChain figure;
     SolverSettings settings;
     settings.exact_joints = exact;
     // A first, very short step removes what velocity error the joints have before the flight.
     settings.substeps = 1;
     Solver(settings).step(figure.scene, 1e-6F);
-    FigureByForces truth(figure);
+    FloatingChainByForces truth(figure);
     settings.substeps = substeps;
     Solver solver(settings);
     for (int i = 0; i < 60; ++i) solver.step(figure.scene, 1.0F / 60);

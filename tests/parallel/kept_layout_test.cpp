@@ -114,7 +114,7 @@ TEST(KeptLayout, GoesOnAsASolverThatHasNeverSeenTheScene)
          }},
         {"and left out", nothing},
     };
-    Chains kept, seen_anew;
+    Chains kept, seen_anew = kept;
     Scene other;
     other.add_joint(BallSocketDefinition{other.ground(), other.add_body({}), {}, {1, 0, 0}});
     SolverSettings settings = all_swept;

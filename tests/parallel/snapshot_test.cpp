@@ -128,7 +128,8 @@ std::vector<std::byte> saved_where_memory_is(int byte)
 {
     testing::fill_new_memory(byte);
     fill_stack(byte);
-    JointScene joints;
+    static const Scene empty;
+    JointScene joints(empty);
     Scene& scene = joints.scene;
     fill_stack(byte);
     const std::vector<Vec2<double>> corners{{-5, 20}, {5, 20}, {5, 30}};

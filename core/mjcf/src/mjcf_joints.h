@@ -1,6 +1,7 @@
 // Hinges and balls of a body, as joints of motley.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 

@@ -84,14 +84,20 @@ void Figure::add_six_dof(const SixDofDefinition& definition)
 
 void Figure::add_capsule(const CapsuleDefinition& capsule)
 {
-    if (capsule.body == BodyId{} || capsule.body == sketch_.ground())
+    if (capsule.body == BodyId{} || is_ground(capsule.body))
         refuse("CapsuleDefinition.body", "the ground", "a body of the figure; a static one for the world");
     sketch_.add_capsule(capsule);
 }
 
+/// Of any scene: all have it in the same slot, and a host can only name that of another one.
+bool Figure::is_ground(BodyId body) const
+{
+    return body.slot == sketch_.ground().slot;
+}
+
 void Figure::refuse_ground(BodyId body) const
 {
-    if (body == sketch_.ground())
+    if (is_ground(body))
         refuse("joint.body_a or body_b", "the ground", "bodies of the figure; a static one for the world");
 }
 

@@ -1,8 +1,11 @@
 // Adding and removing bodies. Nothing is changed before everything is checked.
 #include "scene/scene_core.h"
 
+#include <atomic>
+
 #include "motley/core/invalid_input.h"
 #include "scene/body_checks.h"
+#include "stores/generations.h"
 #include "stores/growth.h"
 #include "stores/joint_store.h"
 
@@ -10,8 +13,15 @@ namespace motley {
 
 template class Boxed<SceneCore>;
 
+namespace {
+
+std::atomic<std::uint32_t> scenes_made{0};
+
+}  // namespace
+
 Scene::Scene()
 {
+    core_->begin_generations(first_generation(scenes_made.fetch_add(1, std::memory_order_relaxed)));
     BodyDefinition world;
     world.motion = BodyMotion::static_body;
     core_->ground = core_->bodies.add(world);
@@ -78,6 +88,14 @@ void Scene::renumber_bodies()
     core_->joints->change_altogether();  // blocks refer to rows
 }
 
+void SceneCore::begin_generations(std::uint32_t first)
+{
+    bodies.begin_generations(first);
+    joints->slots[0].generation = first;
+    discs.walls[0].generation = first;
+    shapes.slots[0].generation = first;
+}
+
 bool Scene::is_alive(BodyId body) const
 {
     return core_->bodies.is_alive(body);
@@ -86,8 +104,7 @@ bool Scene::is_alive(BodyId body) const
 void SceneCore::refuse_dead(BodyId body, const char* what)
 {
     const std::string value = body == BodyId{} ? std::string("the null handle")
-                                               : "slot " + std::to_string(body.slot) + " generation " +
-                                                     std::to_string(body.generation) + ", not alive";
+                                               : "slot " + std::to_string(body.slot) + ", not alive";
     refuse(what, value, "a body of this scene");
 }
 

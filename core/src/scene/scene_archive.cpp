@@ -64,7 +64,8 @@ void SceneArchive::check_bodies(const SceneCore& scene)
                bodies.inverse_masses.size() == slots && bodies.inverse_inertias.size() == slots &&
                bodies.dampings.size() == slots,
            "its tables of bodies differ in length");
-    demand(bodies.live_[0] == 0 && bodies.contained[0] == 0 && !bodies.dampings[0].is_any(),
+    demand(bodies.live_[0] == 0 && bodies.slots_[0].generation != 0 && bodies.contained[0] == 0 &&
+               !bodies.dampings[0].is_any(),
            "a body of the null handle");
     for (int k = 0; k < body_kind_count; ++k) {
         const auto kind = static_cast<BodyKind>(k);

@@ -49,6 +49,8 @@ struct SceneCore {
     /// Seconds of the last step and of its last substep: they turn impulses into forces. 0 before the first step.
     float last_step = 0, last_substep = 0;
 
+    /// Handles of all kinds begin with this generation, so that those of other scenes are refused. Before the first one.
+    void begin_generations(std::uint32_t first);
     [[nodiscard]] bool is_alive(ConstraintId joint) const;
     [[nodiscard]] BodyState state(BodyId body) const;
     /// Body to world, unit; the identity for a particle.

@@ -104,7 +104,7 @@ void SceneCore::make_room_for_walls(std::size_t walls, std::size_t segments)
 WallId SceneCore::put_wall(const WallDefinition& wall)
 {
     if (discs.free_walls.empty()) {
-        discs.walls.emplace_back();
+        discs.walls.push_back({discs.walls[0].generation, 0});
         discs.free_walls.push_back(static_cast<std::uint32_t>(discs.walls.size() - 1));
     }
     const std::uint32_t slot = discs.free_walls.back();

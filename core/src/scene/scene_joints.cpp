@@ -10,6 +10,7 @@
 #include "contract/built.h"
 #include "motley/core/invalid_input.h"
 #include "stores/array.h"
+#include "stores/generations.h"
 
 namespace motley {
 
@@ -57,14 +58,14 @@ ConstraintId SceneCore::take_joint_slot(int type, std::size_t index)
     std::uint32_t slot;
     if (joints->free_slots.empty()) {
         slot = static_cast<std::uint32_t>(joints->slots.size());
-        joints->slots.emplace_back();
+        joints->slots.emplace_back().generation = joints->slots[0].generation;
         joints->ends.resize(2 * joints->slots.size());
     } else {
         slot = joints->free_slots.back();
         joints->free_slots.pop_back();
     }
     JointStores::Slot& entry = joints->slots[slot];
-    if (++entry.generation == 0) entry.generation = 1;
+    entry.generation = next_generation(entry.generation);
     entry.index = static_cast<std::uint32_t>(index);
     entry.type = static_cast<std::uint8_t>(type);
     entry.live = 1;

@@ -6,6 +6,7 @@
 
 #include "maths/lane_body.h"
 #include "stores/array.h"
+#include "stores/generations.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -153,7 +154,7 @@ BodyId BodyStore::add(const BodyDefinition& d)
     std::uint32_t slot;
     if (free_slots_.empty()) {
         slot = slot_count();
-        slots_.push_back({1, BodyRow(kind, row)});
+        slots_.push_back({slots_[0].generation, BodyRow(kind, row)});
         live_.push_back(1);
         models_.push_back(d.model);
         motions_.push_back(d.motion);
@@ -274,7 +275,7 @@ void BodyStore::remove(BodyId body)
     sleep[body.slot] = Sleep::awake;
     set_damping(body.slot, {});
     live_[body.slot] = 0;
-    if (++slots_[body.slot].generation == 0) slots_[body.slot].generation = 1;  // zero is the null handle's
+    slots_[body.slot].generation = next_generation(slots_[body.slot].generation);
     free_slots_.push_back(body.slot);
 }
 

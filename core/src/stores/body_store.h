@@ -242,6 +242,8 @@ class BodyStore {
     void restore_planar_inertia();
     /// Ends the containment of a body: gives it its mass and inertia back.
     void revive(BodyId body);
+    /// Handles begin with this generation from now on. Without bodies.
+    void begin_generations(std::uint32_t first) { slots_[0].generation = first; }
     /// Computes what follows from other fields and is not stored in files: displacements, inverse inertias, counts.
     void derive();
     /// World inverse inertia of a rigid row from its orientation, now and for the start of the next step.
@@ -254,7 +256,7 @@ class BodyStore {
         std::uint32_t generation = 1;
         BodyRow row;
     };
-    AlignedVector<Slot> slots_;
+    AlignedVector<Slot> slots_;  ///< the first is the null handle's: new slots get its generation
     Array<std::uint8_t> live_;
     Array<BodyModel> models_;
     AlignedVector<BodyMotion> motions_;

@@ -2,6 +2,7 @@
 #include "stores/disc_store.h"
 
 #include "stores/disc_fields.h"
+#include "stores/generations.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +65,7 @@ void DiscStore::remove_wall(std::uint32_t slot)
 {
     remove_segments_of(slot);
     walls[slot].live = 0;
-    if (++walls[slot].generation == 0) walls[slot].generation = 1;  // zero is the null handle's
+    walls[slot].generation = next_generation(walls[slot].generation);
     free_walls.push_back(slot);
 }
 

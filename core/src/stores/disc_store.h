@@ -116,7 +116,7 @@ struct DiscStore {
         std::uint32_t generation = 1;
         std::uint8_t live = 0;
     };
-    Array<WallSlot> walls{1};  ///< by slot; the first is the null handle's
+    Array<WallSlot> walls{1};  ///< by slot; the first is the null handle's: new ones get its generation
     Array<std::uint32_t> free_walls;
     Array<WallSegment> segments;  ///< of live walls, in the order in which they were added
 

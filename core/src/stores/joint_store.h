@@ -135,7 +135,7 @@ struct JointStores {
         std::uint64_t number = 0;  ///< how many joints had been added to the scene with this one
     };
     typename StoresOf<JointTypes>::type stores;
-    Array<Slot> slots{Slot{}};  ///< slot 0 is the null handle's
+    Array<Slot> slots{Slot{}};  ///< slot 0 is the null handle's: new ones go on from its generation
     Array<std::uint32_t> free_slots;
     std::uint64_t added = 0;  ///< how many joints, with those that were removed since
     /// The joints on each body as a doubly linked list of joint ends: end 2 s is the end of the joint in slot s on its

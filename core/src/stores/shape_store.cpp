@@ -1,6 +1,7 @@
 // See shape_store.h.
 #include "stores/shape_store.h"
 
+#include "stores/generations.h"
 #include "stores/growth.h"
 
 namespace motley {
@@ -16,7 +17,7 @@ void ShapeStore::make_room(std::size_t more_capsules, std::size_t more_half_spac
 std::uint32_t ShapeStore::take_slot(Kind kind, std::size_t index)
 {
     if (free_slots.empty()) {
-        slots.emplace_back();
+        slots.emplace_back().generation = slots[0].generation;
         free_slots.push_back(static_cast<std::uint32_t>(slots.size() - 1));
     }
     const std::uint32_t slot = free_slots.back();
@@ -58,7 +59,7 @@ void ShapeStore::remove(std::uint32_t slot)
     }
     freed.kind = Kind::none;
     freed.index = 0;
-    ++freed.generation;
+    freed.generation = next_generation(freed.generation);
     free_slots.push_back(slot);
     version.reset();
 }

@@ -48,7 +48,7 @@ struct ShapeStore {
     /// Keys of contacts name shapes in so many bits.
     static constexpr std::uint32_t most_slots = std::uint32_t{1} << 28;
 
-    Array<Slot> slots{1};  ///< the first is the null handle's
+    Array<Slot> slots{1};  ///< the first is the null handle's: new ones get its generation
     Array<std::uint32_t> free_slots;
     Array<Capsule> capsules;  ///< without gaps: removal moves the last one into the gap
     Array<HalfSpace> half_spaces;

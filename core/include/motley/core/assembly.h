@@ -45,6 +45,7 @@ class Figure {
     Scene sketch_;  ///< a copy of the figure: it checks what is added, and keeps the joints
     std::vector<BodyDefinition> bodies_;
 
+    [[nodiscard]] bool is_ground(BodyId body) const;
     void refuse_ground(BodyId body) const;
 };
 

@@ -1,8 +1,8 @@
 // People and walls whose contacts the library finds itself: discs on planar bodies, and walls of straight segments.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "motley/core/ids.h"
@@ -48,7 +48,7 @@ struct WallDefinition {
     float surface_speed = 0;
     /// N, above 0: the most with which the wall pushes a disc or a capsule along the normal. Who pushes harder passes. The
     /// points at which a capsule lies along a straight piece share it equally.
-    float max_force = INFINITY;
+    float max_force = std::numeric_limits<float>::infinity();
 };
 
 /// A contact that the library found and that pushed in the last step.
