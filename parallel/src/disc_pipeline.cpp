@@ -30,9 +30,12 @@ bool may_leave(const DiscStore& discs, const BodyRows& rows, std::uint32_t row, 
                  step_y = static_cast<double>(dt) * static_cast<double>(v[1]);
     const double gone2 = x * x + y * y, step2 = step_x * step_x + step_y * step_y,
                  room = static_cast<double>(anchor.skin) - slack;
-    // The square of a sum is at most twice the sum of the squares: this tells of most discs, without a root, that they stay.
-    if (2 * (gone2 + step2) < room * room && room > 0) return false;
-    return !(std::sqrt(gone2) + std::sqrt(step2) <= room);
+    // gone + step <= room without roots: 2 gone step <= room^2 - gone^2 - step^2, of which the right side is not negative. Without
+    // branches, because they would often be mispredicted. Nothing of this is true of what is no number.
+    const double left = room * room - gone2 - step2;
+    const int stays = static_cast<int>(room >= 0) & static_cast<int>(left >= 0) &
+                      static_cast<int>(4 * gone2 * step2 <= left * left);
+    return stays == 0;
 }
 
 }  // namespace

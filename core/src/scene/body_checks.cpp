@@ -20,11 +20,6 @@ void check_moment(const char* who, const char* field, float moment)
 
 }  // namespace
 
-bool is_finite(const Vec3<float>& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 void check(const char* field, double value, double low, double high, const char* expected)
 {
     if (!(value >= low && value <= high)) refuse(field, value, expected);  // NaN fails too

@@ -1,6 +1,8 @@
 // Checks of the values that a host gives for bodies. A refusal names the field, the value and what was expected.
 #pragma once
 
+#include <cmath>
+
 #include "motley/core/body.h"
 #include "motley/core/crowd.h"
 
@@ -16,7 +18,10 @@ inline constexpr float most_damping = 1e6F;
 /// The largest component of a velocity that a host may give, m/s and rad/s.
 inline constexpr float largest_speed = 1e9F;
 
-bool is_finite(const Vec3<float>& v);
+inline bool is_finite(const Vec3<float>& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 /// Refuses a value outside [low, high] or not finite.
 void check(const char* field, double value, double low, double high, const char* expected);
 /// Whether a coordinate is in the range of positions, -1e12 to 1e12 m.

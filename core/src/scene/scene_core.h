@@ -65,7 +65,7 @@ struct SceneCore {
     void find_break_events() noexcept;
 
     // What a call refuses. `what` names the argument in the message.
-    void require_alive(BodyId body, const char* what) const
+    [[gnu::always_inline]] void require_alive(BodyId body, const char* what) const
     {
         if (!bodies.is_alive(body)) refuse_dead(body, what);
     }

@@ -14,6 +14,8 @@ namespace {
 
 #include "kernels/kernel_integration.h"
 
+#include "kernels/kernel_quad_integration.h"
+
 #include "kernels/kernel_commit.h"
 
 #include "kernels/kernel_copies.h"
@@ -31,6 +33,12 @@ void enter_body(BodyKernels& kernels)
         kernels.bring_back = bring_back<kind>;
     }
     kernels.integrate_positions = integrate_positions<kind, false>;
+#ifndef MOTLEY_SCALAR_LANES
+    if constexpr (quads_of(kind) == 1) {
+        kernels.integrate_velocities = integrate_velocity_quads<kind>;
+        kernels.integrate_positions = integrate_position_quads<kind>;
+    }
+#endif
     kernels.integrate_on = integrate_positions<kind, true>;
     kernels.keep = keep_bodies<kind>;
     kernels.find_energy = find_energy<kind>;

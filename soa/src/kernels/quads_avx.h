@@ -31,6 +31,12 @@
     out[3].v = r3;
 }
 
+/// Of every four numbers in line, the last one four times.
+[[gnu::always_inline]] inline Lanes last_of_each_quad(const Lanes& quads)
+{
+    return Lanes(_mm256_permute_ps(quads.v, 0xFF));
+}
+
 /// Stores the first `count` lanes of a bundle with padding: `turned` holds rows 0 to 3 and, in the upper halves, 4 to
 /// 7. Runs at most once per colour.
 [[gnu::noinline, gnu::cold]] inline void store_some_quads(float* rows, std::int64_t stride,

@@ -32,6 +32,12 @@
     out[3].v = r3;
 }
 
+/// Of every four numbers in line, the last one four times.
+[[gnu::always_inline]] inline Lanes last_of_each_quad(const Lanes& quads)
+{
+    return Lanes(_mm512_permute_ps(quads.v, 0xFF));
+}
+
 /// Stores the first `count` lanes of a bundle with padding. Runs at most once per colour.
 [[gnu::noinline, gnu::cold]] inline void store_some_quads(float* rows, std::int64_t stride,
                                                           const std::int32_t* index, const __m512* turned,

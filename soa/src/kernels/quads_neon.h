@@ -22,6 +22,12 @@
     out[3].v = r3;
 }
 
+/// Of four numbers in line, the last one four times.
+[[gnu::always_inline]] inline Lanes last_of_each_quad(const Lanes& quad)
+{
+    return Lanes(vdupq_laneq_f32(quad.v, 3));
+}
+
 /// Stores the first `count` lanes of a bundle with padding. Runs at most once per colour.
 [[gnu::noinline, gnu::cold]] inline void store_some_quads(float* rows, std::int64_t stride,
                                                           const std::int32_t* index,
