@@ -16,7 +16,7 @@
 namespace motley {
 namespace {
 
-constexpr std::int32_t row_count = 64;
+constexpr std::int32_t row_count = 512;
 
 /// Rows of one kind, of a quad each.
 struct Rows {
@@ -36,7 +36,7 @@ struct Rows {
         constexpr float infinite = std::numeric_limits<float>::infinity();
         const std::array<float, 6> special{0.0F, -0.0F, 1e-40F, -infinite, std::nanf(""), 3e38F};
         std::uniform_real_distribution<float> any(-5, 5);
-        std::uniform_int_distribution<int> choice(0, 40);
+        std::uniform_int_distribution<int> choice(0, 11);
         const auto number = [&] {
             const int i = choice(random);
             return i < static_cast<int>(special.size()) ? special[static_cast<std::size_t>(i)] : any(random);
@@ -84,7 +84,7 @@ TEST(BodyIntegration, OfQuadsHasTheBitsOfTheScalarKernels)
     using Move = BodyKernels::Move BodyKernels::*;
     const std::array<Move, 4> moves{&BodyKernels::begin_velocities, &BodyKernels::integrate_velocities,
                                     &BodyKernels::integrate_positions, &BodyKernels::integrate_on};
-    const std::array<std::array<std::int32_t, 2>, 5> ranges{{{0, 64}, {16, 48}, {0, 37}, {3, 5}, {21, 63}}};
+    const std::array<std::array<std::int32_t, 2>, 5> ranges{{{0, 512}, {16, 48}, {0, 37}, {3, 5}, {21, 463}}};
     for (const Isa isa : available_isas()) {
         for (const BodyKind kind : {BodyKind::particle, BodyKind::planar}) {
             for (const Replay replay : {Replay::nothing, Replay::next_time, Replay::last_substep}) {
