@@ -62,7 +62,11 @@ endforeach()
 string(JOIN "," built_types ${built_types})
 string(JOIN ", " built_joints ${joints})
 string(JOIN ", " built_models ${models})
-set(motley_built_definitions "MOTLEY_BUILT_TYPES=${built_types}" "MOTLEY_BUILT_JOINTS=\"${built_joints}\""
+# The list of types that all sources see: see core/src/contract/constraint_types.h.
+if(NOT joints STREQUAL all_joints)
+    add_compile_definitions(MOTLEY_BUILT_TYPES=${built_types})
+endif()
+set(motley_built_definitions "MOTLEY_BUILT_JOINTS=\"${built_joints}\""
     "MOTLEY_BUILT_MODELS=\"${built_models}\"")
 foreach(model IN LISTS all_models)
     if(NOT model IN_LIST models)

@@ -18,9 +18,15 @@
 namespace motley {
 
 /// The lists of the headers above: contacts first, then joints. The build compiles the kernels of each list separately.
-using ConstraintLists =
+using AllConstraintLists =
     TypeList<ContactTypes, BallSocketTypes, DistanceTypes, FrameJointTypes, DriveTypes, SwingLimitTypes,
              ServoTypes, TransmissionTypes, PulleyTypes, ManifoldTypes, ScrewTypes>;
+/// Those that are built (MOTLEY_JOINTS of the build). Of others there is no code: see built.h.
+#ifdef MOTLEY_BUILT_TYPES
+using ConstraintLists = TypeList<MOTLEY_BUILT_TYPES>;
+#else
+using ConstraintLists = AllConstraintLists;
+#endif
 
 template <class Lists>
 struct JointTypesOf;
@@ -28,6 +34,7 @@ template <class Contacts, class... Joints>
 struct JointTypesOf<TypeList<Contacts, Joints...>> {
     using type = Joined<Joints...>;
 };
+using AllJointTypes = JointTypesOf<AllConstraintLists>::type;
 using JointTypes = JointTypesOf<ConstraintLists>::type;
 
 /// Types of constraint in all: contacts first, then joints, each at its place in the lists.

@@ -10,7 +10,9 @@ struct TypeList {
 
 /// The concatenation of several lists.
 template <class... Lists>
-struct JoinedLists;
+struct JoinedLists {
+    using type = TypeList<>;  // of no lists
+};
 template <class... Types>
 struct JoinedLists<TypeList<Types...>> {
     using type = TypeList<Types...>;

@@ -139,8 +139,7 @@ void SceneArchive::check_joints(const SceneCore& scene)
                "its lists of joints differ in length");
         for (std::size_t i = 0; i < size; ++i) {
             const auto& definition = store.definitions[i];
-            Store::Type::validate(definition,
-                                  scene.check_joint_bodies(type, definition.body_a, definition.body_b));
+            Store::Type::validate(definition, scene.check_joint_bodies(definition.body_a, definition.body_b));
             const std::uint32_t slot = store.slots[i];
             demand(slot > 0 && slot < joints.slots.size() && joints.slots[slot].live == 1 &&
                        joints.slots[slot].type == type && joints.slots[slot].index == i,

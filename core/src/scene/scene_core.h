@@ -72,7 +72,7 @@ struct SceneCore {
     void require_alive(std::span<const BodyId> named, const char* what) const;
     void require_alive(ConstraintId joint, const char* what) const;
     [[noreturn]] static void refuse_dead(BodyId body, const char* what);
-    JointBodies check_joint_bodies(int type, BodyId a, BodyId b) const;
+    JointBodies check_joint_bodies(BodyId a, BodyId b) const;
     /// Refuses what Scene::change_body refuses.
     void check_change(BodyId body, const BodyChange& change) const;
     /// Refuses a model of a body under which one of its joints would be refused, and names the joint.

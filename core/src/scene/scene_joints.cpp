@@ -21,9 +21,8 @@ bool SceneCore::asks_for_iterations() const
     return joints->with_iterations > 0 || !island_iterations.empty();
 }
 
-JointBodies SceneCore::check_joint_bodies(int type, BodyId a, BodyId b) const
+JointBodies SceneCore::check_joint_bodies(BodyId a, BodyId b) const
 {
-    check_joint_is_built(type);
     require_alive(a, "joint.body_a");
     require_alive(b, "joint.body_b");
     if (a == b) refuse("joint.body_b", "the same body as body_a", "two different bodies");
@@ -41,7 +40,7 @@ void SceneCore::check_joints_after(BodyId body, BodyModel model) const
             if (type != joint.type) return;
             using Type = typename std::remove_cvref_t<decltype(store)>::Type;
             const auto& definition = store.definitions[joint.index];
-            JointBodies after = check_joint_bodies(type, definition.body_a, definition.body_b);
+            JointBodies after = check_joint_bodies(definition.body_a, definition.body_b);
             (definition.body_a == body ? after.model_a : after.model_b) = model;
             try {
                 Type::validate(definition, after);
@@ -270,43 +269,70 @@ JointReport Scene::contact_report(std::span<const Contact> contacts, std::size_t
     return report;
 }
 
+namespace {
+
+template <class Definition, class... Types>
+constexpr bool is_built(TypeList<Types...>)
+{
+    return (std::is_same_v<Definition, typename Types::Definition> || ...);
+}
+
+/// The name of a definition as the compiler spells it.
+template <class Definition>
+std::string_view name_of()
+{
+    const std::string_view function = __PRETTY_FUNCTION__;
+    const std::size_t begin = function.find("Definition = ") + 13;
+    return function.substr(begin, function.find_first_of(";]", begin) - begin);
+}
+
+}  // namespace
+
 template <class Definition>
 ConstraintId Scene::add_joint(const Definition& definition)
 {
-    constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
-    auto& store = std::get<static_cast<std::size_t>(type)>(core_->joints->stores);
-    using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-    Type::validate(definition, core_->check_joint_bodies(type, definition.body_a, definition.body_b));
-    core_->joints->make_room();
-    store.make_room();
-    const ConstraintId id = core_->take_joint_slot(type, store.size());
-    store.push_back(definition, id.slot);
-    core_->wake_island(definition.body_a.slot);
-    core_->wake_island(definition.body_b.slot);
-    core_->joints->link(2 * id.slot, core_->bodies.first_ends[definition.body_a.slot]);
-    core_->joints->link(2 * id.slot + 1, core_->bodies.first_ends[definition.body_b.slot]);
-    core_->joints->change(id.slot);
-    return id;
+    if constexpr (!is_built<Definition>(JointTypes{})) {
+        refuse_unbuilt_joint(name_of<Definition>());
+    } else {
+        constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
+        auto& store = std::get<static_cast<std::size_t>(type)>(core_->joints->stores);
+        using Type = typename std::remove_cvref_t<decltype(store)>::Type;
+        Type::validate(definition, core_->check_joint_bodies(definition.body_a, definition.body_b));
+        core_->joints->make_room();
+        store.make_room();
+        const ConstraintId id = core_->take_joint_slot(type, store.size());
+        store.push_back(definition, id.slot);
+        core_->wake_island(definition.body_a.slot);
+        core_->wake_island(definition.body_b.slot);
+        core_->joints->link(2 * id.slot, core_->bodies.first_ends[definition.body_a.slot]);
+        core_->joints->link(2 * id.slot + 1, core_->bodies.first_ends[definition.body_b.slot]);
+        core_->joints->change(id.slot);
+        return id;
+    }
 }
 
 template <class Definition>
 void Scene::set_joint(ConstraintId joint, const Definition& definition)
 {
-    constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
-    auto& store = std::get<static_cast<std::size_t>(type)>(core_->joints->stores);
-    using Type = typename std::remove_cvref_t<decltype(store)>::Type;
-    const std::size_t index = core_->index_of_joint(joint, type);
-    const Definition& now = store.definitions[index];
-    if (definition.body_a != now.body_a || definition.body_b != now.body_b)
-        refuse("set_joint.definition", "other bodies", "the bodies of the joint");
-    Type::validate(definition, core_->check_joint_bodies(type, definition.body_a, definition.body_b));
-    core_->wake_island(definition.body_a.slot);
-    core_->wake_island(definition.body_b.slot);
-    // Locks and other joints are laid out differently, and so are rotors.
-    if (Type::is_equality(definition) != Type::is_equality(now) ||
-        Type::rotor_load(definition, core_->bodies) != Type::rotor_load(now, core_->bodies))
-        core_->joints->change_altogether();
-    store.define(index, definition);
+    if constexpr (!is_built<Definition>(JointTypes{})) {
+        refuse_unbuilt_joint(name_of<Definition>());
+    } else {
+        constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
+        auto& store = std::get<static_cast<std::size_t>(type)>(core_->joints->stores);
+        using Type = typename std::remove_cvref_t<decltype(store)>::Type;
+        const std::size_t index = core_->index_of_joint(joint, type);
+        const Definition& now = store.definitions[index];
+        if (definition.body_a != now.body_a || definition.body_b != now.body_b)
+            refuse("set_joint.definition", "other bodies", "the bodies of the joint");
+        Type::validate(definition, core_->check_joint_bodies(definition.body_a, definition.body_b));
+        core_->wake_island(definition.body_a.slot);
+        core_->wake_island(definition.body_b.slot);
+        // Locks and other joints are laid out differently, and so are rotors.
+        if (Type::is_equality(definition) != Type::is_equality(now) ||
+            Type::rotor_load(definition, core_->bodies) != Type::rotor_load(now, core_->bodies))
+            core_->joints->change_altogether();
+        store.define(index, definition);
+    }
 }
 
 namespace {
@@ -321,7 +347,7 @@ struct JointCalls<TypeList<Types...>> {
     std::tuple<void (Scene::*)(ConstraintId, const typename Types::Definition&)...> set{
         &Scene::set_joint<typename Types::Definition>...};
 };
-[[gnu::used]] const JointCalls<JointTypes> joint_calls;
+[[gnu::used]] const JointCalls<AllJointTypes> joint_calls;
 
 }  // namespace
 

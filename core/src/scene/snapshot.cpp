@@ -62,8 +62,11 @@ std::uint32_t layout_of_numbers()
     mix(sizeof(Contact));
     mix(sizeof(SolverSettings));
     mix(sizeof(std::size_t));
-    JointStores().for_each([&](const auto& store, int) {
+    JointStores().for_each([&](const auto& store, int type) {
         using Store = std::remove_cvref_t<decltype(store)>;
+        // Where joints were left out of the build, types are known by their place among all.
+        constexpr int among_all = TypeOfDefinition<typename Store::Type::Definition, AllJointTypes>::index;
+        if (among_all != type) mix(std::uint64_t{among_all});
         mix(sizeof(store.definitions[0]));
         mix(quad_floats<typename Store::Parameters>);
         mix(quad_floats<typename Store::Memory>);

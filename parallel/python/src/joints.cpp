@@ -110,7 +110,7 @@ constexpr std::array types{
     type<motley_manifold_definition, ManifoldDefinition>("manifold"),
     type<motley_screw_definition, ScrewDefinition>("screw"),
 };
-static_assert(types.size() == JointTypes::size, "a type of joint has no name in Python");
+static_assert(types.size() == AllJointTypes::size, "a type of joint has no name in Python");
 
 const JointType& type_of(const std::string& name)
 {

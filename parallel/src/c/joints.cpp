@@ -28,7 +28,7 @@ constexpr bool all_have_calls(TypeList<Types...>)
 {
     return (check_calls<typename Types::Definition>() && ...);
 }
-static_assert(all_have_calls(JointTypes{}));
+static_assert(all_have_calls(AllJointTypes{}));
 
 template <class Definition>
 void add_to(Figure& figure, const Definition& definition)

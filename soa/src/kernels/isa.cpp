@@ -102,17 +102,6 @@ Isa default_isa()
 
 namespace {
 
-#ifdef MOTLEY_BUILT_TYPES
-using BuiltLists = TypeList<MOTLEY_BUILT_TYPES>;
-#else
-using BuiltLists = ConstraintLists;
-#endif
-template <class List, class... Built>
-constexpr bool is_built(TypeList<Built...>)
-{
-    return (std::is_same_v<List, Built> || ...);
-}
-
 /// The instruction set whose kernels run what is rare or unusual: SSE2 and AVX-512 have no such kernels of their own,
 /// which would be a quarter of the library. The bits do not depend on it.
 constexpr Isa rare_lanes_of(Isa isa)
@@ -146,12 +135,10 @@ void enter_constraints(KernelTable& table, TypeList<Lists...>)
 {
     ConstraintKernels* next = table.constraints;
     const auto enter = [&]<class Types>(Types) {
-        if constexpr (is_built<Types>(BuiltLists{})) {
-            enter_constraint_kernels<isa, KernelShare::swept, Types>(next);
-            enter_constraint_kernels<once_lanes_of(isa), KernelShare::once, Types>(next);
-            enter_constraint_kernels<rare_lanes_of(isa), KernelShare::unusual, Types>(next);
-            enter_constraint_kernels<rare_lanes_of(isa), KernelShare::rare, Types>(next);
-        }
+        enter_constraint_kernels<isa, KernelShare::swept, Types>(next);
+        enter_constraint_kernels<once_lanes_of(isa), KernelShare::once, Types>(next);
+        enter_constraint_kernels<rare_lanes_of(isa), KernelShare::unusual, Types>(next);
+        enter_constraint_kernels<rare_lanes_of(isa), KernelShare::rare, Types>(next);
         next += class_of(Types::size, BodyKind{}, BodyKind{});
     };
     (enter(Lists{}), ...);

@@ -77,7 +77,8 @@ JointCandidate JointIntake::candidate(const SceneCore& scene, int type, std::siz
 std::uint32_t JointIntake::start_rows_bit_of(std::size_t type)
 {
     static constexpr auto bits = []<class... Types>(TypeList<Types...>) {
-        return std::array{has_start_rows<Types> ? start_rows_bit : std::uint32_t{}...};
+        return std::array<std::uint32_t, sizeof...(Types)>{has_start_rows<Types> ? start_rows_bit
+                                                                                 : std::uint32_t{}...};
     }(JointTypes{});
     return bits[type - contact_type_count];
 }

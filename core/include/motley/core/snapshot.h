@@ -22,7 +22,8 @@ struct StepProblem {
 };
 
 /// Everything that decides what the next steps compute, as bytes: bodies, joints, handles, user data, colours, and the
-/// accumulated impulses. A scene that is read back continues with the same bits, and the host's handles stay valid.
+/// accumulated impulses. A scene that is read back continues with the same bits, and the host's handles stay valid. Scenes that are
+/// built alike have other handles (ids.h), and so other bytes, unless they began as copies of one scene.
 [[nodiscard]] std::vector<std::byte> save_scene(const Scene& scene);
 /// Reads what save_scene returned, with the same version of the format and the same layout of data in memory. Throws
 /// std::runtime_error saying what is wrong with the bytes: not a scene, of another version or layout, truncated, or
