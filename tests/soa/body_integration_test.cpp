@@ -89,7 +89,7 @@ TEST(BodyIntegration, OfQuadsHasTheBitsOfTheScalarKernels)
         for (const BodyKind kind : {BodyKind::particle, BodyKind::planar}) {
             for (const Replay replay : {Replay::nothing, Replay::next_time, Replay::last_substep}) {
                 for (const bool damped : {false, true}) {
-                    for (const auto& [begin, end] : ranges) {
+                    for (const std::array<std::int32_t, 2>& range : ranges) {
                         for (std::size_t move = 0; move < moves.size(); ++move) {
                             const auto run = [&](Isa with) {
                                 std::mt19937 random(7);
@@ -100,13 +100,13 @@ TEST(BodyIntegration, OfQuadsHasTheBitsOfTheScalarKernels)
                                 context.replay = replay;
                                 const auto k = static_cast<std::size_t>(kind);
                                 rows.put_into(context.bodies[k], kind);
-                                (kernel_table(with).bodies[k].*moves[move])(context, begin, end);
+                                (kernel_table(with).bodies[k].*moves[move])(context, range[0], range[1]);
                                 return rows.bits();
                             };
                             ASSERT_EQ(run(isa), run(Isa::scalar))
                                 << isa_name(isa) << ", kind " << static_cast<int>(kind) << ", replay "
-                                << static_cast<int>(replay) << ", damped " << damped << ", rows " << begin
-                                << " to " << end << ", kernel " << move;
+                                << static_cast<int>(replay) << ", damped " << damped << ", rows " << range[0]
+                                << " to " << range[1] << ", kernel " << move;
                         }
                     }
                 }
