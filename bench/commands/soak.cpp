@@ -330,8 +330,8 @@ SoakResult soak(const SoakOptions& options)
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / fmt::format("motley-soak-{}.scene", getpid());
     Town one(options, 1), two(options, 2);
-    two.scene =
-        one.scene;  // so that a host of either may go on with the scene of the other: handles are the same
+    // Copies have the same handles, so that a town can go on with the scene that the other one has saved.
+    two.scene = one.scene;
     SoakResult& result = one.counted;
     const Progress progress(options);
     double said = 0;

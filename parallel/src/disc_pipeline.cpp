@@ -31,7 +31,7 @@ bool may_leave(const DiscStore& discs, const BodyRows& rows, std::uint32_t row, 
     const double gone2 = x * x + y * y, step2 = step_x * step_x + step_y * step_y,
                  room = static_cast<double>(anchor.skin) - slack;
     // gone + step <= room without roots: 2 gone step <= room^2 - gone^2 - step^2, of which the right side is not negative. Without
-    // branches, because they would often be mispredicted. Nothing of this is true of what is no number.
+    // branches, because they would often be mispredicted. No comparison is true of a state that is no number: such a disc may leave.
     const double left = room * room - gone2 - step2;
     const int stays = static_cast<int>(room >= 0) & static_cast<int>(left >= 0) &
                       static_cast<int>(4 * gone2 * step2 <= left * left);

@@ -1,5 +1,5 @@
-// Handles of bodies and joints against a map that is updated in the same way, of which RapidCheck decides what is added and removed;
-// and handles of other scenes.
+// Handles of bodies and joints, compared with a map that is updated in the same way: RapidCheck decides what is added and removed.
+// And handles of other scenes, which are refused.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -147,7 +147,7 @@ TEST(Handles, OfAnotherSceneAreRefused)
     EXPECT_EQ(solver.step(scene, 0.01F, {&contact, 1}).status, StepStatus::refused);
 }
 
-/// A slot that is used again, too, and what is added later.
+/// Also those of slots that are used again, and of what is added later in the same order.
 TEST(Handles, OfASceneAreThoseOfItsCopies)
 {
     OneOfEach one;

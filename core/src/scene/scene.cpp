@@ -15,7 +15,7 @@ template class Boxed<SceneCore>;
 
 namespace {
 
-std::atomic<std::uint32_t> scenes_made{0};
+std::atomic<std::uint32_t> scenes_made{0};  // in this process: see first_generation()
 
 }  // namespace
 

@@ -286,16 +286,24 @@ std::string_view name_of()
     return function.substr(begin, function.find_first_of(";]", begin) - begin);
 }
 
+/// Returns work(store, its number) for the store of the joints that have such a definition. Refuses joints that are not built.
+template <class Definition, class Result, class Work>
+Result with_store_of(JointStores& joints, const Work& work)
+{
+    if constexpr (is_built<Definition>(JointTypes{})) {
+        constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
+        return work(std::get<static_cast<std::size_t>(type)>(joints.stores), type);
+    } else {
+        refuse_unbuilt_joint(name_of<Definition>());
+    }
+}
+
 }  // namespace
 
 template <class Definition>
 ConstraintId Scene::add_joint(const Definition& definition)
 {
-    if constexpr (!is_built<Definition>(JointTypes{})) {
-        refuse_unbuilt_joint(name_of<Definition>());
-    } else {
-        constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
-        auto& store = std::get<static_cast<std::size_t>(type)>(core_->joints->stores);
+    return with_store_of<Definition, ConstraintId>(*core_->joints, [&](auto& store, int type) {
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         Type::validate(definition, core_->check_joint_bodies(definition.body_a, definition.body_b));
         core_->joints->make_room();
@@ -308,17 +316,13 @@ ConstraintId Scene::add_joint(const Definition& definition)
         core_->joints->link(2 * id.slot + 1, core_->bodies.first_ends[definition.body_b.slot]);
         core_->joints->change(id.slot);
         return id;
-    }
+    });
 }
 
 template <class Definition>
 void Scene::set_joint(ConstraintId joint, const Definition& definition)
 {
-    if constexpr (!is_built<Definition>(JointTypes{})) {
-        refuse_unbuilt_joint(name_of<Definition>());
-    } else {
-        constexpr int type = TypeOfDefinition<Definition, JointTypes>::index;
-        auto& store = std::get<static_cast<std::size_t>(type)>(core_->joints->stores);
+    with_store_of<Definition, void>(*core_->joints, [&](auto& store, int type) {
         using Type = typename std::remove_cvref_t<decltype(store)>::Type;
         const std::size_t index = core_->index_of_joint(joint, type);
         const Definition& now = store.definitions[index];
@@ -332,7 +336,7 @@ void Scene::set_joint(ConstraintId joint, const Definition& definition)
             Type::rotor_load(definition, core_->bodies) != Type::rotor_load(now, core_->bodies))
             core_->joints->change_altogether();
         store.define(index, definition);
-    }
+    });
 }
 
 namespace {

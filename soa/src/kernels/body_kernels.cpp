@@ -23,22 +23,31 @@ namespace {
 #include "kernels/kernel_watch.h"
 
 template <BodyKind kind>
+void enter_integration(BodyKernels& kernels)
+{
+#ifndef MOTLEY_SCALAR_LANES
+    if constexpr (quads_of(kind) == 1) {
+        kernels.integrate_velocities = integrate_velocity_quads<kind>;
+        kernels.integrate_positions = integrate_position_quads<kind>;
+    } else
+#endif
+    {
+        if constexpr (kind != BodyKind::fixed)
+            kernels.integrate_velocities = integrate_velocities<kind, false>;
+        kernels.integrate_positions = integrate_positions<kind, false>;
+    }
+}
+
+template <BodyKind kind>
 void enter_body(BodyKernels& kernels)
 {
+    enter_integration<kind>(kernels);
     if constexpr (kind != BodyKind::fixed) {
-        kernels.integrate_velocities = integrate_velocities<kind, false>;
         kernels.begin_velocities = integrate_velocities<kind, true>;
         kernels.integrate_listed = integrate_listed<kind>;
         kernels.commit = commit<kind>;
         kernels.bring_back = bring_back<kind>;
     }
-    kernels.integrate_positions = integrate_positions<kind, false>;
-#ifndef MOTLEY_SCALAR_LANES
-    if constexpr (quads_of(kind) == 1) {
-        kernels.integrate_velocities = integrate_velocity_quads<kind>;
-        kernels.integrate_positions = integrate_position_quads<kind>;
-    }
-#endif
     kernels.integrate_on = integrate_positions<kind, true>;
     kernels.keep = keep_bodies<kind>;
     kernels.find_energy = find_energy<kind>;

@@ -3,7 +3,6 @@
 
 #include <cstdlib>
 #include <string>
-#include <type_traits>
 
 #include "kernels/kernel_entries.h"
 #include "kernels/kernel_table.h"

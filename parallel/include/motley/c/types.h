@@ -94,7 +94,7 @@ typedef struct motley_sym3f {
 
 // Handles: a slot, and the generation that the slot had when the handle was given out. All zero is the null handle. A
 // handle is valid until its object is removed; after that it is refused, and never names another object until the slot
-// has been reused 2^32 times. Other scenes refuse it, likewise, unless they are copies of its scene or were read from its bytes.
+// has been reused 2^32 times. Other scenes refuse it too, unless they are copies of its scene or were read from its bytes.
 
 typedef struct motley_body_id {
     uint32_t slot, generation;

@@ -8,7 +8,7 @@
 #pragma GCC visibility push(default)
 namespace motley {
 
-/// What parallel_for() below does, of call(body, begin, end).
+/// parallel_for() below without its template: calls call(body, begin, end).
 void run_in_chunks(Executor& executor, std::int64_t count, std::int64_t grain, const void* body,
                    void (*call)(const void* body, std::int64_t begin, std::int64_t end));
 
