@@ -48,10 +48,8 @@ struct RunCommand {
         app.add_option("--seconds", options.seconds, "simulated time; default: the scene's")
             ->check(CLI::PositiveNumber);
         app.add_option("--dt", options.dt, "s a step")->check(CLI::Range(1e-6, 1.0))->capture_default_str();
-        app.add_flag(
-            "--listed", options.lists_contacts,
-            "a search of the host lists the contacts of people. They are listed anyway with the direct "
-            "method, a tolerance, measures or --direct-every, which contacts of discs do not have");
+        app.add_flag("--listed", options.lists_contacts,
+                     "a search of the host lists the contacts of people, where the scene has one");
         app.add_option("--door", options.door, "m, width of the door of evacuation; default: 1.2")
             ->check(CLI::Range(0.6, 50.0));
         app.add_option("--density", options.density,

@@ -146,18 +146,9 @@ void settle_options(const SceneEntry& entry, RunOptions& options)
         refuse("--steering", "has a steering of its own");
     if (options.torsos && !takes.torsos) refuse("--torsos", "has people as discs only");
     if (!takes.listed && !takes.found) return;
-    const SolverSettings& settings = options.settings;
-    const char* needs_list = options.lists_contacts              ? "--listed"
-                             : settings.method == Method::direct ? "--method direct"
-                             : settings.tolerance > 0            ? "--tolerance"
-                             : settings.measures                 ? "--measures"
-                             : options.direct_every > 0          ? "--direct-every"
-                                                                 : nullptr;
-    if (needs_list != nullptr && options.torsos) refuse(needs_list, "cannot list the contacts of torsos");
-    if (needs_list != nullptr && !takes.listed)
-        refuse(needs_list,
-               "leaves its contacts to the library, which finds contacts but has no such option for them");
-    options.lists_contacts = needs_list != nullptr || !takes.found;
+    if (options.lists_contacts && options.torsos) refuse("--listed", "cannot list the contacts of torsos");
+    if (options.lists_contacts && !takes.listed) refuse("--listed", "leaves its contacts to the library");
+    options.lists_contacts = options.lists_contacts || !takes.found;
 }
 
 RunResult run_scene(const SceneEntry& entry, RunOptions options, const RunOutputs& outputs)

@@ -64,9 +64,8 @@ struct RunOutputs {
     bool progress = true;
 };
 
-/// Decides who finds the contacts of people. The library does unless the scene cannot leave it to the library, the options
-/// ask for a list, or they ask for what contacts of discs do not have: the direct method, a tolerance, measures. Throws
-/// InvalidInput when the scene cannot list them, and for options that the scene does not follow.
+/// Decides who finds the contacts of people: the library, unless the options ask for a list or the scene cannot leave it to the
+/// library. Throws InvalidInput when the scene cannot list them, and for options that the scene does not follow.
 void settle_options(const SceneEntry& entry, RunOptions& options);
 
 /// Runs a scene. Throws InvalidInput for dials out of range and std::runtime_error for files and refused steps.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "disc_points.h"
 #include "motley/reference/joint_models.h"
 #include "motley/reference/world.h"
 #include "stores/joint_store.h"
@@ -116,7 +117,7 @@ DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& set
     }
 
     const ContactList& before = scene.contacts.current();
-    std::map<std::uint64_t, World::ContactResult> recalled;
+    World::ContactResults recalled;
     for (std::size_t i = 0; i < before.count; ++i) {
         const ContactImpulse& impulse = before.impulses[i + 1];
         recalled[before.entries[i].key] = {
@@ -124,6 +125,8 @@ DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& set
             {static_cast<double>(impulse.friction.x), static_cast<double>(impulse.friction.y),
              static_cast<double>(impulse.friction.z)}};
     }
+    DiscPoints discs;
+    discs.list(scene, index_of_slot, points, recalled);
     world.recall(static_cast<double>(scene.last_substep), std::move(recalled));
 
     const DirectResult result = world.step_directly(static_cast<double>(dt), settings, points);
@@ -162,6 +165,7 @@ DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& set
         staged.impulses[i + 1] = result_of(world.last_substep_results(), contacts[i].key);
         staged.step_impulses[i] = result_of(world.step_results(), contacts[i].key);
     }
+    discs.store(world, scene.discs);
     return result;
 }
 

@@ -43,8 +43,8 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
     switch (stage.operation) {
         case Operation::find_islands:
             convergence_.find_islands(layout_.context, layout_.joint_placements(),
-                                      layout_.contact_placements(), layout_.sweeps());
-            convergence_.take_wishes(step.scene, layout_.sweeps());
+                                      layout_.contact_placements(), layout_.swept());
+            convergence_.take_wishes(step.scene, layout_.swept());
             break;
         case Operation::note_momenta:
             sweeper_.begin_free_groups();
@@ -66,6 +66,7 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
         case Operation::solve_directly:
             // Without it settings that ask for it are refused.
             if constexpr (direct_is_built) {
+                discs_.prepare(step.scene);
                 const reference::DirectResult result =
                     reference::step_directly(step.scene, step.dt, step.settings, step.contacts);
                 step.report.direct_violation = result.violation;
@@ -185,7 +186,7 @@ int PlanRunner::iterate_by_island(ConstraintKernels::Sweep ConstraintKernels::*k
     const float tolerance = step.settings.tolerance;
     const bool renewing = renews(step.settings);
     if (renewing) renewal_.begin();
-    convergence_.start_over(layout_.sweeps());
+    convergence_.start_over(layout_.swept());
     // The host asks for sweeps of `solve`, not of `relax`.
     const int most =
         kernel == &ConstraintKernels::solve ? std::max(times, convergence_.most_wanted()) : times;
@@ -197,7 +198,7 @@ int PlanRunner::iterate_by_island(ConstraintKernels::Sweep ConstraintKernels::*k
         layout_.context.measure = measured ? Measure::while_solving : Measure::nothing;
         sweeper_.sweep(kernel, done <= times ? 0 : done);
         solve_exactly(kernel, step);
-        if (measured) convergence_.judge(layout_.sweeps(), tolerance);
+        if (measured) convergence_.judge(layout_.swept(), tolerance);
         if (renewing) renew_after(done, most);
     }
     layout_.context.measure = Measure::nothing;
@@ -241,11 +242,11 @@ void PlanRunner::measure_residual(const Step& step)
         report.islands_above_tolerance = convergence_.unfinished();
     }
     if (!step.settings.measures && step.settings.budget_ms == 0) return;
-    convergence_.start_over(layout_.sweeps());
+    convergence_.start_over(layout_.swept());
     layout_.context.measure = Measure::without_solving;
     sweeper_.sweep(&ConstraintKernels::solve);
     layout_.context.measure = Measure::nothing;
-    const ResidualSum sum = sum_residuals(layout_.sweeps());
+    const ResidualSum sum = sum_residuals(layout_.swept());
     const auto constraints = static_cast<double>(std::max<std::int64_t>(1, sum.constraints));
     report.measures.residual_norm = std::sqrt(sum.energy);
     report.measures.residual_rms = std::sqrt(sum.squares / constraints);

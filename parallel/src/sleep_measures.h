@@ -60,8 +60,8 @@ double gap_of(const SceneCore& scene, const DiscBlocks& blocks, std::size_t bloc
 {
     const AlignedVector<BodyPose>& poses = scene.bodies.rows(BodyKind::planar).pose;
     const BlockBodies& bodies = blocks.bodies[block];
-    const Vec2<double> between = in_plane(poses[row_at(bodies.b[lane], BodyKind::planar).row()].position) -
-                                 in_plane(poses[row_at(bodies.a[lane], BodyKind::planar).row()].position);
+    const Vec2<double> between = in_plane(poses[row_at(BodyKind::planar, bodies.b[lane]).row()].position) -
+                                 in_plane(poses[row_at(BodyKind::planar, bodies.a[lane]).row()].position);
     const auto row = load_lane<typename DiscFieldsOf<c>::Row>(blocks.rows.data(), block, lane);
     double radii = 0;
     if constexpr (is_rough(c)) {

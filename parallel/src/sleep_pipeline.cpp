@@ -182,7 +182,7 @@ void SleepPipeline::tie_discs(const Step& step)
             const DiscBlocks& blocks = scene.discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
             if (is_wall(c.value) && !walls_move) return;
             for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
-                const BodyRow b = row_at(blocks.bodies[block].b[lane], BodyKind::planar);
+                const BodyRow b = row_at(BodyKind::planar, blocks.bodies[block].b[lane]);
                 const auto pushes = [&] {
                     return load_lane<typename Fields::Impulse>(blocks.sums.data(), block, lane).normal > 0;
                 };
@@ -195,7 +195,7 @@ void SleepPipeline::tie_discs(const Step& step)
                     if (goes > 0 && (pushes() || gap <= 2 * touching_distance + goes + reach_of(step, b, {})))
                         tie(step, scene.bodies.row_of(segment.body), b);
                 } else {
-                    const BodyRow a = row_at(blocks.bodies[block].a[lane], BodyKind::planar);
+                    const BodyRow a = row_at(BodyKind::planar, blocks.bodies[block].a[lane]);
                     if (!candidate(a) && !candidate(b)) return;
                     if (pushes())
                         tie(step, a, b);

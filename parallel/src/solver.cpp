@@ -16,6 +16,7 @@
 #include "maths/step_constants.h"
 #include "motley/core/invalid_input.h"
 #include "own_executor.h"
+#include "penetrations.h"
 #include "plan_runner.h"
 #include "scene/scene_core.h"
 #include "shape_pipeline.h"
@@ -74,38 +75,17 @@ std::string text_of(const std::exception_ptr& thrown) noexcept
     return {};
 }
 
-/// Contacts of discs are solved by sweeps, as often as the settings say, and so are those with belts and with walls of
-/// bounded force.
+/// Contacts with belts and with walls of bounded force are solved by sweeps.
 void refuse_what_sweeps_must_solve(const SceneCore& scene, const SolverSettings& settings)
 {
-    if (settings.method == Method::direct && scene.shapes.is_in_use() &&
-        std::any_of(scene.discs.segments.begin(), scene.discs.segments.end(),
+    const bool has_capsules = scene.shapes.is_in_use();
+    if (settings.method != Method::direct || (!has_capsules && !scene.discs.is_in_use())) return;
+    if (std::any_of(scene.discs.segments.begin(), scene.discs.segments.end(),
                     std::mem_fn(&WallSegment::has_own_surface)))
         refuse("SolverSettings.method",
-               "direct, in a scene with capsules and a wall with surface_speed or max_force", "another one");
-    if (!scene.discs.is_in_use()) return;
-    if (settings.method == Method::direct)
-        refuse("SolverSettings.method", "direct, in a scene with discs",
-               "another one, or contacts from a list");
-    if (settings.tolerance > 0)
-        refuse("SolverSettings.tolerance", settings.tolerance, "0 in a scene with discs");
-}
-
-void measure_start(const Scene& scene, std::span<const Contact> contacts, StepMeasures& measures)
-{
-    measures.before = scene.errors();
-    double squares = 0;
-    std::int64_t overlapping = 0;
-    const ContactList& list = core_of(scene).contacts.staged();
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const Contact& contact = contacts[i];
-        if (list.colours[i] == no_colour || contact.separation >= 0) continue;  // left out, or apart
-        const auto depth = -static_cast<double>(contact.separation);
-        squares += depth * depth;
-        measures.penetration_max = std::max(measures.penetration_max, depth);
-        ++overlapping;
-    }
-    if (overlapping > 0) measures.penetration_rms = std::sqrt(squares / static_cast<double>(overlapping));
+               std::string("direct, in a scene with ") + (has_capsules ? "capsules" : "discs") +
+                   " and a wall with surface_speed or max_force",
+               "another one");
 }
 
 }  // namespace
@@ -248,14 +228,15 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> ho
         lay_out(scene, contacts, report);
         if (!report.error.empty()) return clock.leave();
         discs.divide(scene);
-        layout.list_discs(scene);
+        layout.list_discs(scene, tells_blocks_apart(scene));
         if (settings.exact_contacts) plan_runner.find_contact_islands(scene, dt);
         layout.point_at(scene, step_constants(settings, dt, scene.last_substep));
         plan_step(scene);
         clock.leave();
-        if (settings.measures) measure_start(host_scene, contacts, report.measures);
+        if (settings.measures) report.measures.before = host_scene.errors();
         plan_runner.run(plan, figure_plan, {scene, contacts, dt, settings, picks_islands(scene), report},
                         clock);
+        if (settings.measures) note_penetrations(scene, contacts, report.measures);
         finish(scene, contacts, dt, report);
         clock.leave();
         if (settings.measures) report.measures.after = host_scene.errors();

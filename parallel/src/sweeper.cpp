@@ -130,17 +130,15 @@ void Sweeper::sweep(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_
     // Relaxation runs in the opposite order, so that a patch, solved last, can be moved and relaxed while it is in
     // cache.
     const bool patches_first = kernel == &ConstraintKernels::relax;
-    // Islands that want more sweeps than others are of listed contacts and joints.
-    const bool with_discs = at_least <= 0 && layout_.context.measure == Measure::nothing;
     if (patches_first) sweep_patches(kernel, at_least);
     sweep_beside_patches(kernel, at_least);
     if (!patches_first) sweep_patches(kernel, at_least);
-    if (with_discs) sweep_discs(kernel);
+    sweep_discs(kernel, at_least);
 }
 
 /// Band 0, then bands of odd number, then of even number. The order is that of solving also to relax: in the opposite
 /// order a blow would be handed on from person to person less exactly, and p99 of overlaps would be a sixth larger.
-void Sweeper::sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel)
+void Sweeper::sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least)
 {
     const std::int64_t bands = layout_.disc_bands();
     if (layout_.discs().empty() && region == nullptr) return;
@@ -148,7 +146,7 @@ void Sweeper::sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel)
     KernelContext at_hand = layout_.context;
     at_hand.bodies_are_far = false;
     const auto run = [&](std::int64_t band) {
-        run_chunks(at_hand, layout_.kernels(), layout_.discs_of_band(band), kernel, every_block);
+        run_chunks(at_hand, layout_.kernels(), layout_.discs_of_band(band), kernel, at_least);
     };
     if (region != nullptr) return sweep_region(run);
     run(0);

@@ -75,7 +75,7 @@ class Sweeper {
     void run_unless_left_out(std::span<const SweepChunk> chunks,
                              ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
 
-    void sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel);
+    void sweep_discs(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);
     template <class Run>
     void sweep_region(const Run& run);
     void sweep_patches(ConstraintKernels::Sweep ConstraintKernels::*kernel, int at_least);

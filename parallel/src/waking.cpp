@@ -143,8 +143,8 @@ void SleepPipeline::wake_for_discs(const Step& step)
             if constexpr (!is_wall(c.value)) {
                 const DiscBlocks& blocks = own.blocks[static_cast<std::size_t>(c.value)];
                 for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
-                    const BodyRow a = row_at(blocks.bodies[block].a[lane], BodyKind::planar),
-                                  b = row_at(blocks.bodies[block].b[lane], BodyKind::planar);
+                    const BodyRow a = row_at(BodyKind::planar, blocks.bodies[block].a[lane]),
+                                  b = row_at(BodyKind::planar, blocks.bodies[block].b[lane]);
                     const bool a_sleeps = scene.bodies.is_asleep(a), b_sleeps = scene.bodies.is_asleep(b);
                     if (a_sleeps == b_sleeps) return;
                     // A removed body may have left its row to another one.

@@ -137,7 +137,7 @@ TEST(Laws, AMissedLawCountsUnlessItIsADebtOfTheDefaults)
 }
 
 /// What contacts of discs do not have makes a host's search list them, and a scene without one says so.
-TEST(Runs, ListContactsForWhatContactsOfDiscsDoNotHave)
+TEST(Runs, ListContactsWhereTheyAreAskedTo)
 {
     const auto settled = [](const char* scene, const auto& change) {
         RunOptions options;
@@ -147,11 +147,11 @@ TEST(Runs, ListContactsForWhatContactsOfDiscsDoNotHave)
     };
     EXPECT_FALSE(settled("push", [](RunOptions&) {}));
     EXPECT_TRUE(settled("bounce", [](RunOptions&) {}));
-    const auto direct = [](RunOptions& options) { options.settings.method = Method::direct; };
-    EXPECT_TRUE(settled("push", direct));
-    EXPECT_TRUE(settled("lean", [](RunOptions& options) { options.settings.tolerance = 0.1F; }));
-    EXPECT_TRUE(settled("wave", [](RunOptions& options) { options.settings.measures = true; }));
-    EXPECT_TRUE(settled("crowd", [](RunOptions& options) { options.direct_every = 10; }));
+    const auto listed = [](RunOptions& options) { options.lists_contacts = true; };
+    EXPECT_TRUE(settled("push", listed));
+    EXPECT_FALSE(settled("lean", [](RunOptions& options) { options.settings.tolerance = 0.1F; }));
+    EXPECT_FALSE(settled("wave", [](RunOptions& options) { options.settings.measures = true; }));
+    EXPECT_FALSE(settled("crowd", [](RunOptions& options) { options.direct_every = 10; }));
     const auto refusal = [&](const char* scene, const auto& change) {
         try {
             settled(scene, change);
@@ -160,8 +160,7 @@ TEST(Runs, ListContactsForWhatContactsOfDiscsDoNotHave)
         }
         return std::string("none");
     };
-    EXPECT_NE(refusal("door-closes", direct).find("--method direct: the scene door-closes"),
-              std::string::npos);
+    EXPECT_NE(refusal("door-closes", listed).find("--listed: the scene door-closes"), std::string::npos);
     EXPECT_NE(refusal("lean", [](RunOptions& options) { options.door = 1; }).find("--door: the scene lean"),
               std::string::npos);
     EXPECT_NE(refusal("grid", [](RunOptions& options) { options.density = 1; }).find("--density"),

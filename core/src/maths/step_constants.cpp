@@ -110,6 +110,8 @@ StepConstants step_constants(const SolverSettings& settings, float dt, float las
     // one.
     step.warm_start_scale =
         settings.warm_start && last_substep > 0 ? std::min(1.0F, step.substep / last_substep) : 0.0F;
+    // Method::direct scales impulses itself (core/reference).
+    if (settings.method == Method::direct) step.warm_start_scale = 1;
     if (settings.method == Method::soft_step) {
         // Nor is an error that a longer substep left corrected faster than that one would have: that would be a blow.
         const float longer_substep = std::max(step.substep, last_substep);

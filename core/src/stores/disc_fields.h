@@ -61,11 +61,6 @@ void store_lane(const Struct& value, float* stream, std::size_t block, std::size
     for (std::size_t f = 0; f < fields; ++f) stream[block_lanes * (fields * block + f) + lane] = from[f];
 }
 
-/// The body at an offset of BlockBodies.
-inline BodyRow row_at(std::int32_t offset, BodyKind kind)
-{
-    return {kind, static_cast<std::uint32_t>(offset / offsets_a_row(kind))};
-}
 /// Calls work(block, lane) for each lane that is not padding.
 template <class Work>
 void for_each_lane(const DiscBlocks& blocks, const Work& work)

@@ -34,6 +34,7 @@ const char* unfit_in(const Scene& scene)
 {
     if (scene.joint_count() > 0) return "joints";
     if (core_of(scene).shapes.is_in_use()) return "capsules or half-spaces";
+    if (core_of(scene).asks_for_iterations()) return "wishes of islands for more iterations";
     return "";
 }
 
@@ -170,8 +171,9 @@ std::string DistributedCrowd::Impl::refusal(float dt) const
         return most[0] == 2 ? "step.dt is out of range on some rank; valid: 0 to 1 (s)"
                             : "step.dt is not the same on all ranks; valid: one dt";
     if (most[2] == 0) return {};
-    return is_fit ? "another rank has joints, capsules or half-spaces, which a crowd on several ranks cannot "
-                    "have"
+    return is_fit ? "another rank has joints, capsules, half-spaces or wishes of islands for more "
+                    "iterations, which a "
+                    "crowd on several ranks cannot have"
                   : std::string(unfit) + " are in the scene; a crowd on several ranks cannot have them";
 }
 

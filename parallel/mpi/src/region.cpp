@@ -174,7 +174,7 @@ void Region::list_copies_pushed(const SceneCore& scene)
     std::vector<std::uint8_t> is_pushed(places.size(), 0);
     const Array<std::uint32_t>& slots = scene.bodies.rows(BodyKind::planar).slot;
     const auto note = [&](std::int32_t offset) {
-        const std::uint32_t row = row_at(offset, BodyKind::planar).row();
+        const std::uint32_t row = row_at(BodyKind::planar, offset).row();
         if (!is_copy(slots[row])) return;
         const auto place = std::lower_bound(places.begin(), places.end(), Place{row, 0}, by_row);
         if (place != places.end() && place->row == row) is_pushed[place->index] = 1;

@@ -34,8 +34,8 @@ IslandContact placed(const SweepChunk& chunk, std::int32_t block, std::int32_t l
     contact.chunk = &chunk;
     contact.block = block;
     contact.lane = lane;
-    contact.body_a = row_at(bodies.a[lane], chunk.kind_a);
-    contact.body_b = row_at(bodies.b[lane], chunk.kind_b);
+    contact.body_a = row_at(chunk.kind_a, bodies.a[lane]);
+    contact.body_b = row_at(chunk.kind_b, bodies.b[lane]);
     contact.rows = chunk.kernels->impulse_floats;
     return contact;
 }

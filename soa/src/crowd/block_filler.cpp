@@ -21,7 +21,7 @@ void BlockFiller::go_on(DiscBlocks& blocks, int row_floats, int impulse_floats, 
     take_over(blocks, row_floats, impulse_floats, bodies);
     const auto count = static_cast<std::size_t>(blocks.count);
     const auto number_at = [&](std::int32_t offset) {
-        return numbers.of(row_at(offset, BodyKind::planar).row());
+        return numbers.of(row_at(BodyKind::planar, offset).row());
     };
     for (std::size_t block = count - std::min(count, most_open); block < count; ++block) {
         if (blocks.lanes[block] == block_lanes) continue;

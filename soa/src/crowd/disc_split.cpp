@@ -12,7 +12,7 @@ template <DiscClass c>
 int sleepers_of(const SceneCore& scene, const BlockBodies& bodies, std::size_t lane)
 {
     const auto sleeps = [&](std::int32_t offset) {
-        return scene.bodies.is_asleep(row_at(offset, BodyKind::planar)) ? 1 : 0;
+        return scene.bodies.is_asleep(row_at(BodyKind::planar, offset)) ? 1 : 0;
     };
     if constexpr (is_wall(c)) {
         return 1 + sleeps(bodies.b[lane]);
@@ -35,8 +35,8 @@ void DiscSplit::take_out(const SceneCore& scene, const DiscBlocks& blocks)
         take(load_lane<typename Fields::Row>(blocks.rows.data(), block, lane));
         take(load_lane<typename Fields::Impulse>(blocks.impulses.data(), block, lane));
         take(load_lane<typename Fields::Impulse>(blocks.sums.data(), block, lane));
-        rows_.push_back(row_at(blocks.bodies[block].a[lane], Fields::kind_a).row());
-        rows_.push_back(row_at(blocks.bodies[block].b[lane], BodyKind::planar).row());
+        rows_.push_back(row_at(Fields::kind_a, blocks.bodies[block].a[lane]).row());
+        rows_.push_back(row_at(BodyKind::planar, blocks.bodies[block].b[lane]).row());
         if constexpr (is_wall(c)) touches_.push_back(blocks.touches[block_lanes * block + lane]);
         rests_.push_back(sleepers_of<c>(scene, blocks.bodies[block], lane) == 2 ? 1 : 0);
     });

@@ -76,6 +76,22 @@ bool BatchSet::Pool::holds(std::size_t block, BodyRow a, BodyRow b) const
     return false;
 }
 
+void BlockMarks::make_room(std::size_t blocks)
+{
+    grow_to(residuals, blocks * residuals_a_block);
+    grow_to(finished, blocks);
+    grow_to(islands, blocks);
+    grow_to(wanted, blocks);
+}
+
+void BlockMarks::mark(SweepChunk& chunk, std::size_t first_block)
+{
+    chunk.streams.residuals = residuals.data() + first_block * residuals_a_block;
+    chunk.finished = finished.data() + first_block;
+    chunk.islands = islands.data() + first_block;
+    chunk.wanted = wanted.data() + first_block;
+}
+
 BatchSet::BatchSet(int first_type, int last_type)
     : first_class_(first_type * body_kind_count * body_kind_count),
       pools_(static_cast<std::size_t>((last_type - first_type) * body_kind_count * body_kind_count)),
@@ -275,10 +291,10 @@ BatchSet::Block BatchSet::block(int constraint_class, int colour, std::int32_t n
     const std::size_t p = pool_of(constraint_class);
     Pool& pool = pools_[p];
     const std::int32_t index = pool.first_block[static_cast<std::size_t>(colour)] + nth;
-    return {streams(p, false), index, &pool.skipped[static_cast<std::size_t>(index)]};
+    return {streams(p), index, &pool.skipped[static_cast<std::size_t>(index)]};
 }
 
-BlockStreams BatchSet::streams(std::size_t p, bool tells_apart)
+BlockStreams BatchSet::streams(std::size_t p)
 {
     Pool& pool = pools_[p];
     const int constraint_class = first_class_ + static_cast<int>(p);
@@ -290,8 +306,7 @@ BlockStreams BatchSet::streams(std::size_t p, bool tells_apart)
             pool.rows.data(),
             pool.substep_rows.data(),
             pool.impulses.data(),
-            adds_up_ ? pool.sums.data() : nullptr,
-            tells_apart ? pool.residuals.data() : nullptr};
+            adds_up_ ? pool.sums.data() : nullptr};
 }
 
 SweepChunk BatchSet::sweep_chunk(const KernelTable& table, std::size_t p, std::int32_t begin,
@@ -299,23 +314,22 @@ SweepChunk BatchSet::sweep_chunk(const KernelTable& table, std::size_t p, std::i
 {
     Pool& pool = pools_[p];
     const int constraint_class = first_class_ + static_cast<int>(p);
-    return {&table.constraints[constraint_class],
-            streams(p, tells_apart),
-            begin,
-            end,
-            type_of(constraint_class),
-            kind_a_of(constraint_class),
-            kind_b_of(constraint_class),
-            tells_apart ? pool.finished.data() : nullptr,
-            tells_apart ? pool.islands.data() : nullptr,
-            tells_apart ? pool.wanted.data() : nullptr};
+    SweepChunk chunk{&table.constraints[constraint_class],
+                     streams(p),
+                     begin,
+                     end,
+                     type_of(constraint_class),
+                     kind_a_of(constraint_class),
+                     kind_b_of(constraint_class)};
+    if (tells_apart) pool.marks.mark(chunk, 0);
+    return chunk;
 }
 
 TransferTile::Part BatchSet::transfer_part(const KernelTable& table, std::size_t p, std::int32_t begin,
                                            std::int32_t end)
 {
     const int constraint_class = first_class_ + static_cast<int>(p);
-    return {&table.constraints[constraint_class], streams(p, false), type_of(constraint_class), begin, end};
+    return {&table.constraints[constraint_class], streams(p), type_of(constraint_class), begin, end};
 }
 
 void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweeps, TransferList& transfers)
@@ -323,13 +337,7 @@ void BatchSet::cut(const KernelTable& table, bool tells_apart, SweepLists& sweep
     std::int32_t tiles = 1;
     for (const std::size_t p : used_) {
         Pool& pool = pools_[p];
-        if (tells_apart) {
-            const auto blocks = static_cast<std::size_t>(pool.all_blocks);
-            grow_to(pool.residuals, blocks * 2 * block_lanes);
-            grow_to(pool.finished, blocks);
-            grow_to(pool.islands, blocks);
-            grow_to(pool.wanted, blocks);
-        }
+        if (tells_apart) pool.marks.make_room(static_cast<std::size_t>(pool.all_blocks));
         for (std::size_t colour = 0; colour < colours; ++colour) {
             const std::int32_t end = pool.first_block[colour + 1];
             tiles = std::max(tiles, (end - pool.first_block[colour]) / blocks_per_tile);

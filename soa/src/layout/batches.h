@@ -43,12 +43,23 @@ struct SweepChunk {
     std::int32_t begin, end;
     int type;
     BodyKind kind_a, kind_b;
-    /// One entry per block, and null unless blocks are told apart (see BatchSet::cut). `finished`: 1 when no island
+    /// One entry per block, and null unless blocks are told apart (see BlockMarks). `finished`: 1 when no island
     /// of the block needs more sweeps. `islands`: the island of all its constraints, or several_islands. `wanted`:
     /// how many sweeps the host wants at least; 0 where it asked for none.
-    std::uint8_t* finished;
-    std::int32_t* islands;
-    std::int32_t* wanted;
+    std::uint8_t* finished = nullptr;
+    std::int32_t* islands = nullptr;
+    std::int32_t* wanted = nullptr;
+};
+
+/// By what blocks are told apart where sweeps are measured, or islands want different numbers of them.
+struct BlockMarks {
+    static constexpr std::size_t residuals_a_block = 2 * block_lanes;
+    AlignedVector<float> residuals;
+    AlignedVector<std::uint8_t> finished;
+    AlignedVector<std::int32_t> islands, wanted;
+    void make_room(std::size_t blocks);
+    /// Points a chunk at these marks, where its block 0 is `first_block`.
+    void mark(SweepChunk& chunk, std::size_t first_block);
 };
 
 /// The unit of work of prepare and store: a few blocks of each class and colour, from about the same stretch of the
@@ -151,6 +162,20 @@ struct SweepLists {
         for (auto& chunks : lists) chunks.clear();
         patches.clear();
         colours = 0;
+    }
+};
+/// All chunks that a step sweeps.
+struct SweptChunks {
+    const SweepLists& lists;
+    std::span<const SweepChunk> discs;
+    /// Calls visit(chunk) for each, always in the same order.
+    template <class Visit>
+    void for_each(const Visit& visit) const
+    {
+        for (const auto& chunks : lists.lists) {
+            for (const SweepChunk& chunk : chunks) visit(chunk);
+        }
+        for (const SweepChunk& chunk : discs) visit(chunk);
     }
 };
 struct TransferList {
@@ -264,9 +289,7 @@ class BatchSet {
         AlignedVector<BlockConstraints> who;
         AlignedVector<std::uint8_t> counts, skipped;
         AlignedVector<float> rows, substep_rows, impulses, sums;
-        AlignedVector<float> residuals;                            ///< only when blocks are told apart
-        AlignedVector<std::uint8_t> finished;                      ///< likewise
-        AlignedVector<std::int32_t> islands, wanted;               ///< likewise
+        BlockMarks marks;                                          ///< only when blocks are told apart
         std::array<std::int32_t, colours + 1> first_block{};       ///< of each colour, and one past the last
         std::array<std::int32_t, parallel_colours> constraints{};  ///< of each colour
         std::int64_t overflow = 0;
@@ -326,7 +349,7 @@ class BatchSet {
     void finish_patch(std::int64_t chunk);
     void cut_patches(const KernelTable& kernels, bool tells_apart, SweepLists& sweeps,
                      TransferList& transfers);
-    [[nodiscard]] BlockStreams streams(std::size_t pool, bool tells_apart);
+    [[nodiscard]] BlockStreams streams(std::size_t pool);
     [[nodiscard]] SweepChunk sweep_chunk(const KernelTable& kernels, std::size_t pool, std::int32_t begin,
                                          std::int32_t end, bool tells_apart);
     [[nodiscard]] TransferTile::Part transfer_part(const KernelTable& kernels, std::size_t pool,

@@ -187,10 +187,11 @@ void Layout::cut(SceneCore& scene, std::span<const Contact> list, bool tells_apa
     if (may_keep) cut_ = wanted;
 }
 
-void Layout::list_discs(SceneCore& scene)
+void Layout::list_discs(SceneCore& scene, bool tells_apart)
 {
     disc_chunks_.clear();
     disc_bands_.clear();
+    std::size_t all_blocks = 0;
     for (std::size_t band = 0; band < scene.discs.band_count; ++band) {
         const auto first = static_cast<std::int32_t>(disc_chunks_.size());
         for (std::size_t c = 0; c < disc_class_count; ++c) {
@@ -208,8 +209,16 @@ void Layout::list_discs(SceneCore& scene)
             chunk.streams.sums = blocks.sums.data();
             chunk.end = blocks.count;
             disc_chunks_.push_back(chunk);
+            all_blocks += static_cast<std::size_t>(blocks.count);
         }
         disc_bands_.push_back({first, static_cast<std::int32_t>(disc_chunks_.size())});
+    }
+    if (!tells_apart) return;
+    disc_marks_.make_room(all_blocks);
+    std::size_t before = 0;
+    for (SweepChunk& chunk : disc_chunks_) {
+        disc_marks_.mark(chunk, before);
+        before += static_cast<std::size_t>(chunk.end);
     }
 }
 

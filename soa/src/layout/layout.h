@@ -87,8 +87,8 @@ class Layout {
     /// ...and returns them.
     [[nodiscard]] std::span<const BodyRow> beside_patches(BodyKind kind, std::int64_t i) const;
     /// The contacts of discs in bands; bands of even number are independent of each other, and those of odd number:
-    /// see DiscStore.
-    void list_discs(SceneCore& scene);
+    /// see DiscStore. `tells_apart`: as of BatchSet::cut.
+    void list_discs(SceneCore& scene, bool tells_apart);
     [[nodiscard]] std::int64_t disc_bands() const { return static_cast<std::int64_t>(disc_bands_.size()); }
     [[nodiscard]] std::span<const SweepChunk> discs_of_band(std::int64_t band) const
     {
@@ -96,6 +96,7 @@ class Layout {
         return {disc_chunks_.data() + range.first, disc_chunks_.data() + range.last};
     }
     [[nodiscard]] std::span<const SweepChunk> discs() const { return disc_chunks_; }
+    [[nodiscard]] SweptChunks swept() const { return {sweeps_, disc_chunks_}; }
     [[nodiscard]] const TransferList& transfers() const { return transfers_; }
     [[nodiscard]] const ConstraintData& data(int type) const { return data_[static_cast<std::size_t>(type)]; }
     [[nodiscard]] std::span<const ConstraintData> data() const { return data_; }
@@ -145,6 +146,7 @@ class Layout {
     TransferList transfers_;
     Array<SweepChunk> disc_chunks_;  ///< of each band and class
     Array<PatchChunks> disc_bands_;
+    BlockMarks disc_marks_;
     std::array<ConstraintData, constraint_type_count> data_;
 
     void place_joints(SceneCore& scene);

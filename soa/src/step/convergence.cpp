@@ -10,15 +10,29 @@
 namespace motley {
 namespace {
 
-/// Calls visit for each block of the lists that is not finished, in order.
+/// Calls visit(chunk, block) for each block, in order.
 template <class Visit>
-void for_each_unfinished(const SweepLists& sweeps, const Visit& visit)
+void for_each_block(const SweptChunks& swept, const Visit& visit)
 {
-    for (const auto& chunks : sweeps.lists) {
-        for (const SweepChunk& chunk : chunks) {
-            for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
-                if (chunk.finished[block] == 0) visit(chunk, block);
-            }
+    swept.for_each([&](const SweepChunk& chunk) {
+        for (std::int32_t block = chunk.begin; block < chunk.end; ++block) visit(chunk, block);
+    });
+}
+/// The same for each block that is not finished.
+template <class Visit>
+void for_each_unfinished(const SweptChunks& swept, const Visit& visit)
+{
+    for_each_block(swept, [&](const SweepChunk& chunk, std::int32_t block) {
+        if (chunk.finished[block] == 0) visit(chunk, block);
+    });
+}
+/// Calls visit(chunk, block, lane) for each contact of discs.
+template <class Visit>
+void for_each_lane(std::span<const SweepChunk> discs, const Visit& visit)
+{
+    for (const SweepChunk& chunk : discs) {
+        for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
+            for (int lane = 0; lane < chunk.streams.counts[block]; ++lane) visit(chunk, block, lane);
         }
     }
 }
@@ -50,11 +64,11 @@ const float* speeds_of(const SweepChunk& chunk, std::int32_t block)
 
 }  // namespace
 
-ResidualSum sum_residuals(const SweepLists& sweeps)
+ResidualSum sum_residuals(const SweptChunks& swept)
 {
     ResidualSum sum;
     std::int32_t largest = 0;
-    for_each_unfinished(sweeps, [&](const SweepChunk& chunk, std::int32_t block) {
+    for_each_unfinished(swept, [&](const SweepChunk& chunk, std::int32_t block) {
         const float* speeds = speeds_of(chunk, block);
         const int count = chunk.streams.counts[block];
         for (int lane = 0; lane < count; ++lane) {
@@ -76,49 +90,66 @@ void Convergence::tie(std::span<const Placement> placements)
     }
 }
 
+void Convergence::tie(std::span<const SweepChunk> discs)
+{
+    for_each_lane(discs, [&](const SweepChunk& chunk, std::int32_t block, int lane) {
+        const BlockBodies& bodies = chunk.streams.bodies[block];
+        bodies_.tie(row_at(chunk.kind_a, bodies.a[lane]), row_at(chunk.kind_b, bodies.b[lane]));
+    });
+}
+
 void Convergence::find_islands(const KernelContext& context, std::span<const Placement> joints,
-                               std::span<const Placement> contacts, const SweepLists& sweeps)
+                               std::span<const Placement> contacts, const SweptChunks& swept)
 {
     bodies_.reset([&](BodyKind kind) { return context.bodies[static_cast<int>(kind)].size; });
     tie(joints);
     tie(contacts);
+    tie(swept.discs);
     bodies_.flatten();
     worst_.assign(bodies_.size(), unseen);
     islands_ = 0;
     count(joints);
     count(contacts);
+    count(swept.discs);
     unfinished_ = islands_;
-    name_islands(sweeps);
+    name_islands(swept);
 }
 
 void Convergence::count(std::span<const Placement> placements)
 {
     for (const Placement& placement : placements) {
         if (placement.is_left_out()) continue;
-        const BodyRow body = placement.a.kind() == BodyKind::fixed ? placement.b : placement.a;
-        std::int32_t& seen = worst_[static_cast<std::size_t>(bodies_.root(body))];
-        islands_ += seen == unseen ? 1 : 0;
-        seen = 0;
+        count(bodies_.root(placement.a.kind() == BodyKind::fixed ? placement.b : placement.a));
     }
+}
+
+void Convergence::count(std::span<const SweepChunk> discs)
+{
+    for_each_lane(discs, [&](const SweepChunk& chunk, std::int32_t block, int lane) {
+        count(island_of(chunk, block, lane));
+    });
+}
+
+void Convergence::count(std::int32_t island)
+{
+    std::int32_t& seen = worst_[static_cast<std::size_t>(island)];
+    islands_ += seen == unseen ? 1 : 0;
+    seen = 0;
 }
 
 /// Most blocks are of one island only: then judge() needs no more than their worst lane.
-void Convergence::name_islands(const SweepLists& sweeps)
+void Convergence::name_islands(const SweptChunks& swept)
 {
-    for (const auto& chunks : sweeps.lists) {
-        for (const SweepChunk& chunk : chunks) {
-            for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
-                const std::int32_t first = island_of(chunk, block, 0);
-                bool same = true;
-                for (int lane = 1; lane < chunk.streams.counts[block]; ++lane)
-                    same = same && island_of(chunk, block, lane) == first;
-                chunk.islands[block] = same ? first : several_islands;
-            }
-        }
-    }
+    for_each_block(swept, [&](const SweepChunk& chunk, std::int32_t block) {
+        const std::int32_t first = island_of(chunk, block, 0);
+        bool same = true;
+        for (int lane = 1; lane < chunk.streams.counts[block]; ++lane)
+            same = same && island_of(chunk, block, lane) == first;
+        chunk.islands[block] = same ? first : several_islands;
+    });
 }
 
-void Convergence::take_wishes(const SceneCore& scene, const SweepLists& sweeps)
+void Convergence::take_wishes(const SceneCore& scene, const SweptChunks& swept)
 {
     most_wanted_ = 0;
     wanted_.assign(bodies_.size(), 0);
@@ -131,44 +162,36 @@ void Convergence::take_wishes(const SceneCore& scene, const SweepLists& sweeps)
     scene.joints->for_each([&](const auto& store, int type) {
         slots[static_cast<std::size_t>(contact_type_count + type)] = store.slots.data();
     });
-    for (const auto& chunks : sweeps.lists) {
-        for (const SweepChunk& chunk : chunks) {
-            const std::uint32_t* slot_of = slots[static_cast<std::size_t>(chunk.type)];
-            for (std::int32_t block = chunk.begin; block < chunk.end; ++block) {
-                std::int32_t wanted = 0;
-                for (int lane = 0; lane < chunk.streams.counts[block]; ++lane) {
-                    wanted =
-                        std::max(wanted, wanted_[static_cast<std::size_t>(island_of(chunk, block, lane))]);
-                    if (slot_of == nullptr) continue;  // contacts ask for no sweeps
-                    const std::uint32_t slot = slot_of[chunk.streams.constraints[block].lane[lane]];
-                    wanted = std::max<std::int32_t>(wanted, scene.joints->slots[slot].iterations);
-                }
-                chunk.wanted[block] = wanted;
-                most_wanted_ = std::max(most_wanted_, wanted);
-            }
+    for_each_block(swept, [&](const SweepChunk& chunk, std::int32_t block) {
+        const std::uint32_t* slot_of = slots[static_cast<std::size_t>(chunk.type)];
+        std::int32_t wanted = 0;
+        for (int lane = 0; lane < chunk.streams.counts[block]; ++lane) {
+            wanted = std::max(wanted, wanted_[static_cast<std::size_t>(island_of(chunk, block, lane))]);
+            if (slot_of == nullptr) continue;  // contacts ask for no sweeps
+            const std::uint32_t slot = slot_of[chunk.streams.constraints[block].lane[lane]];
+            wanted = std::max<std::int32_t>(wanted, scene.joints->slots[slot].iterations);
         }
-    }
+        chunk.wanted[block] = wanted;
+        most_wanted_ = std::max(most_wanted_, wanted);
+    });
 }
 
 std::int32_t Convergence::island_of(const SweepChunk& chunk, std::int32_t block, int lane) const
 {
     const bool use_b = chunk.kind_a == BodyKind::fixed;
     const BlockBodies& bodies = chunk.streams.bodies[block];
-    const BodyKind kind = use_b ? chunk.kind_b : chunk.kind_a;
-    const std::int32_t row = (use_b ? bodies.b[lane] : bodies.a[lane]) / offsets_a_row(kind);
-    return bodies_.root({kind, static_cast<std::uint32_t>(row)});
+    return bodies_.root(use_b ? row_at(chunk.kind_b, bodies.b[lane]) : row_at(chunk.kind_a, bodies.a[lane]));
 }
 
-void Convergence::start_over(const SweepLists& sweeps)
+void Convergence::start_over(const SweptChunks& swept)
 {
-    for (const auto& chunks : sweeps.lists) {
-        for (const SweepChunk& chunk : chunks)
-            std::fill(chunk.finished + chunk.begin, chunk.finished + chunk.end, std::uint8_t{0});
-    }
+    swept.for_each([](const SweepChunk& chunk) {
+        std::fill(chunk.finished + chunk.begin, chunk.finished + chunk.end, std::uint8_t{0});
+    });
     unfinished_ = islands_;
 }
 
-void Convergence::judge(const SweepLists& sweeps, float tolerance)
+void Convergence::judge(const SweptChunks& swept, float tolerance)
 {
     const std::int32_t most = bits_of(tolerance);
     std::fill(worst_.begin(), worst_.end(), unseen);
@@ -176,7 +199,7 @@ void Convergence::judge(const SweepLists& sweeps, float tolerance)
         std::int32_t& worst = worst_[static_cast<std::size_t>(island)];
         worst = std::max(worst, speed);
     };
-    for_each_unfinished(sweeps, [&](const SweepChunk& chunk, std::int32_t block) {
+    for_each_unfinished(swept, [&](const SweepChunk& chunk, std::int32_t block) {
         const float* speeds = speeds_of(chunk, block);
         const int count = chunk.streams.counts[block];
         if (chunk.islands[block] != several_islands) {
@@ -190,7 +213,7 @@ void Convergence::judge(const SweepLists& sweeps, float tolerance)
     const auto wants_more = [&](std::int32_t island) {
         return worst_[static_cast<std::size_t>(island)] > most;
     };
-    for_each_unfinished(sweeps, [&](const SweepChunk& chunk, std::int32_t block) {
+    for_each_unfinished(swept, [&](const SweepChunk& chunk, std::int32_t block) {
         bool more = false;
         if (chunk.islands[block] != several_islands) {
             more = wants_more(chunk.islands[block]);

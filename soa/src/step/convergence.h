@@ -23,21 +23,21 @@ struct ResidualSum {
     std::int64_t constraints = 0;
 };
 /// Sums the residuals that the last measuring sweep stored.
-ResidualSum sum_residuals(const SweepLists& sweeps);
+ResidualSum sum_residuals(const SweptChunks& swept);
 
 class Convergence {
   public:
     /// Finds the islands of a step.
     void find_islands(const KernelContext& context, std::span<const Placement> joints,
-                      std::span<const Placement> contacts, const SweepLists& sweeps);
+                      std::span<const Placement> contacts, const SweptChunks& swept);
     /// After find_islands: looks up how many sweeps the host asked for, by joint and by island.
-    void take_wishes(const SceneCore& scene, const SweepLists& sweeps);
+    void take_wishes(const SceneCore& scene, const SweptChunks& swept);
     /// The largest number of sweeps that the host asked for; 0 when it asked for none.
     [[nodiscard]] int most_wanted() const { return most_wanted_; }
     /// For another substep: no island is finished any more.
-    void start_over(const SweepLists& sweeps);
+    void start_over(const SweptChunks& swept);
     /// After a measuring sweep: finishes the islands whose residuals are all at most `tolerance`.
-    void judge(const SweepLists& sweeps, float tolerance);
+    void judge(const SweptChunks& swept, float tolerance);
 
     [[nodiscard]] std::int64_t islands() const { return islands_; }
     [[nodiscard]] std::int64_t unfinished() const { return unfinished_; }
@@ -50,8 +50,11 @@ class Convergence {
     int most_wanted_ = 0;
 
     void tie(std::span<const Placement> placements);
+    void tie(std::span<const SweepChunk> discs);
     void count(std::span<const Placement> placements);
-    void name_islands(const SweepLists& sweeps);
+    void count(std::span<const SweepChunk> discs);
+    void count(std::int32_t island);
+    void name_islands(const SweptChunks& swept);
     [[nodiscard]] std::int32_t island_of(const SweepChunk& chunk, std::int32_t block, int lane) const;
 };
 

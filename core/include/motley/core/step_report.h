@@ -45,7 +45,7 @@ struct SceneErrors {
     double momentum[3] = {0, 0, 0};   ///< kg m/s, linear, world
 };
 
-/// How well a step solved its constraints, contacts of discs left out. The same bits for any number of threads and instruction set.
+/// How well a step solved its constraints. The same bits for any number of threads and instruction set.
 struct StepMeasures {
     /// The residual r of J v + bias, limits and friction cones included, after the last sweep of `solve` in the last
     /// substep: sqrt(sum of r^T K^-1 r) over all constraints, K = J M^-1 J^T, in sqrt(J). Zero exactly when every
@@ -53,7 +53,7 @@ struct StepMeasures {
     double residual_norm = 0;
     double residual_rms = 0;     ///< m/s, over the constraints: sqrt(r^T K^-1 r (1/m_a + 1/m_b))
     double residual_max = 0;     ///< m/s, the largest of them
-    double penetration_rms = 0;  ///< m, over the host's contacts that overlap, at the beginning of the step
+    double penetration_rms = 0;  ///< m, over the contacts that overlap, at the beginning of the step
     double penetration_max = 0;  ///< m
     SceneErrors before, after;   ///< of the step: their differences are the changes of energy and momentum
 };

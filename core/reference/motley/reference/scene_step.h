@@ -11,7 +11,8 @@
 namespace motley::reference {
 
 /// Advances a scene by `dt` seconds, with all constraints solved at once in double. `contacts` are those that the
-/// scene's cache has staged. Writes bodies, joint memories and staged contact impulses. Bodies whose state has become
+/// scene's cache has staged; the rows of contacts of discs are made. Writes bodies, joint memories, staged contact impulses and those
+/// of discs. Bodies whose state has become
 /// infinite or NaN are left so, for BodyStore::commit to contain.
 DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& settings,
                            std::span<const Contact> contacts);

@@ -175,7 +175,7 @@ typedef struct motley_step_measures {
     double residual_norm;
     double residual_rms;     ///< m/s, over the constraints: sqrt(r^T K^-1 r (1/m_a + 1/m_b))
     double residual_max;     ///< m/s, the largest of them
-    double penetration_rms;  ///< m, over the host's contacts that overlap, at the beginning of the step
+    double penetration_rms;  ///< m, over the contacts that overlap, at the beginning of the step
     double penetration_max;  ///< m
     /// Of the step: their differences are the changes of energy and momentum.
     motley_scene_errors before, after;

@@ -53,8 +53,9 @@ struct DistributedFigures {
 /// Kinematic bodies with walls, such as doors, are on every rank, which all must add and move alike, as they do walls. Their
 /// contacts are on the ranks of the people who touch them.
 ///
-/// What a region cannot have: joints, capsules, half-spaces, tolerances, budgets, the direct method, exact contacts, and discs
-/// that reach much further than most others, by size or by speed. Such a step is refused on all ranks.
+/// What a region cannot have: joints, capsules, half-spaces, tolerances, budgets, the direct method, exact contacts, islands that ask
+/// for more iterations (Scene::set_island_iterations), and discs that reach much further than most others, by size or by speed. Such a
+/// step is refused on all ranks. StepReport::measures are of the contacts that this rank solves.
 ///
 /// Calls that are marked collective must be made by all ranks, in the same order. Between steps each rank may change the
 /// forces, velocities and poses of its own people, as of any scene. MPI must be initialised with MPI_THREAD_SERIALIZED, or

@@ -1,0 +1,56 @@
+// See penetrations.h.
+#include "penetrations.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stores/disc_fields.h"
+
+namespace motley {
+namespace {
+
+class Penetrations {
+  public:
+    /// A contact with this separation, m.
+    void note(float separation)
+    {
+        if (!(separation < 0)) return;
+        const auto depth = -static_cast<double>(separation);
+        squares_ += depth * depth;
+        max_ = std::max(max_, depth);
+        ++overlapping_;
+    }
+    void fill_in(StepMeasures& measures) const
+    {
+        measures.penetration_max = max_;
+        if (overlapping_ > 0)
+            measures.penetration_rms = std::sqrt(squares_ / static_cast<double>(overlapping_));
+    }
+
+  private:
+    double squares_ = 0, max_ = 0;
+    std::int64_t overlapping_ = 0;
+};
+
+}  // namespace
+
+void note_penetrations(const SceneCore& scene, std::span<const Contact> contacts, StepMeasures& measures)
+{
+    Penetrations all;
+    const ContactList& list = scene.contacts.staged();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        if (list.colours[i] != no_colour) all.note(contacts[i].separation);  // else it is left out
+    }
+    for (std::size_t band = 0; band < scene.discs.band_count; ++band) {
+        for_each_disc_class([&](auto c) {
+            const DiscBlocks& blocks = scene.discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
+            using Row = typename DiscFieldsOf<c.value>::Row;
+            for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
+                all.note(load_lane<Row>(blocks.rows.data(), block, lane).start_separation);
+            });
+        });
+    }
+    all.fill_in(measures);
+}
+
+}  // namespace motley
