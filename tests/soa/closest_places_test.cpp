@@ -1,11 +1,12 @@
 // Where two axes are nearest to each other. Independent evidence: the least of many sampled distances, and the condition
 // that a nearest point fulfils (the gap is across an axis that it does not leave at an end).
+// The test that spares pairs this search is held to what the search finds.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "mixed_scene.h"
-#include "shapes/closest_places.h"
+#include "shapes/placed_shapes.h"
 
 namespace motley {
 namespace {
@@ -92,6 +93,37 @@ TEST(TouchingPlaces, AreOneOfAxesThatCrossOrLieOneBehindTheOther)
     EXPECT_DOUBLE_EQ(behind.places[0].on_a, 1);
     EXPECT_DOUBLE_EQ(behind.places[0].on_b, 0);
     EXPECT_EQ(touching_places({{0, 0, 0}, {}}, {{1, 0, 0}, {}}).count, 1);
+}
+
+PlacedCapsule capsule_on(const Axis& axis, bool is_flat)
+{
+    PlacedCapsule placed;
+    placed.axis = axis;
+    placed.middle = axis.at(0.5);
+    placed.is_flat = is_flat;
+    return placed;
+}
+
+/// No pair within the distance is ever spared, in space and as seen from above; of those at twice the distance most are.
+TEST(ClosestPlaces, OnlyPairsThatAreFurtherApartAreSparedTheSearch)
+{
+    Random random;
+    int far = 0, spared = 0;
+    for (int trial = 0; trial < 70'000; ++trial) {
+        auto [a, b] = some_axes(random, trial % 7);
+        b.from = b.from + 2.0 * anywhere(random);
+        const bool is_flat = trial % 2 == 0;
+        const PlacedCapsule one = capsule_on(a, is_flat), other = capsule_on(b, false);
+        if (is_flat) a = flattened(a), b = flattened(b);
+        const double apart = std::sqrt(distance2(a, b, nearest_places(a, b)));
+        ASSERT_TRUE(may_be_within(one, other, apart)) << "axes of kind " << trial % 7;
+        ASSERT_TRUE(may_be_within(other, one, apart));
+        if (!(apart > 0.1)) continue;
+        ++far;
+        spared += may_be_within(one, other, 0.5 * apart) ? 0 : 1;
+    }
+    EXPECT_GT(far, 50'000);
+    EXPECT_GT(spared, far * 3 / 4);
 }
 
 }  // namespace

@@ -55,14 +55,14 @@ PlacedCapsule placed(const SceneCore& scene, const Capsule& capsule, double dt)
     const double arm = std::sqrt(std::max(dot(from, from), dot(to, to)));
     const Speeds speeds = speeds_of(rows, where);
     PlacedCapsule placed;
-    placed.axis = {convert<double>(rows.pose[where.row()].position) + rotate(orientation, from),
-                   rotate(orientation, to - from)};
+    placed.centre = convert<double>(rows.pose[where.row()].position);
+    placed.axis = {placed.centre + rotate(orientation, from), rotate(orientation, to - from)};
     placed.middle = placed.axis.at(0.5);
-    placed.half = 0.5 * length_of(placed.axis.along);
     placed.radius = static_cast<double>(capsule.radius);
     placed.goes = dt * (speeds.linear + speeds.angular * (arm + placed.radius));
     placed.is_flat = where.kind() == BodyKind::planar;
     placed.can_move = where.kind() != BodyKind::fixed;
+    placed.is_static = !placed.can_move && scene.bodies.motion(capsule.body) == BodyMotion::static_body;
     return placed;
 }
 
@@ -83,7 +83,7 @@ PlacedCapsule placed_disc(const SceneCore& scene, std::uint32_t planar_row, cons
     const BodyRows& rows = scene.bodies.rows(BodyKind::planar);
     PlacedCapsule placed;
     placed.axis.from = convert<double>(rows.pose[planar_row].position);
-    placed.middle = placed.axis.from;
+    placed.middle = placed.centre = placed.axis.from;
     placed.radius = static_cast<double>(disc.radius);
     placed.goes = dt * speeds_of(rows, {BodyKind::planar, planar_row}).linear;
     placed.is_flat = true;

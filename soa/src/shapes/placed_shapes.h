@@ -1,6 +1,7 @@
 // Where capsules and half-spaces are in the world, and how far they may go within a step.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "scene/scene_core.h"
@@ -14,11 +15,12 @@ inline constexpr double step_slack = 0.01;
 struct PlacedCapsule {
     Axis axis;
     Vec3<double> middle{};  ///< m, of the axis
-    double half = 0;        ///< m: half the length of the axis
+    Vec3<double> centre{};  ///< m, of mass of its body
     double radius = 0;
     double goes = 0;       ///< m: the furthest that a point of it goes within the step at its present speed
     bool is_flat = false;  ///< of a planar body, which is met as seen from above
     bool can_move = false;
+    bool is_static = false;
 };
 struct PlacedHalfSpace {
     Vec3<double> point{}, normal{};
@@ -32,15 +34,19 @@ PlacedHalfSpace placed(const SceneCore& scene, const HalfSpace& half_space, doub
 /// A disc as a capsule without length.
 PlacedCapsule placed_disc(const SceneCore& scene, std::uint32_t planar_row, const DiscShape& disc, double dt);
 
-/// False where two axes are more than `distance` m apart for certain, because their middles are: a test that spares most
-/// pairs the search for their nearest places.
+/// False where two axes are more than `distance` m apart for certain: a test that spares most pairs the search for their nearest
+/// places. Along the line through their middles, which are `apart`, neither reaches further to the other than |along . apart| /
+/// (2 |apart|); what is left between them is a least distance. All of it is multiplied by |apart|, so that nothing is divided.
 inline bool may_be_within(const PlacedCapsule& a, const PlacedCapsule& b, double distance)
 {
-    const Vec3<double> apart = b.middle - a.middle;
-    const double height = a.is_flat || b.is_flat ? 0 : apart.z;
+    Vec3<double> apart = b.middle - a.middle;
+    if (a.is_flat || b.is_flat) apart.z = 0;
     constexpr double rounding = 1e-6;  // m, and a share of it
-    const double most = (1 + rounding) * (a.half + b.half + distance) + rounding;
-    return apart.x * apart.x + apart.y * apart.y + height * height <= most * most;
+    const double most = (1 + rounding) * distance + rounding;
+    const double apart2 = dot(apart, apart);
+    const double left =
+        apart2 - 0.5 * (std::abs(dot(a.axis.along, apart)) + std::abs(dot(b.axis.along, apart)));
+    return left <= 0 || left * left <= most * most * apart2;
 }
 
 /// An axis as seen from above.

@@ -48,8 +48,8 @@ Vec3<double> centre_of(const SceneCore& scene, BodyId body)
 TouchingBody side_of(const SceneCore& scene, const ShapePairs& pairs, std::uint32_t index)
 {
     const Capsule& capsule = scene.shapes.capsules[index];
-    return {capsule.body, centre_of(scene, capsule.body), &pairs.capsule(index), capsule.surface,
-            is_static(scene, capsule.body)};
+    const PlacedCapsule& placed = pairs.capsule(index);
+    return {capsule.body, placed.centre, &placed, capsule.surface, placed.is_static};
 }
 
 std::uint32_t slot_of(const SceneCore& scene, std::uint32_t capsule)
@@ -373,6 +373,8 @@ void ShapeContacts::list_disc(const SceneCore& scene, const ShapePairs& pairs, c
     const BodyId body = scene.bodies.id_of_slot(pair.partner);
     const DiscShape& shape = *scene.discs.shape_of(pair.partner);
     const PlacedCapsule disc = placed_disc(scene, scene.bodies.row_of(body).row(), shape, dt_);
+    const PlacedCapsule& capsule = pairs.capsule(pair.capsule);
+    if (!may_be_within(disc, capsule, disc.radius + capsule.radius + margin_of(disc, capsule))) return;
     const TouchingBody a{body, disc.axis.from, &disc, {shape.friction, 0, shape.category, shape.mask}};
     list_capsules(a, side_of(scene, pairs, pair.capsule),
                   key_of(Partner::disc, slot_of(scene, pair.capsule), pair.partner, 0), contacts);

@@ -263,10 +263,6 @@ void ShapePairs::find_capsules(const SceneCore& scene, std::size_t first, std::s
             const PlacedCapsule& near = placed_[other];
             const double within = reach + near.radius + anchors_[other].skin;
             if (!may_be_within(own, near, within) || !may_meet(scene, capsule, other)) continue;
-            const bool is_flat = own.is_flat || near.is_flat;
-            const double apart =
-                is_flat ? distance(flattened(own.axis), flattened(near.axis)) : distance(own.axis, near.axis);
-            if (apart > within) continue;
             if (!are_joined(scene.shapes.capsules[capsule].body, scene.shapes.capsules[other].body))
                 found.capsules.push_back({std::min(capsule, other), std::max(capsule, other)});
         }
@@ -288,15 +284,14 @@ void ShapePairs::find_discs(const SceneCore& scene, std::int64_t chunk, Found& f
         const std::size_t before = found.discs.size();
         const std::uint32_t slot = disc_slots_[row];
         const DiscShape& disc = *scene.discs.shape_of(slot);
-        const double reach = static_cast<double>(disc.radius) + anchor.skin;
+        const PlacedCapsule own = placed_disc(scene, row, disc, dt_);
+        const double reach = own.radius + anchor.skin;
         const Vec2<double> wide{reach, reach};
         for_each_near({anchor.at - wide, anchor.at + wide, 0}, [&](std::uint32_t place) {
             const std::uint32_t capsule = order_[place];
             const Capsule& other = scene.shapes.capsules[capsule];
-            const Axis centre{{anchor.at.x, anchor.at.y, 0}, {}};
-            if (distance(flattened(placed_[capsule].axis), centre) >
-                reach + placed_[capsule].radius + anchors_[capsule].skin)
-                return;
+            const PlacedCapsule& near = placed_[capsule];
+            if (!may_be_within(own, near, reach + near.radius + anchors_[capsule].skin)) return;
             if (other.body.slot == slot || !do_meet(disc, other.surface)) return;
             if (are_joined(scene.bodies.id_of_slot(slot), other.body)) return;
             found.discs.push_back({capsule, slot});
