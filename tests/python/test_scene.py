@@ -117,6 +117,91 @@ def test_contacts_of_the_host_hold():
         contacts["separation"] = scene.state(ball)["position"][1] - 0.5
         assert solver.step(scene, 1 / 60, contacts)["contacts"] == 1
     assert abs(scene.state(ball)["position"][1] - 0.5) < 2e-3
+    impulses = scene.contact_impulses()
+    assert impulses["normal"][0] / scene.last_step == pytest.approx(3 * 9.81, rel=1e-3)
+    assert impulses["friction"].shape == (1, 3) and not impulses["friction"].any()
+
+
+def queue(count):
+    """People who touch, each driven by 200 N into a wall."""
+    scene = motley.Scene()
+    motley.add_walls(scene, "LINESTRING (0 -5, 0 5)")
+    people = scene.add_people([(0.2 + 0.4 * i, 0) for i in range(count)])
+    scene.set_forces(people, np.tile([-200, 0, 0], (count, 1)))
+    return scene, people
+
+
+def test_a_report_says_what_a_step_left_and_cost():
+    scene, _ = queue(10)
+    report = motley.Solver(measures=True).step(scene, 1 / 60)
+    assert report["disc_contacts"] == report["contacts"] == 10 and 0 < report["lane_occupancy"] <= 1
+    assert report["seconds"] == pytest.approx(sum(report["stages"].values())) and "solve" in report["stages"]
+    measures = report["measures"]
+    assert measures["residual_max"] >= measures["residual_rms"] > 0
+    assert measures["after"]["momentum"] == scene.errors()["momentum"]
+    # The direct method leaves nothing, and a tolerance no more than it says.
+    report = motley.Solver(method="direct").step(queue(10)[0], 1 / 60)
+    assert report["direct_unsolved"] == 0 and report["direct_violation"] < 1e-9
+    solver = motley.Solver(method="sequential_impulse", iterations=9999, tolerance=1e-3, measures=True)
+    report = solver.step(queue(10)[0], 1 / 60)
+    assert report["islands"] == 1 and report["islands_above_tolerance"] == 0 and report["measures"]["residual_max"] <= 1e-3
+
+
+def test_an_island_has_as_many_sweeps_as_it_wants():
+    borne = []
+    for wish in (0, 5000):
+        scene, people = queue(40)
+        scene.set_island_iterations(people[0], wish)
+        motley.Solver(method="sequential_impulse", iterations=2, substeps=1).step(scene, 1 / 60)
+        contacts = scene.disc_contacts()
+        borne.append(contacts["normal_force"][contacts["wall"] != 0].sum())
+    assert borne[1] == pytest.approx(40 * 200, rel=1e-3) and borne[0] < 0.9 * borne[1]
+    scene, _, joint = pendulum()
+    scene.set_iterations(joint, 20)
+    assert motley.Solver(gravity=GRAVITY).step(scene, 1 / 60)["iterations"] == 20
+    with pytest.raises(motley.InvalidInput, match="set_iterations.at_least"):
+        scene.set_iterations(joint, 10001)
+
+
+def test_a_person_becomes_a_ball_and_comes_back():
+    scene, people = queue(2)
+    with pytest.raises(motley.InvalidInput):
+        scene.change_body(people[1], "rigid")
+    scene.clear_disc(people[1])
+    scene.change_body(people[1], "rigid", inertia=2)
+    scene.set_mass(people[1], 40, 1)
+    scene.set_damping(people[1], 0.1)
+    scene.change_body(people[1], "planar", inertia=1.6)
+    scene.set_disc(people[1], radius=0.2, friction=0.1)
+    assert motley.Solver().step(scene, 1 / 60)["disc_contacts"] == 2
+
+
+def test_who_is_frozen_is_revived():
+    scene = motley.Scene()
+    body = scene.add_body(mass=1)
+    solver = motley.Solver()
+    scene.set_force(body, (3e38, 0, 0))
+    for _ in range(3):
+        solver.step(scene, 1)
+    assert scene.is_contained(body)
+    scene.set_force(body, (0, 0, 0))
+    scene.revive(body, (1, 2, 3), (4, 0, 0))
+    solver.step(scene, 0.5)
+    assert scene.state(body)["position"] == pytest.approx((3, 2, 3))
+
+
+def test_a_weld_gives_as_its_springs_say():
+    scene = motley.Scene()
+    block = scene.add_body(position=(0, 0, 0), mass=2)
+    position, rotation = scene.add_weld(scene.ground, block, linear_hertz=2)
+    solver = motley.Solver(gravity=GRAVITY)
+    for _ in range(600):
+        solver.step(scene, 1 / 60)
+    assert scene.state(block)["position"][1] == pytest.approx(-9.81 / (2 * np.pi * 2) ** 2, rel=5e-3)
+    assert scene.joint_report(position)["force"][1] == pytest.approx(2 * 9.81, rel=1e-3) and rotation != 0
+    assert scene.add_weld(scene.ground, block)[1] == 0
+    with pytest.raises(motley.InvalidInput, match="WeldDefinition.linear_hertz"):
+        scene.add_weld(scene.ground, block, linear_hertz=-1)
 
 
 def test_queries_find_who_is_there():

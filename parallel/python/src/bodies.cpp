@@ -106,6 +106,22 @@ void add_bodies_to(SceneClass& scene)
         py::arg("body"), py::arg("force"), py::arg("torque") = py::make_tuple(0, 0, 0),
         "Sets a force (N) and a torque (N m) that act in every step until changed.");
     scene.def(
+        "set_mass",
+        [](PythonScene& self, std::uint64_t body, const py::object& mass, const py::object& inertia) {
+            self.get().set_mass(id_of<BodyId>(body), value_of<float>("mass", mass),
+                                value_of<Sym3<float>>("inertia", inertia));
+        },
+        py::arg("body"), py::arg("mass"), py::arg("inertia"),
+        "Changes the mass (kg) and the inertia (kg m2, as of add_body) of a dynamic body; its velocities "
+        "stay.");
+    scene.def(
+        "set_damping",
+        [](PythonScene& self, std::uint64_t body, const py::object& linear, const py::object& angular) {
+            self.get().set_damping(id_of<BodyId>(body), value_of<float>("linear", linear),
+                                   value_of<float>("angular", angular));
+        },
+        py::arg("body"), py::arg("linear"), py::arg("angular") = 0, "Changes the damping (1/s) of a body.");
+    scene.def(
         "change_body",
         [](PythonScene& self, std::uint64_t body, const py::object& model, const py::object& inertia) {
             self.get().change_body(id_of<BodyId>(body), {value_of<BodyModel>("model", model),
@@ -124,6 +140,21 @@ void add_bodies_to(SceneClass& scene)
         "is_contained",
         [](PythonScene& self, std::uint64_t body) { return self.get().is_contained(id_of<BodyId>(body)); },
         py::arg("body"), "Whether a body was frozen because its state became infinite or NaN.");
+    scene.def(
+        "revive",
+        [](PythonScene& self, std::uint64_t body, const py::object& position, const py::object& linear) {
+            self.get().revive(id_of<BodyId>(body), value_of<Vec3<double>>("position", position),
+                              value_of<Vec3<float>>("linear", linear));
+        },
+        py::arg("body"), py::arg("position"), py::arg("linear") = py::make_tuple(0, 0, 0),
+        "Lets a frozen body move again, from position (m) with the velocity linear (m/s).");
+    scene.def(
+        "set_island_iterations",
+        [](PythonScene& self, std::uint64_t body, const py::object& at_least) {
+            self.get().set_island_iterations(id_of<BodyId>(body), value_of<int>("at_least", at_least));
+        },
+        py::arg("body"), py::arg("at_least"),
+        "The least number of sweeps a substep for the island of a body, 0 to 10000; 0: as the settings say.");
 }
 
 }  // namespace motley::python

@@ -159,6 +159,27 @@ void add_crowds_to(SceneClass& scene)
               "step finds. radius\n"
               "(m), mass (kg) and the coefficient of friction are of all or of each. Returns handles, an "
               "array of uint64.");
+    scene.def(
+        "set_disc",
+        [](PythonScene& self, std::uint64_t body, const py::kwargs& fields) {
+            DiscDefinition disc;
+            Keywords given("DiscDefinition", fields);
+            given.take("radius", disc.radius);
+            given.take("friction", disc.friction);
+            given.take("category", disc.category);
+            given.take("mask", disc.mask);
+            given.end();
+            self.get().set_disc(id_of<BodyId>(body), disc);
+        },
+        py::arg("body"),
+        "Makes a planar body a disc, or another one than it is: radius (m), friction, category and mask, as "
+        "of "
+        "DiscDefinition.");
+    scene.def(
+        "clear_disc",
+        [](PythonScene& self, std::uint64_t body) { self.get().clear_disc(id_of<BodyId>(body)); },
+        py::arg("body"),
+        "Takes the disc of a body away, as before change_body to a model that is not planar.");
     scene.def("add_wall", &add_wall, py::arg("points"),
               "Adds a wall along points (n x 2, m). Fields of WallDefinition: closed, body, friction, "
               "category, mask, one_way,\n"

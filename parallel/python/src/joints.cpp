@@ -179,6 +179,15 @@ void add_joints_to(SceneClass& scene)
         "remove_joint",
         [](PythonScene& self, std::uint64_t joint) { self.get().remove_joint(id_of<ConstraintId>(joint)); },
         py::arg("joint"), "Removes a joint.");
+    scene.def(
+        "set_iterations",
+        [](PythonScene& self, std::uint64_t joint, const py::object& at_least) {
+            int least = 0;
+            set("at_least", at_least, least);
+            self.get().set_iterations(id_of<ConstraintId>(joint), least);
+        },
+        py::arg("joint"), py::arg("at_least"),
+        "The least number of sweeps a substep for a joint, 0 to 10000; 0: as the settings say.");
     scene.def("joint_report", &joint_report, py::arg("joint"),
               "Mean force (N) and torque (N m) on body b in the last step, error (m), angle_error (rad) and "
               "state now.");

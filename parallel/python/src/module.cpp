@@ -1,4 +1,6 @@
 // The module motley._motley: what of the library is written in C++. motley/__init__.py is its face.
+#include "arrays.h"
+#include "reports.h"
 #include "scene.h"
 
 namespace motley::python {
@@ -42,17 +44,24 @@ void add_whole_scene_to(SceneClass& scene)
         py::arg("bytes"),
         "The scene that to_bytes wrote. Raises RuntimeError that says what is wrong with other bytes.");
     scene.def(
-        "errors",
+        "errors", [](PythonScene& self) { return dict_of(self.get().errors()); },
+        "Errors of joints (m, rad; rms and max), kinetic energy (J) and momentum (kg m/s) now, as a dict.");
+    scene.def_property_readonly(
+        "last_step", [](PythonScene& self) { return self.get().last_step(); },
+        "Seconds that the last step took: impulses divided by it are mean forces.");
+    scene.def(
+        "contact_impulses",
         [](PythonScene& self) {
-            const SceneErrors errors = self.get().errors();
+            const std::span<const ContactImpulse> impulses = self.get().contact_impulses();
             py::dict all;
-            all["joint_separation_max"] = errors.joint_separation_max;
-            all["joint_angle_max"] = errors.joint_angle_max;
-            all["kinetic_energy"] = errors.kinetic_energy;
-            all["momentum"] = py::make_tuple(errors.momentum[0], errors.momentum[1], errors.momentum[2]);
+            all["normal"] = column(impulses, &ContactImpulse::normal);
+            all["friction"] = column(impulses, &ContactImpulse::friction);
             return all;
         },
-        "Errors of joints (m, rad), kinetic energy (J) and momentum (kg m/s) now, as a dict.");
+        "The impulses (N s) of the host's contacts of the last step, in their order, on body_b: arrays "
+        "normal, "
+        "and friction\n"
+        "(n x 3, world).");
 }
 
 }  // namespace

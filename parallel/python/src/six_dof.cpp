@@ -1,7 +1,8 @@
-// Scene: a joint of six degrees of freedom, which becomes several joints.
+// Scene: joints that become several joints: of six degrees of freedom, and welds.
 #include "motley/core/six_dof.h"
 
 #include "arrays.h"
+#include "motley/core/weld.h"
 #include "scene.h"
 
 namespace motley::python {
@@ -73,6 +74,30 @@ void add_six_dof_to(SceneClass& scene)
         "frame_a, frame_b,\n"
         "rotations ('about_axes' or 'euler'), max_swing (rad), stiffness. Returns the handles of the joints "
         "that it becomes.");
+    scene.def(
+        "add_weld",
+        [](PythonScene& self, std::uint64_t body_a, std::uint64_t body_b, const py::kwargs& fields) {
+            WeldDefinition definition;
+            definition.body_a = id_of<BodyId>(body_a);
+            definition.body_b = id_of<BodyId>(body_b);
+            Keywords given("WeldDefinition", fields);
+            given.take("frame_a", definition.frame_a);
+            given.take("frame_b", definition.frame_b);
+            given.take("linear_hertz", definition.linear_hertz);
+            given.take("linear_damping_ratio", definition.linear_damping_ratio);
+            given.take("angular_hertz", definition.angular_hertz);
+            given.take("angular_damping_ratio", definition.angular_damping_ratio);
+            given.end();
+            const Weld weld = add_weld(self.get(), definition);
+            return py::make_tuple(number_of(weld.position), number_of(weld.rotation));
+        },
+        py::arg("body_a"), py::arg("body_b"),
+        "Adds a joint that holds frame_b on frame_a, in translation rigidly or by a spring of linear_hertz "
+        "and in "
+        "rotation by one\n"
+        "of angular_hertz (Hz; 0, the default: rigid), with linear_damping_ratio and angular_damping_ratio "
+        "(default 1). Returns the\n"
+        "handles of its two joints, of which the second is 0 where both are rigid.");
 }
 
 }  // namespace motley::python

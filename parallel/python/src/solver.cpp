@@ -6,6 +6,7 @@
 
 #include "arrays.h"
 #include "c/solver_mirrors.h"
+#include "reports.h"
 #include "scene.h"
 
 namespace motley::python {
@@ -140,20 +141,7 @@ py::dict step(Solver& solver, PythonScene& scene, float dt, const py::object& co
         report = solver.step(guard.scene(), dt, list);
     }
     if (report.status == StepStatus::refused) throw InvalidInput(report.error);
-    py::dict all;
-    all["contacts"] = report.contacts;
-    all["joints"] = report.joints;
-    all["substeps"] = report.substeps;
-    all["iterations"] = report.iterations;
-    all["colours"] = report.colours;
-    all["bodies_asleep"] = report.bodies_asleep;
-    all["bodies_contained"] = report.bodies_contained;
-    all["contacts_skipped"] = report.contacts_skipped;
-    all["exact_contact_islands"] = report.exact_contact_islands;
-    all["exact_contacts_refused"] = report.exact_contacts_refused;
-    all["exact_contacts_residual"] = report.exact_contacts_residual;
-    all["seconds"] = report.total_seconds();
-    return all;
+    return dict_of(report);
 }
 
 }  // namespace
@@ -169,12 +157,17 @@ void add_solver_to(py::module_& module)
         "sleep_speed, ...")
         .def(py::init(&make_solver), py::arg("threads") = 1, py::arg("isa") = py::none(),
              py::arg("alone_below") = SolverOptions{}.alone_below)
-        .def("step", &step, py::arg("scene"), py::arg("dt"), py::arg("contacts") = py::none(),
-             "Advances the scene by dt seconds (0 to 1), with contacts of the host's own beside those that "
-             "are found: an array of\n"
-             "contact_dtype. Other threads of Python run meanwhile. Returns what the step did, as a dict. A "
-             "refused step raises\n"
-             "InvalidInput and changes nothing.")
+        .def(
+            "step", &step, py::arg("scene"), py::arg("dt"), py::arg("contacts") = py::none(),
+            "Advances the scene by dt seconds (0 to 1), with contacts of the host's own beside those that "
+            "are found: an array of\n"
+            "contact_dtype. Other threads of Python run meanwhile. Returns what the step did: a dict with "
+            "the "
+            "fields of StepReport,\n"
+            "of which seconds is of the whole step, stages a dict of those of each stage, and measures (with "
+            "measures=True) a\n"
+            "dict of residuals, penetrations and the errors before and after. A refused step raises "
+            "InvalidInput and changes nothing.")
         .def(
             "change",
             [](Solver& self, const py::kwargs& settings) {

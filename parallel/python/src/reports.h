@@ -1,0 +1,13 @@
+// What a step did, and the errors of a scene, as dicts with the names of the fields in C++.
+#pragma once
+
+#include "motley/core/step_report.h"
+#include "values.h"
+
+namespace motley::python {
+
+py::dict dict_of(const SceneErrors& errors);
+/// `seconds` is of the whole step, and `stages` a dict of those of each stage.
+py::dict dict_of(const StepReport& report);
+
+}  // namespace motley::python
