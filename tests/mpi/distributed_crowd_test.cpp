@@ -239,6 +239,42 @@ TEST(DistributedCrowd, ReadsTheLoadsOfOneProcess)
     EXPECT_GT(most, 100);
 }
 
+/// Each rank measures the contacts that it solves: together they are those of one process, and measuring changes no bit.
+TEST(DistributedCrowd, MeasuresAddUpToThoseOfOneProcess)
+{
+    const Walkers walkers({.people = 3000, .spacing = 0.42, .friction = 0.3F});
+    const SolverSettings settings{.measures = true};
+    constexpr int steps = 30;
+    struct {
+        std::uint64_t hash;
+        double squares, largest, deepest;
+    } expected{};
+    if (rank() == 0) {
+        WalkersOnOneScene one(walkers, settings, {});
+        StepMeasures last;
+        for (int step = 0; step < steps; ++step) last = one.step(dt).measures;
+        expected = {one.hash(), last.residual_norm * last.residual_norm, last.residual_max,
+                    last.penetration_max};
+    }
+    MPI_Bcast(&expected, sizeof expected, MPI_BYTE, 0, MPI_COMM_WORLD);
+    DistributedCrowd crowd(MPI_COMM_WORLD, settings);
+    add_all(crowd, walkers);
+    StepMeasures own;
+    for (int step = 0; step < steps; ++step) {
+        walkers.steer(crowd.scene(), crowd.people());
+        own = crowd.step(dt).measures;
+    }
+    double squares = own.residual_norm * own.residual_norm;
+    std::array<double, 2> most{own.residual_max, own.penetration_max};
+    MPI_Allreduce(MPI_IN_PLACE, &squares, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, most.data(), 2, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    EXPECT_EQ(crowd.hash(), expected.hash);
+    EXPECT_GT(squares, 0);
+    EXPECT_NEAR(squares, expected.squares, 1e-9 * expected.squares);
+    EXPECT_EQ(most[0], expected.largest);
+    EXPECT_EQ(most[1], expected.deepest);
+}
+
 std::string checkpoint_file()
 {
     return ::testing::TempDir() + "motley_checkpoint_of_" + std::to_string(ranks()) + "_ranks";
@@ -390,6 +426,14 @@ TEST(DistributedCrowd, RefusesOnAllRanksWhatOneOfThemCannotDo)
     if (rank() == ranks() - 1) crowd.scene().remove_body(post);
     EXPECT_EQ(crowd.hash(), before);
     EXPECT_EQ(crowd.step(dt).status, StepStatus::done);
+
+    // Ranks must make the same number of sweeps.
+    const BodyId wishing = crowd.find(0);
+    if (wishing != BodyId{}) crowd.scene().set_island_iterations(wishing, 20);
+    report = crowd.step(dt);
+    EXPECT_EQ(report.status, StepStatus::refused);
+    EXPECT_NE(report.error.find("wishes of islands"), std::string::npos) << report.error;
+    if (wishing != BodyId{}) crowd.scene().set_island_iterations(wishing, 0);
 
     // A giant reaches further than the strips are made for.
     const std::uint64_t giant = 1000;
