@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "stores/disc_fields.h"
 
@@ -44,9 +45,10 @@ void note_penetrations(const SceneCore& scene, std::span<const Contact> contacts
     for (std::size_t band = 0; band < scene.discs.band_count; ++band) {
         for_each_disc_class([&](auto c) {
             const DiscBlocks& blocks = scene.discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
-            using Row = typename DiscFieldsOf<c.value>::Row;
+            using Fields = DiscFieldsOf<c.value>;
+            constexpr std::size_t field = offsetof(typename Fields::Row, start_separation) / sizeof(float);
             for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
-                all.note(load_lane<Row>(blocks.rows.data(), block, lane).start_separation);
+                all.note(blocks.rows[block_lanes * (Fields::row_floats * block + field) + lane]);
             });
         });
     }

@@ -55,6 +55,11 @@ struct SceneCore {
     [[nodiscard]] BodyState state(BodyId body) const;
     /// Body to world, unit; the identity for a particle.
     [[nodiscard]] Quat<double> orientation(BodyRow where) const;
+    /// World, m/s and rad/s.
+    struct Velocity {
+        Vec3<float> linear{}, angular{};
+    };
+    [[nodiscard]] Velocity velocity(BodyRow where) const;
     [[nodiscard]] JointReport joint_report(ConstraintId joint) const;
     /// Whether any joint or island wants more sweeps than the settings say.
     [[nodiscard]] bool asks_for_iterations() const;

@@ -51,16 +51,14 @@ SceneErrors Scene::errors() const
     }
     for (std::uint32_t slot = 1; slot < core_->bodies.slot_count(); ++slot) {
         if (!core_->bodies.is_slot_live(slot) || core_->bodies.inverse_masses[slot] == 0) continue;
-        const BodyId body = core_->bodies.id_of_slot(slot);
-        const BodyState s = state(body);
+        const BodyRow where = core_->bodies.row_of(core_->bodies.id_of_slot(slot));
+        const SceneCore::Velocity now = core_->velocity(where);
         const double mass = 1 / static_cast<double>(core_->bodies.inverse_masses[slot]);
-        const Vec3<double> v = convert<double>(s.linear_velocity);
-        const Vec3<double> w = convert<double>(s.angular_velocity);
+        const Vec3<double> v = convert<double>(now.linear), w = convert<double>(now.angular);
         errors.momentum[0] += mass * v.x;
         errors.momentum[1] += mass * v.y;
         errors.momentum[2] += mass * v.z;
         errors.kinetic_energy += 0.5 * mass * dot(v, v);
-        const BodyRow where = core_->bodies.row_of(body);
         if (where.kind() == BodyKind::planar) {
             const double inverse = core_->bodies.rows(where.kind()).delta[std::size_t{4} * where.row() + 3];
             if (inverse > 0) errors.kinetic_energy += 0.5 * w.z * w.z / inverse;
@@ -68,7 +66,7 @@ SceneErrors Scene::errors() const
         if (where.kind() == BodyKind::rigid) {
             const Sym3<float>& i = core_->bodies.rows(where.kind()).inertia[where.row()];
             const Sym3<double> inertia{i.xx, i.xy, i.xz, i.yy, i.yz, i.zz};
-            const Vec3<double> local = rotate(conjugate(s.orientation), w);
+            const Vec3<double> local = rotate(conjugate(core_->orientation(where)), w);
             errors.kinetic_energy += 0.5 * dot(local, inertia * local);
         }
     }

@@ -29,22 +29,27 @@ BodyState SceneCore::state(BodyId body) const
     state.position = convert<double>(rows.pose[row].position);
     state.yaw = static_cast<double>(rows.pose[row].yaw);
     state.orientation = orientation(where);
-    const float* v = &rows.velocity[row * 4 * static_cast<std::size_t>(quads_of(where.kind()))];
+    const Velocity now = velocity(where);
+    state.linear_velocity = now.linear;
+    state.angular_velocity = now.angular;
+    return state;
+}
+
+SceneCore::Velocity SceneCore::velocity(BodyRow where) const
+{
+    const float* v =
+        &bodies.rows(where.kind())
+             .velocity[std::size_t{4} * static_cast<std::size_t>(quads_of(where.kind())) * where.row()];
     switch (where.kind()) {
         case BodyKind::particle:
-            state.linear_velocity = {v[0], v[1], v[2]};
-            break;
+            return {{v[0], v[1], v[2]}, {}};
         case BodyKind::planar:
-            state.linear_velocity = {v[0], v[1], 0};
-            state.angular_velocity = {0, 0, v[2]};
-            break;
+            return {{v[0], v[1], 0}, {0, 0, v[2]}};
         case BodyKind::rigid:
         case BodyKind::fixed:
-            state.linear_velocity = {v[0], v[1], v[2]};
-            state.angular_velocity = {v[4], v[5], v[6]};
-            break;
+            return {{v[0], v[1], v[2]}, {v[4], v[5], v[6]}};
     }
-    return state;
+    return {};
 }
 
 void Scene::set_pose(BodyId body, const Vec3<double>& position, const Quat<double>& orientation, double yaw)
