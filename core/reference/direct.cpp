@@ -28,7 +28,7 @@ DirectResult World::step_directly(double dt, const SolverSettings& asked,
     }
     std::vector<ContactRow> contacts;
     contacts.reserve(points.size());
-    for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, warm));
+    for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, h, warm));
     const Eigen::Vector3d gravity(settings.gravity.x, settings.gravity.y, settings.gravity.z);
     DirectResult result;
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -61,7 +61,7 @@ DirectResult World::step_directly(double dt, const SolverSettings& asked,
         }
         for (int i = 0; settings.drift_correction == DriftCorrection::projection && i < settings.projections;
              ++i)
-            project_directly(contacts, settings);
+            project_directly(contacts, h, settings);
     }
     finish_contacts(contacts, settings);
     end_step(h);
@@ -164,10 +164,11 @@ DirectResult World::solve_substep_directly(double h, const SolverSettings& setti
         const std::size_t at = assembly.open(a, b, 1 + tangents);
         group_of_contact.push_back(at);
         assembly.group(at).is_contact = true;
-        assembly.fill(at, 0, row.normal, speed(a, b, row.normal).array() + bias, 0, unbounded,
+        assembly.fill(at, 0, row.normal, speed(a, b, row.normal).array() + bias, 0, row.most,
                       VectorXd::Constant(1, row.impulse));
         if (tangents == 0) continue;
-        assembly.fill(at, 1, row.tangents, speed(a, b, row.tangents), -unbounded, unbounded, row.friction);
+        assembly.fill(at, 1, row.tangents, speed(a, b, row.tangents) - row.surface_speed, -unbounded,
+                      unbounded, row.friction);
         assembly.group(at).cones.push_back({1, static_cast<int>(tangents), mu, 0, 1});
     }
     stiffen(assembly, stiff, true);
@@ -213,7 +214,8 @@ double World::position_error() const
 }
 
 /// One Newton step on all positions at once: locks, exceeded limits, contacts deeper than the slop.
-void World::project_directly(const std::vector<ContactRow>& contacts, const SolverSettings& settings)
+void World::project_directly(const std::vector<ContactRow>& contacts, double h,
+                             const SolverSettings& settings)
 {
     Assembly assembly(bodies);
     for (const Joint& joint : joints) {
@@ -234,7 +236,7 @@ void World::project_directly(const std::vector<ContactRow>& contacts, const Solv
         const double deep = separation(row) + static_cast<double>(settings.penetration_slop);
         if (deep < 0)
             assembly.fill(assembly.open(row.point->a, row.point->b, 1), 0, row.normal,
-                          VectorXd::Constant(1, deep), 0, unbounded, VectorXd::Zero(1));
+                          VectorXd::Constant(1, deep), 0, h * row.most, VectorXd::Zero(1));
     }
     const Solution solution = assembly.solve();
     // Far from the solution a whole step may lead away from it: then half of it, and so on.

@@ -79,6 +79,14 @@ void DiscPoints::list(const SceneCore& scene, std::span<const int> index_of_slot
         ContactPoint point{index_of(Fields::kind_a, bodies.a[lane]),
                            index_of(BodyKind::planar, bodies.b[lane]), contact_of<c.value>(row)};
         point.contact.key = key;
+        if constexpr (is_wall(c.value)) {
+            point.surface.most_force = static_cast<double>(row.in_sweep.most_force);
+            if constexpr (is_rough(c.value)) {
+                const Eigen::Vector3d belt =
+                    static_cast<double>(row.in_sweep.surface_speed) * tangent_of(row.in_sweep.normal);
+                point.surface.velocity = {belt.x(), belt.y(), 0};
+            }
+        }
         points.push_back(point);
         World::ContactResult& result = recalled[key];
         result = {static_cast<double>(bore.normal)};

@@ -79,7 +79,7 @@ void write_back(SceneCore& scene, BodyId id, const Body& body)
 }  // namespace
 
 DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& settings,
-                           std::span<const Contact> contacts)
+                           std::span<const Contact> contacts, std::span<const ContactSurface<float>> surfaces)
 {
     World world;
     std::vector<int> index_of_slot(scene.bodies.slot_count(), -1);
@@ -113,7 +113,12 @@ DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& set
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const Contact& contact = contacts[i];
         if (scene.contacts.staged().colours[i] == no_colour) continue;  // left out by the layout
-        points.push_back({index_of_slot[contact.body_a.slot], index_of_slot[contact.body_b.slot], contact});
+        ContactPoint point{index_of_slot[contact.body_a.slot], index_of_slot[contact.body_b.slot], contact};
+        if (i >= contacts.size() - surfaces.size()) {
+            const ContactSurface<float>& surface = surfaces[i - (contacts.size() - surfaces.size())];
+            point.surface = {convert<double>(surface.velocity), static_cast<double>(surface.most_force)};
+        }
+        points.push_back(point);
     }
 
     const ContactList& before = scene.contacts.current();

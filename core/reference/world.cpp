@@ -115,7 +115,7 @@ void World::step(double dt, const SolverSettings& asked, const std::vector<Conta
         joint.rotor_change *= warm;
     }
     std::vector<ContactRow> contacts;
-    for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, warm));
+    for (const ContactPoint& point : points) contacts.push_back(begin_contact(point, h, warm));
 
     for (int substep = 0; substep < settings.substeps; ++substep) {
         for (Body& body : bodies) body.accelerate(eigen(settings.gravity), h);
@@ -131,7 +131,7 @@ void World::step(double dt, const SolverSettings& asked, const std::vector<Conta
         }
         for (Body& body : bodies) body.move_on(h, true);
         if (!soft_step && settings.drift_correction == DriftCorrection::projection) {
-            for (int i = 0; i < settings.projections; ++i) project(contacts, settings);
+            for (int i = 0; i < settings.projections; ++i) project(contacts, h, settings);
         }
         for (int i = 0; soft_step && i < settings.relaxations; ++i) {
             solve_blocks(rows, h, settings, true);

@@ -18,7 +18,7 @@ World::Soft World::contact_softness(int a, int b, double h, const SolverSettings
     return softness((on_fixed ? 2 : 1) * hertz, settings.contact_damping_ratio, h);
 }
 
-World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
+World::ContactRow World::begin_contact(const ContactPoint& point, double h, double warm)
 {
     const Contact& c = point.contact;
     const Eigen::Vector3d n = eigen(c.normal), arm_a = eigen(c.arm_a), arm_b = eigen(c.arm_b);
@@ -28,6 +28,7 @@ World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
     row.approach = speed(point.a, point.b, row.normal)(0);
     const ContactResult before = memory_.contains(c.key) ? memory_.at(c.key) : ContactResult{};
     row.impulse = warm * before.normal;
+    row.most = h * point.surface.most_force;
     // Any two directions perpendicular to n will do, because the cone is circular.
     const Eigen::Vector3d t1 =
         is_planar_pair(point.a, point.b) ? Eigen::Vector3d(-n.y(), n.x(), 0) : n.unitOrthogonal();
@@ -40,6 +41,7 @@ World::ContactRow World::begin_contact(const ContactPoint& point, double warm)
         row.tangents << direction_jacobian(t1, arm_a, arm_b), direction_jacobian(t2, arm_a, arm_b);
         row.friction = warm * Eigen::Vector2d(t1.dot(before.friction), t2.dot(before.friction));
     }
+    row.surface_speed = row.tangents.middleCols<3>(6) * eigen(point.surface.velocity);
     return row;
 }
 
@@ -85,7 +87,8 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
         // Once the bodies have turned far, the largest response is used along both tangents.
         Eigen::MatrixXd inverse = effective_mass_along(point, row.tangents);
         if (&of == &bodies && rows > 1) inverse = identity / most;
-        const Eigen::VectorXd free = row.friction - inverse * speed(point.a, point.b, row.tangents);
+        const Eigen::VectorXd free =
+            row.friction - inverse * (speed(point.a, point.b, row.tangents) - row.surface_speed);
         const Eigen::VectorXd next = bounded(row.friction, free, identity, k, most, mu * row.impulse);
         apply(point.a, point.b, row.tangents, next - row.friction);
         row.friction = next;
@@ -109,7 +112,7 @@ void World::solve_contact(ContactRow& row, double h, const SolverSettings& setti
     // The impulse with which the contact would open at push_out_speed.
     const double most =
         row.impulse - normal_effective_mass * (opening - static_cast<double>(settings.push_out_speed));
-    const double impulse = std::max(std::min(wanted, most), 0.0);
+    const double impulse = std::clamp(std::min(wanted, most), 0.0, row.most);
     apply(point.a, point.b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
     row.impulse = impulse;
     row.peak = std::max(row.peak, impulse);
@@ -146,7 +149,7 @@ void World::project_contacts(const Joint& joint, const SolverSettings& settings)
     b.displace(move.tail<6>());
 }
 
-void World::project(std::vector<ContactRow>& contacts, const SolverSettings& settings)
+void World::project(std::vector<ContactRow>& contacts, double h, const SolverSettings& settings)
 {
     const auto move = [&](int a, int b, const Jacobian& jacobian, const Eigen::VectorXd& push) {
         Body& body_a = bodies[static_cast<std::size_t>(a)];
@@ -174,8 +177,9 @@ void World::project(std::vector<ContactRow>& contacts, const SolverSettings& set
     }
     for (ContactRow& row : contacts) {
         const double deep = std::min(separation(row) + static_cast<double>(settings.penetration_slop), 0.0);
-        const double push = -effective_mass_along(*row.point, row.normal)(0, 0) *
-                            static_cast<double>(settings.baumgarte) * std::max(deep, -0.2);
+        const double wanted = -effective_mass_along(*row.point, row.normal)(0, 0) *
+                              static_cast<double>(settings.baumgarte) * std::max(deep, -0.2);
+        const double push = std::min(wanted, h * row.most);
         move(row.point->a, row.point->b, row.normal, Eigen::VectorXd::Constant(1, push));
     }
 }
@@ -211,8 +215,8 @@ void World::finish_contacts(std::vector<ContactRow>& contacts, const SolverSetti
             const double opening =
                 opening_speed(a, b, row.normal, row.approach, separation(row), e, settings);
             const double leaving = speed(a, b, row.normal)(0) - opening;
-            const double impulse =
-                std::max(row.impulse - effective_mass_along(*row.point, row.normal)(0, 0) * leaving, 0.0);
+            const double impulse = std::clamp(
+                row.impulse - effective_mass_along(*row.point, row.normal)(0, 0) * leaving, 0.0, row.most);
             apply(a, b, row.normal, Eigen::VectorXd::Constant(1, impulse - row.impulse));
             row.step.normal += impulse - row.impulse;
             row.impulse = impulse;

@@ -73,7 +73,9 @@ struct World::ContactRow {
     double approach;
     double impulse, peak = 0;
     Eigen::VectorXd friction;
-    ContactResult step{};  ///< of the substeps so far
+    double most;                    ///< N s, of the normal impulse in a substep
+    Eigen::VectorXd surface_speed;  ///< m/s, of the surface of a along the tangents
+    ContactResult step{};           ///< of the substeps so far
 
     /// Friction in the world frame: the linear part on b of a row is its tangent.
     [[nodiscard]] Eigen::Vector3d force() const { return tangents.middleCols<3>(6).transpose() * friction; }

@@ -67,8 +67,8 @@ void PlanRunner::run_stage(const PlanStage& stage, int substep, const Plan& plan
             // Without it settings that ask for it are refused.
             if constexpr (direct_is_built) {
                 discs_.prepare(step.scene);
-                const reference::DirectResult result =
-                    reference::step_directly(step.scene, step.dt, step.settings, step.contacts);
+                const reference::DirectResult result = reference::step_directly(
+                    step.scene, step.dt, step.settings, step.contacts, layout_.intake.surfaces);
                 step.report.direct_violation = result.violation;
                 step.report.direct_unsolved = result.unsolved;
             }

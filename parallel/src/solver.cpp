@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <functional>
 #include <new>
 #include <utility>
 
@@ -73,19 +72,6 @@ std::string text_of(const std::exception_ptr& thrown) noexcept
         return text_of_exception();
     }
     return {};
-}
-
-/// Contacts with belts and with walls of bounded force are solved by sweeps.
-void refuse_what_sweeps_must_solve(const SceneCore& scene, const SolverSettings& settings)
-{
-    const bool has_capsules = scene.shapes.is_in_use();
-    if (settings.method != Method::direct || (!has_capsules && !scene.discs.is_in_use())) return;
-    if (std::any_of(scene.discs.segments.begin(), scene.discs.segments.end(),
-                    std::mem_fn(&WallSegment::has_own_surface)))
-        refuse("SolverSettings.method",
-               std::string("direct, in a scene with ") + (has_capsules ? "capsules" : "discs") +
-                   " and a wall with surface_speed or max_force",
-               "another one");
 }
 
 }  // namespace
@@ -207,7 +193,6 @@ void Solver::Impl::step(Scene& host_scene, float dt, std::span<const Contact> ho
     if (!(dt >= 0 && dt <= 1)) refuse("step.dt", dt, "0 to 1 (s)");
     if (hosts.size() > INT32_MAX)
         refuse("step.contacts.size()", static_cast<double>(hosts.size()), "at most 2^31 - 1");
-    refuse_what_sweeps_must_solve(scene, asked);
     const auto began = std::chrono::steady_clock::now();
     pick_settings();
     const std::exception_ptr late = runner.with_workers(runs_alone(host_scene, hosts), [&] {

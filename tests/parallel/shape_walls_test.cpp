@@ -144,9 +144,11 @@ TEST(ShapeWalls, NobodyComesBackThroughATurnstile)
     EXPECT_GT(passed, testing::long_run(40));
 }
 
+class SurfacesOfWalls : public ::testing::TestWithParam<Method> {};
+
 /// A torso pressed flat on a belt slides with mu N / m until it is as fast as the belt. Friction acts at one radius from
 /// its middle, so that the point in front bears more: N/2 + mu N r / d of the two, d apart, while it slides.
-TEST(ShapeWalls, ABeltTakesATorsoAlong)
+TEST_P(SurfacesOfWalls, ABeltTakesATorsoAlong)
 {
     for (const double side : {1.0, -1.0}) {
         Scene scene;
@@ -154,7 +156,7 @@ TEST(ShapeWalls, ABeltTakesATorsoAlong)
         scene.add_wall({.points = ends, .friction = 0.5F, .surface_speed = 1});
         const BodyId torso = add_torso(scene, {0, side * static_cast<double>(radius)}, 0.5F);
         scene.set_force(torso, {0, static_cast<float>(-100 * side), 0}, {});
-        Solver solver(SolverSettings{});
+        Solver solver({.method = GetParam()});
         run(solver, scene, 60);
         EXPECT_NEAR(scene.state(torso).linear_velocity.x, 0.5 * 100 / 80, 0.01);
         std::vector<ShapeContact> contacts = scene.shape_contacts();
@@ -176,7 +178,7 @@ TEST(ShapeWalls, ABeltTakesATorsoAlong)
 
 /// A solid ball pressed on a belt of speed u slides until it rolls, after t = 2 u m / (7 mu N): then v = 2 u / 7 and
 /// w r = 5 u / 7. The belt is slanted, so that it runs along both tangents of the contact.
-TEST(ShapeWalls, ABeltMakesABallRoll)
+TEST_P(SurfacesOfWalls, ABeltMakesABallRoll)
 {
     for (const float u : {2.0F, -2.0F}) {
         Scene scene;
@@ -189,7 +191,7 @@ TEST(ShapeWalls, ABeltMakesABallRoll)
                                             .inertia = {moment, 0, 0, moment, 0, moment}});
         scene.add_capsule({.body = ball, .radius = 0.2F, .friction = 0.5F});
         scene.set_force(ball, {-30 * static_cast<float>(out.x), -30 * static_cast<float>(out.y), 0}, {});
-        Solver solver(SolverSettings{});
+        Solver solver({.method = GetParam()});
         const auto speed = [&] {
             const Vec3<float> v = scene.state(ball).linear_velocity;
             EXPECT_NEAR(v.z, 0, 1e-5);
@@ -204,7 +206,7 @@ TEST(ShapeWalls, ABeltMakesABallRoll)
 }
 
 /// A torso lies along a wall at two points, which together push with no more than the wall's force.
-TEST(ShapeWalls, PushATorsoWithNoMoreThanTheirForce)
+TEST_P(SurfacesOfWalls, PushATorsoWithNoMoreThanTheirForce)
 {
     Scene scene;
     const Vec2<double> ends[] = {{-5, 0}, {5, 0}};
@@ -215,7 +217,7 @@ TEST(ShapeWalls, PushATorsoWithNoMoreThanTheirForce)
         for (const ShapeContact& contact : scene.shape_contacts()) force += contact.normal_force;
         return force;
     };
-    Solver solver(SolverSettings{});
+    Solver solver({.method = GetParam()});
     scene.set_force(torso, {0, -200, 0}, {});
     run(solver, scene, 120);
     EXPECT_NEAR(scene.state(torso).position.y, 0.12, 0.002);
@@ -233,7 +235,7 @@ TEST(ShapeWalls, PushATorsoWithNoMoreThanTheirForce)
 }
 
 /// Nor does a blow get more out of it, with a ball that would bounce.
-TEST(ShapeWalls, ABlowIsAnsweredWithNoMoreThanTheirForce)
+TEST_P(SurfacesOfWalls, ABlowIsAnsweredWithNoMoreThanTheirForce)
 {
     Scene scene;
     const Vec2<double> ends[] = {{0, -5}, {0, 5}};
@@ -242,7 +244,7 @@ TEST(ShapeWalls, ABlowIsAnsweredWithNoMoreThanTheirForce)
     thrown.linear_velocity = {7, 0, 0};
     const BodyId ball = scene.add_body(thrown);
     scene.add_capsule({.body = ball, .radius = 0.2F, .restitution = 0.8F});
-    Solver solver(SolverSettings{});
+    Solver solver({.method = GetParam()});
     float fastest_change = 0;
     for (int step = 0; step < 60; ++step) {
         const float before = scene.state(ball).linear_velocity.x;
@@ -252,23 +254,14 @@ TEST(ShapeWalls, ABlowIsAnsweredWithNoMoreThanTheirForce)
     EXPECT_NEAR(fastest_change, 500.0F / 2 * dt, 1e-3F) << "the wall did all that it can";
 }
 
-TEST(ShapeWalls, TheDirectMethodRefusesBeltsAndBoundedWalls)
+std::string name_of(const ::testing::TestParamInfo<Method>& method)
 {
-    const Vec2<double> ends[] = {{0, -5}, {0, 5}};
-    for (const WallDefinition& wall : {WallDefinition{.points = ends, .friction = 1, .surface_speed = 1},
-                                       WallDefinition{.points = ends, .max_force = 300}}) {
-        Scene scene;
-        scene.add_wall(wall);
-        add_torso(scene, {1, 0});
-        Solver direct(SolverSettings{.method = Method::direct});
-        const std::uint64_t hash = scene.state_hash();
-        EXPECT_EQ(
-            direct.step(scene, dt).error,
-            "SolverSettings.method is direct, in a scene with capsules and a wall with surface_speed or "
-            "max_force; expected another one");
-        EXPECT_EQ(scene.state_hash(), hash);
-    }
+    constexpr const char* names[] = {"soft_step", "sequential_impulse", "direct"};
+    return names[static_cast<int>(method.param)];
 }
+INSTANTIATE_TEST_SUITE_P(Methods, SurfacesOfWalls,
+                         ::testing::Values(Method::soft_step, Method::sequential_impulse, Method::direct),
+                         name_of);
 
 /// The crowd of figures, torsos, discs and particles with a turnstile, a belt and a wall that gives way: bits are those of
 /// every instruction set, method and number of threads.

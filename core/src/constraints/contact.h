@@ -293,7 +293,8 @@ struct ContactKind : ConstraintTraits {
         const auto& row = in_sweep(whole);
         const Real deep = minimum(row.separation + moved<Real>(row, a, b) + Real(step.slop), Real(0));
         const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep overlap must not explode
-        const Real lambda = -(normal_effective_mass<Real>(row, a, b) * Real(step.projection_rate) * error);
+        Real lambda = -(normal_effective_mass<Real>(row, a, b) * Real(step.projection_rate) * error);
+        if constexpr (has_restitution) lambda = minimum(lambda, most_projection(step, row.most_force));
         if constexpr (smooth) {
             displace_along(a, row.normal, row.lever_a, -lambda);
             displace_along(b, row.normal, row.lever_b, lambda);

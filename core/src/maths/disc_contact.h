@@ -158,7 +158,10 @@ struct DiscContactKind : ConstraintTraits {
         const auto& row = whole.in_sweep;
         const Real deep = minimum(whole.start_separation + moved<Real>(row, a, b) + Real(step.slop), Real(0));
         const Real error = maximum(deep, Real(-0.2F));  // m a sweep: a deep overlap must not explode
-        const Vec2<Real> push = -(row.effective_mass * Real(step.projection_rate) * error) * row.normal;
+        Real lambda = -(row.effective_mass * Real(step.projection_rate) * error);
+        if constexpr (A::kind == BodyKind::fixed)
+            lambda = minimum(lambda, most_projection(step, row.most_force));
+        const Vec2<Real> push = lambda * row.normal;
         if constexpr (A::kind == BodyKind::planar) a.delta = a.delta - a.inverse_mass * push;
         b.delta = b.delta + b.inverse_mass * push;
     }

@@ -68,6 +68,14 @@ Real contact_impulse(const StepConstants& step, const Softness& soft, const Real
     return maximum(no_faster_than_push_out(step, wanted, speed, effective_mass, held), Real(0));
 }
 
+/// The most of a position solve of a contact that can push with no more than this force, N: what the force itself would move a mass
+/// in a substep. In kg m.
+template <class Real>
+Real most_projection(const StepConstants& step, const Real& most_force)
+{
+    return Real(step.substep * step.substep) * most_force;
+}
+
 /// For lower <= C <= upper. Only the nearer limit acts; where both are equal, the coordinate is locked.
 template <class Real>
 Real range_impulse(const StepConstants& step, const Real& c, const Real& lower, const Real& upper,

@@ -23,7 +23,7 @@ struct ShapeId {
 ///
 /// Capsules meet each other, half-spaces, walls and discs. A planar body reaches from the floor to the sky: what it meets,
 /// it meets as seen from above, and is pushed in the plane. So do walls, however they are tilted. One-way walls, belts and
-/// walls of bounded force are the same to a capsule as to a disc; the last two are not for Method::direct.
+/// walls of bounded force are the same to a capsule as to a disc.
 ///
 /// Two capsules touch if each has a category bit that the other one's mask has, unless they are of one body, of bodies
 /// that a joint connects, or of one group. Contacts have the geometric mean of both coefficients of friction and the

@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "maths/contact_surface.h"
 #include "motley/core/constraints/contact_definition.h"
 #include "motley/core/settings.h"
 #include "motley/reference/direct_result.h"
@@ -16,7 +17,8 @@ namespace motley::reference {
 /// A contact of one step between bodies by index.
 struct ContactPoint {
     int a = 0, b = 0;
-    Contact contact;  ///< the host's numbers; its handles are not read
+    Contact contact;                   ///< the host's numbers; its handles are not read
+    ContactSurface<double> surface{};  ///< of body a
 };
 
 class Assembly;
@@ -93,13 +95,13 @@ class World {
     void shorten(Joint& joint, const Block& block, std::size_t index, double push);
     void shorten(ContactRow& row);
     [[nodiscard]] Eigen::Matrix<double, 12, 1> moved_since_start(int a, int b) const;
-    ContactRow begin_contact(const ContactPoint& point, double warm);
+    ContactRow begin_contact(const ContactPoint& point, double h, double warm);
     void solve_contact(ContactRow& row, double h, const SolverSettings& settings, bool relax);
     [[nodiscard]] const std::vector<Body>& bodies_of_response(const ContactPoint& point) const;
     [[nodiscard]] Eigen::MatrixXd effective_mass_along(const ContactPoint& point, const Jacobian& rows) const;
     [[nodiscard]] double separation(const ContactRow& row) const;
     void project_contacts(const Joint& joint, const SolverSettings& settings);
-    void project(std::vector<ContactRow>& contacts, const SolverSettings& settings);
+    void project(std::vector<ContactRow>& contacts, double h, const SolverSettings& settings);
     [[nodiscard]] double opening_speed(int a, int b, const Jacobian& normal, double approach, double now,
                                        double restitution, const SolverSettings& settings) const;
     [[nodiscard]] Vector6 free_acceleration(int i, const SolverSettings& settings) const;
@@ -143,7 +145,7 @@ class World {
     void give_back(const Islands& islands, const std::vector<bool>& held,
                    const std::vector<Eigen::Vector3d>& lost);
     [[nodiscard]] double position_error() const;
-    void project_directly(const std::vector<ContactRow>& contacts, const SolverSettings& settings);
+    void project_directly(const std::vector<ContactRow>& contacts, double h, const SolverSettings& settings);
 };
 
 }  // namespace motley::reference
