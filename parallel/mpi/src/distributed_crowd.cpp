@@ -171,10 +171,9 @@ std::string DistributedCrowd::Impl::refusal(float dt) const
         return most[0] == 2 ? "step.dt is out of range on some rank; valid: 0 to 1 (s)"
                             : "step.dt is not the same on all ranks; valid: one dt";
     if (most[2] == 0) return {};
-    return is_fit ? "another rank has joints, capsules, half-spaces or wishes of islands for more "
-                    "iterations, which a "
-                    "crowd on several ranks cannot have"
-                  : std::string(unfit) + " are in the scene; a crowd on several ranks cannot have them";
+    if (!is_fit) return std::string(unfit) + " are in the scene; a crowd on several ranks cannot have them";
+    return "another rank has joints, capsules, half-spaces or wishes of islands for more iterations, which a "
+           "crowd on several ranks cannot have";
 }
 
 StepReport DistributedCrowd::step(float dt)
