@@ -27,14 +27,11 @@ inline double degrees_between(const Vector& u, const Vector& v)
     return std::atan2(length(cross(u, v)), dot(u, v)) * 180 / 3.14159265358979;
 }
 
-/// Settings with rigid constraints, in one substep without correction of positions.
+/// weightless_sweeps() with gravity.
 inline SolverSettings plain_sweeps(int iterations)
 {
-    SolverSettings settings = with_gravity({0, -9.81F, 0});
-    settings.method = Method::sequential_impulse;
-    settings.drift_correction = DriftCorrection::none;
-    settings.substeps = 1;
-    settings.iterations = iterations;
+    SolverSettings settings = weightless_sweeps(iterations);
+    settings.gravity = {0, -9.81F, 0};
     return settings;
 }
 

@@ -19,6 +19,18 @@ inline BodyDefinition person_at(double x, double y, float mass = 80, float radiu
     return body;
 }
 
+/// A queue along x of people who touch each other, and a wall along y at the origin: each is driven towards it with so many N.
+inline std::vector<BodyId> add_queue(Scene& scene, int count, float radius, float force)
+{
+    std::vector<BodyId> people;
+    for (int i = 0; i < count; ++i) {
+        people.push_back(scene.add_body(person_at(static_cast<double>(radius) * (1 + 2 * i), 0)));
+        scene.set_disc(people.back(), {.radius = radius});
+        scene.set_force(people.back(), {-force, 0, 0}, {});
+    }
+    return people;
+}
+
 struct DiscCrowdOptions {
     int people = 1500;
     float friction = 0;     ///< of every third person

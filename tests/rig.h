@@ -35,6 +35,18 @@ constexpr int repeats(int count)
     return is_sanitized ? 1 : count;
 }
 
+/// Sweeps of rigid constraints in one substep, without gravity or correction of positions: velocities are those that the last
+/// sweep leaves.
+inline SolverSettings weightless_sweeps(int iterations)
+{
+    SolverSettings settings;
+    settings.method = Method::sequential_impulse;
+    settings.drift_correction = DriftCorrection::none;
+    settings.substeps = 1;
+    settings.iterations = iterations;
+    return settings;
+}
+
 inline SolverSettings with_gravity(Vec3<float> gravity)
 {
     SolverSettings settings;

@@ -1,7 +1,8 @@
-// The library's vectors and frames as Eigen's, in double.
+// The library's vectors and frames as Eigen's, in double, and numbers as the library keeps them.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "motley/reference/joint_models.h"
 
@@ -14,6 +15,11 @@ inline Eigen::Vector3d eigen(const Vec3<float>& v)
 inline Eigen::Vector3d eigen(const Vec3<double>& v)
 {
     return {v.x, v.y, v.z};
+}
+/// An impulse as the library keeps it; 0 if it is not finite.
+inline float narrow(double impulse)
+{
+    return std::isfinite(impulse) ? static_cast<float>(impulse) : 0.0F;
 }
 inline Frame eigen(const JointFrame& f)
 {

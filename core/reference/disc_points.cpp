@@ -1,7 +1,6 @@
 // See disc_points.h.
 #include "disc_points.h"
 
-#include <cmath>
 #include <set>
 
 #include "as_eigen.h"
@@ -14,12 +13,9 @@ namespace {
 template <class Discs, class Work>
 void for_each_contact(Discs& discs, const Work& work)
 {
-    for (std::size_t band = 0; band < discs.band_count; ++band) {
-        for_each_disc_class([&](auto c) {
-            auto& blocks = discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
-            for_each_lane(blocks, [&](std::size_t block, std::size_t lane) { work(c, blocks, block, lane); });
-        });
-    }
+    for_each_solved_blocks(discs, [&](auto c, auto& blocks) {
+        for_each_lane(blocks, [&](std::size_t block, std::size_t lane) { work(c, blocks, block, lane); });
+    });
 }
 
 Vec3<float> in_space(const Vec2<float>& v)
@@ -47,11 +43,6 @@ Contact contact_of(const typename DiscFieldsOf<c>::Row& row)
         contact.arm_b = in_space(-sweep.arm_b * sweep.normal);
     }
     return contact;
-}
-
-float narrow(double value)
-{
-    return std::isfinite(value) ? static_cast<float>(value) : 0.0F;
 }
 
 }  // namespace

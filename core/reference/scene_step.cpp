@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "as_eigen.h"
 #include "disc_points.h"
 #include "motley/reference/joint_models.h"
 #include "motley/reference/world.h"
@@ -141,7 +142,6 @@ DirectResult step_directly(SceneCore& scene, float dt, const SolverSettings& set
     for (const Joint& joint : world.joints) memories.push_back(joint.model->memory(joint));
 
     for (std::size_t i = 0; i < ids.size(); ++i) write_back(scene, ids[i], world.bodies[i]);
-    const auto narrow = [](double value) { return std::isfinite(value) ? static_cast<float>(value) : 0.0F; };
     auto next = memories.begin();
     auto joint = world.joints.begin();
     scene.joints->for_each([&](auto& store, int) {

@@ -10,9 +10,10 @@
 namespace motley {
 namespace {
 
+/// Their root mean square and the deepest of them.
 class Penetrations {
   public:
-    /// A contact with this separation, m.
+    /// Counts a contact with this separation, m, if it overlaps.
     void note(float separation)
     {
         if (!(separation < 0)) return;
@@ -42,16 +43,13 @@ void note_penetrations(const SceneCore& scene, std::span<const Contact> contacts
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         if (list.colours[i] != no_colour) all.note(contacts[i].separation);  // else it is left out
     }
-    for (std::size_t band = 0; band < scene.discs.band_count; ++band) {
-        for_each_disc_class([&](auto c) {
-            const DiscBlocks& blocks = scene.discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
-            using Fields = DiscFieldsOf<c.value>;
-            constexpr std::size_t field = offsetof(typename Fields::Row, start_separation) / sizeof(float);
-            for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
-                all.note(blocks.rows[block_lanes * (Fields::row_floats * block + field) + lane]);
-            });
+    for_each_solved_blocks(scene.discs, [&](auto c, const DiscBlocks& blocks) {
+        using Fields = DiscFieldsOf<c.value>;
+        constexpr std::size_t field = offsetof(typename Fields::Row, start_separation) / sizeof(float);
+        for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
+            all.note(blocks.rows[block_lanes * (Fields::row_floats * block + field) + lane]);
         });
-    }
+    });
     all.fill_in(measures);
 }
 

@@ -176,36 +176,33 @@ void SleepPipeline::tie_discs(const Step& step)
     SceneCore& scene = step.scene;
     const bool walls_move = fastest_wall_end(scene) > 0;
     const auto candidate = [&](BodyRow body) { return is_candidate(step, slot_of(scene.bodies, body)); };
-    for (std::size_t band = 0; band < scene.discs.band_count; ++band) {
-        for_each_disc_class([&](auto c) {
-            using Fields = DiscFieldsOf<c.value>;
-            const DiscBlocks& blocks = scene.discs.bands[band].blocks[static_cast<std::size_t>(c.value)];
-            if (is_wall(c.value) && !walls_move) return;
-            for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
-                const BodyRow b = row_at(BodyKind::planar, blocks.bodies[block].b[lane]);
-                const auto pushes = [&] {
-                    return load_lane<typename Fields::Impulse>(blocks.sums.data(), block, lane).normal > 0;
-                };
-                if constexpr (is_wall(c.value)) {
-                    const auto row = load_lane<typename Fields::Row>(blocks.rows.data(), block, lane);
-                    const WallSegment& segment =
-                        scene.discs.segments[blocks.touches[block_lanes * block + lane].segment];
-                    const double goes = static_cast<double>(step.dt) * speed_of_wall(scene, segment);
-                    const auto gap = static_cast<double>(row.in_sweep.separation);
-                    if (goes > 0 && (pushes() || gap <= 2 * touching_distance + goes + reach_of(step, b, {})))
-                        tie(step, scene.bodies.row_of(segment.body), b);
-                } else {
-                    const BodyRow a = row_at(BodyKind::planar, blocks.bodies[block].a[lane]);
-                    if (!candidate(a) && !candidate(b)) return;
-                    if (pushes())
-                        tie(step, a, b);
-                    else if (gap_of<c.value>(scene, blocks, block, lane) <=
-                             2 * touching_distance + reach_of(step, a, {}) + reach_of(step, b, {}))
-                        tie_near(step, a, b);
-                }
-            });
+    for_each_solved_blocks(scene.discs, [&](auto c, const DiscBlocks& blocks) {
+        using Fields = DiscFieldsOf<c.value>;
+        if (is_wall(c.value) && !walls_move) return;
+        for_each_lane(blocks, [&](std::size_t block, std::size_t lane) {
+            const BodyRow b = row_at(BodyKind::planar, blocks.bodies[block].b[lane]);
+            const auto pushes = [&] {
+                return load_lane<typename Fields::Impulse>(blocks.sums.data(), block, lane).normal > 0;
+            };
+            if constexpr (is_wall(c.value)) {
+                const auto row = load_lane<typename Fields::Row>(blocks.rows.data(), block, lane);
+                const WallSegment& segment =
+                    scene.discs.segments[blocks.touches[block_lanes * block + lane].segment];
+                const double goes = static_cast<double>(step.dt) * speed_of_wall(scene, segment);
+                const auto gap = static_cast<double>(row.in_sweep.separation);
+                if (goes > 0 && (pushes() || gap <= 2 * touching_distance + goes + reach_of(step, b, {})))
+                    tie(step, scene.bodies.row_of(segment.body), b);
+            } else {
+                const BodyRow a = row_at(BodyKind::planar, blocks.bodies[block].a[lane]);
+                if (!candidate(a) && !candidate(b)) return;
+                if (pushes())
+                    tie(step, a, b);
+                else if (gap_of<c.value>(scene, blocks, block, lane) <=
+                         2 * touching_distance + reach_of(step, a, {}) + reach_of(step, b, {}))
+                    tie_near(step, a, b);
+            }
         });
-    }
+    });
 }
 
 void SleepPipeline::find_islands(const Step& step)

@@ -35,12 +35,7 @@ TEST(DiscContacts, OfAPushedChainCarryTheSumOfWhatIsBehind)
     Scene scene;
     const Vec2<double> ends[] = {{0, -1}, {0, 1}};
     const WallId wall = scene.add_wall({.points = ends});
-    std::vector<BodyId> people;
-    for (int i = 0; i < n; ++i) {
-        people.push_back(scene.add_body(person_at(0.2 + 0.4 * i, 0)));
-        scene.set_disc(people.back(), {.radius = 0.2F});
-        scene.set_force(people.back(), {-force, 0, 0}, {});
-    }
+    const std::vector<BodyId> people = testing::add_queue(scene, n, 0.2F, force);
     SolverSettings settings;
     settings.contact_hertz = 30;
     Solver solver(settings);

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <optional>
 #include <random>
 
 #include "disc_crowd.h"
+#include "rig.h"
 
 namespace motley {
 namespace {
@@ -21,19 +22,19 @@ struct Corner {
     Scene scene;
     std::vector<BodyId> people;
 
-    explicit Corner(int a_side, double from = 0)
+    explicit Corner(int a_side)
     {
         std::mt19937 random(5);
         std::uniform_real_distribution<double> off(-0.005, 0.005);
         for (int i = 0; i < a_side * a_side; ++i) {
             // One after the other: as arguments of one call, compilers would choose their order.
-            const double x = from + 0.26 + 0.51 * (i % a_side) + off(random);
-            const double y = from + 0.26 + 0.51 * (i / a_side) + off(random);
+            const double x = 0.26 + 0.51 * (i % a_side) + off(random);
+            const double y = 0.26 + 0.51 * (i / a_side) + off(random);
             people.push_back(scene.add_body(person_at(x, y)));
         }
         const std::vector<DiscDefinition> discs(people.size(), {.radius = radius});
         scene.set_discs(people, discs);
-        const Vec2<double> corner[] = {{from, from + 40}, {from, from}, {from + 40, from}};
+        const Vec2<double> corner[] = {{0, 40}, {0, 0}, {40, 0}};
         scene.add_wall({.points = corner});
     }
     void push()
@@ -42,7 +43,8 @@ struct Corner {
     }
 };
 
-/// What is left of the conditions of complementarity of a contact without friction: by how much solving it would change the speed at it.
+/// By how much solving a contact without friction would change the speed at it, m/s: 0 where its impulse and its opening speed are
+/// complementary.
 double left_of(double separation, double opening, double inverse_masses, double force)
 {
     const double h = static_cast<double>(dt), lambda = h * force;
@@ -67,14 +69,9 @@ struct Expected {
     }
 };
 
-/// One substep without correction of drift, so that the velocities read are those that the last sweep left, and contacts are rigid.
-SolverSettings plain(int iterations)
+SolverSettings measured_sweeps(int iterations)
 {
-    SolverSettings settings;
-    settings.method = Method::sequential_impulse;
-    settings.drift_correction = DriftCorrection::none;
-    settings.substeps = 1;
-    settings.iterations = iterations;
+    SolverSettings settings = testing::weightless_sweeps(iterations);
     settings.measures = true;
     return settings;
 }
@@ -84,7 +81,7 @@ TEST(DiscMeasures, AreThoseOfWhatAHostReads)
     for (const int iterations : {1, 3, 10}) {
         Corner corner(7);
         Scene& scene = corner.scene;
-        Solver solver(plain(iterations));
+        Solver solver(measured_sweeps(iterations));
         for (int step = 0; step < 12; ++step) {
             corner.push();
             std::vector<Vec3<double>> before;
@@ -140,7 +137,7 @@ TEST(DiscMeasures, AreThoseOfWhatAHostReads)
     }
 }
 
-/// Three crowds far apart, of which two are pressed, and one stands alone.
+/// Two crowds far apart and somebody alone, all pushed. The crowd in the corner is pressed, the other one walks freely.
 TEST(DiscMeasures, AToleranceEndsTheSweepsOfEachIsland)
 {
     Corner corner(6);
@@ -152,7 +149,7 @@ TEST(DiscMeasures, AToleranceEndsTheSweepsOfEachIsland)
     corner.people.push_back(scene.add_body(person_at(300, 300)));
     scene.set_disc(corner.people.back(), {.radius = radius});
     for (const float tolerance : {1e-2F, 1e-3F, 1e-4F}) {
-        SolverSettings settings = plain(10'000);
+        SolverSettings settings = measured_sweeps(10'000);
         settings.tolerance = tolerance;
         Solver solver(settings);
         std::int64_t most = 0;
@@ -162,7 +159,7 @@ TEST(DiscMeasures, AToleranceEndsTheSweepsOfEachIsland)
             ASSERT_EQ(report.status, StepStatus::done) << report.error;
             EXPECT_EQ(report.islands, 2);  // who stands alone has no contact
             EXPECT_EQ(report.islands_above_tolerance, 0);
-            // The residual of one more sweep is no more than that of the sweep before it.
+            // The measures are those of one more sweep.
             EXPECT_LE(report.measures.residual_max, static_cast<double>(tolerance));
             most = std::max<std::int64_t>(most, report.iterations);
         }
@@ -210,15 +207,10 @@ TEST(DiscIslands, HaveAsManySweepsAsTheHostWants)
     Scene scene;
     const Vec2<double> ends[] = {{0, -2}, {0, 2}};
     scene.add_wall({.points = ends});
-    std::vector<BodyId> people;
-    for (int i = 0; i < n; ++i) {
-        people.push_back(scene.add_body(person_at(static_cast<double>(radius) * (1 + 2 * i), 0)));
-        scene.set_disc(people.back(), {.radius = radius});
-        scene.set_force(people.back(), {-force, 0, 0}, {});
-    }
+    const std::vector<BodyId> people = testing::add_queue(scene, n, radius, force);
     Scene without = scene;
     scene.set_island_iterations(people[3], 5000);
-    SolverSettings settings = plain(2);
+    SolverSettings settings = measured_sweeps(2);
     settings.warm_start = false;
     const auto borne = [&](Scene& of) {
         Solver solver(settings);
@@ -267,12 +259,7 @@ TEST(DiscsDirectly, AQueueBearsWhatIsBehindItAtOnce)
     Scene scene;
     const Vec2<double> ends[] = {{0, -1}, {0, 1}};
     const WallId wall = scene.add_wall({.points = ends});
-    std::vector<BodyId> people;
-    for (int i = 0; i < n; ++i) {
-        people.push_back(scene.add_body(person_at(radius * (1 + 2 * i), 0)));
-        scene.set_disc(people.back(), {.radius = radius});
-        scene.set_force(people.back(), {-force, 0, 0}, {});
-    }
+    testing::add_queue(scene, n, radius, force);
     Solver solver(direct());
     for (int step = 0; step < 3; ++step) {
         const StepReport report = solver.step(scene, dt);
@@ -283,7 +270,7 @@ TEST(DiscsDirectly, AQueueBearsWhatIsBehindItAtOnce)
         ASSERT_EQ(contacts.size(), std::size_t{n});
         for (const DiscContact& contact : contacts) {
             const double b = scene.state(contact.b).position.x, r = static_cast<double>(radius);
-            double at = contact.wall == wall ? 0 : (scene.state(contact.a).position.x + b) / 2;
+            const double at = contact.wall == wall ? 0 : (scene.state(contact.a).position.x + b) / 2;
             const auto ahead = static_cast<float>(std::lround(at / (2 * r)));
             EXPECT_NEAR(contact.normal_force, (n - ahead) * force, 1e-5F * n * force);
         }
@@ -291,7 +278,7 @@ TEST(DiscsDirectly, AQueueBearsWhatIsBehindItAtOnce)
 }
 
 /// A disc is pressed against a wall by N and pulled along it by F. While it rolls, its acceleration is F / (m (1 + I / (m r^2)))
-/// and friction is what is missing of F; beyond mu N it slides, and friction is mu N. Of two discs, one on the other, likewise.
+/// and friction is what is missing of F; beyond mu N it slides, and friction is mu N.
 TEST(DiscsDirectly, RollAndSlideAsCoulombSays)
 {
     constexpr float press = 500, mu = 0.4F, inertia = 2;
@@ -385,7 +372,7 @@ TEST(DiscsDirectly, KeepMomenta)
     EXPECT_LT(energy, 0.7 * began.energy);
 }
 
-/// A turnstile lets people through one way only, directly as well.
+/// A turnstile lets people through one way only, directly as well: its left side, from which nobody passes, is that of negative x.
 TEST(DiscsDirectly, PassAOneWayWallOneWay)
 {
     for (const float way : {1.0F, -1.0F}) {
@@ -404,18 +391,15 @@ TEST(DiscsDirectly, PassAOneWayWallOneWay)
         }
         const double x = scene.state(body).position.x;
         EXPECT_NEAR(x, twin.state(body).position.x, 1e-2);
-        EXPECT_NEAR(
-            x,
-            x * static_cast<double>(way) > 0 ? static_cast<double>(way) : -static_cast<double>(way * radius),
-            1e-2);
+        EXPECT_NEAR(x, way < 0 ? -1 : -static_cast<double>(radius), 1e-2);
     }
 }
 
-/// Sweeps approach what the direct method finds at once, also where discs touch what the host lists: a ball that lies on two.
+/// Sweeps approach what the direct method finds at once, also where the host lists a contact beside those of discs.
 TEST(DiscsDirectly, AreWhatManySweepsApproach)
 {
     Corner swept(5), solved(5);
-    SolverSettings settings = plain(10'000);
+    SolverSettings settings = measured_sweeps(10'000);
     Solver sweeps(settings);
     SolverSettings at_once = direct();
     at_once.drift_correction = DriftCorrection::none;
@@ -428,7 +412,7 @@ TEST(DiscsDirectly, AreWhatManySweepsApproach)
         std::vector<Contact> contacts[2];
         Corner* const corners[] = {&swept, &solved};
         for (int i = 0; i < 2; ++i) {
-            // A column beside the last one, which the host finds, with the key that the first disc contact would have.
+            // The host holds the last person back, under a key that contacts of discs might be given too.
             const BodyId last = corners[i]->people.back();
             const double x = corners[i]->scene.state(last).position.x;
             contacts[i].push_back({.body_a = corners[i]->scene.ground(),

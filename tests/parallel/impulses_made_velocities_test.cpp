@@ -94,16 +94,6 @@ struct Net {
     }
 };
 
-SolverSettings sweeps(int iterations)
-{
-    SolverSettings settings;
-    settings.method = Method::sequential_impulse;
-    settings.drift_correction = DriftCorrection::none;
-    settings.substeps = 1;
-    settings.iterations = iterations;
-    return settings;
-}
-
 // Velocities are floats, each changed by a dozen impulses; with many sweeps they are now and then computed anew from
 // the impulses. Measured: hinges 1.04e-6, everything else below 1e-6.
 constexpr double most_relative = 1.2e-6;
@@ -148,7 +138,8 @@ TYPED_TEST(ImpulsesOfJoints, MadeTheVelocities)
             if constexpr (requires { joint.min_length; }) at_a = at_b = {};
             ties.push_back({a, b, at_a, at_b, net.scene.add_joint(joint)});
         });
-        ASSERT_EQ(Solver(sweeps(iterations)).step(net.scene, instant).status, StepStatus::done);
+        ASSERT_EQ(Solver(testing::weightless_sweeps(iterations)).step(net.scene, instant).status,
+                  StepStatus::done);
         for (const Tied& tie : ties) {
             const JointReport report = net.scene.joint_report(tie.joint);
             const double h = static_cast<double>(instant);
@@ -180,7 +171,8 @@ TEST(ImpulsesOfManifolds, MadeTheVelocities)
             touch.torsional_radius = touch.rolling_radius = 0.05F;
             ties.push_back({a, b, arm_a, arm_b, net.scene.add_joint(touch)});
         });
-        ASSERT_EQ(Solver(sweeps(iterations)).step(net.scene, instant).status, StepStatus::done);
+        ASSERT_EQ(Solver(testing::weightless_sweeps(iterations)).step(net.scene, instant).status,
+                  StepStatus::done);
         for (const Tied& tie : ties) {
             const JointReport report = net.scene.joint_report(tie.joint);
             const auto h = static_cast<double>(instant);
@@ -201,7 +193,7 @@ double difference_in_heap(float ratio, int iterations)
     for (const BodyId box : heap.boxes)
         heap.scene.set_velocity(box, heap.scene.state(box).linear_velocity, {});
     const testing::HeapOfBoxes start = heap;
-    SolverSettings settings = sweeps(iterations);
+    SolverSettings settings = testing::weightless_sweeps(iterations);
     EXPECT_EQ(Solver(settings).step(heap.scene, instant, heap.contacts).status, StepStatus::done);
     Difference difference{0.5};
     for (const BodyId box : heap.boxes) {

@@ -18,10 +18,7 @@ using testing::frame_time;
 /// One sweep of rigid constraints, without gravity or correction of positions: the residual is J v alone.
 SolverSettings one_plain_sweep()
 {
-    SolverSettings settings;
-    settings.method = Method::sequential_impulse;
-    settings.drift_correction = DriftCorrection::none;
-    settings.substeps = settings.iterations = 1;
+    SolverSettings settings = testing::weightless_sweeps(1);
     settings.measures = true;
     return settings;
 }

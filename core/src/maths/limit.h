@@ -68,8 +68,8 @@ Real contact_impulse(const StepConstants& step, const Softness& soft, const Real
     return maximum(no_faster_than_push_out(step, wanted, speed, effective_mass, held), Real(0));
 }
 
-/// The most of a position solve of a contact that can push with no more than this force, N: what the force itself would move a mass
-/// in a substep. In kg m.
+/// Where the force of a contact has a bound f, N: the largest lambda of a position solve, kg m. It moves a mass m by no more than
+/// the force would in a substep h, h^2 f / m.
 template <class Real>
 Real most_projection(const StepConstants& step, const Real& most_force)
 {

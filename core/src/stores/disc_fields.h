@@ -43,6 +43,15 @@ void for_each_disc_blocks(Band& band, const Work& work)
     for_each_disc_class([&](auto c) { work(c, band.resting[static_cast<std::size_t>(c.value)]); });
 }
 
+/// Calls work(class, blocks) for the blocks of all bands that are solved.
+template <class Discs, class Work>
+void for_each_solved_blocks(Discs& discs, const Work& work)
+{
+    for (std::size_t band = 0; band < discs.band_count; ++band)
+        for_each_disc_class(
+            [&](auto c) { work(c, discs.bands[band].blocks[static_cast<std::size_t>(c.value)]); });
+}
+
 /// The floats of a lane of a block as a struct of floats, field by field.
 template <class Struct>
 Struct load_lane(const float* stream, std::size_t block, std::size_t lane)

@@ -37,14 +37,6 @@ py::dict state_of(PythonScene& scene, std::uint64_t body)
     return all;
 }
 
-template <class T>
-T value_of(const char* name, const py::object& value)
-{
-    T target{};
-    set(name, value, target);
-    return target;
-}
-
 }  // namespace
 
 void add_bodies_to(SceneClass& scene)

@@ -142,13 +142,6 @@ py::dict disc_contacts(PythonScene& scene)
     return all;
 }
 
-Vec2<double> point_from(const char* name, const py::object& value)
-{
-    Vec2<double> point;
-    set(name, value, point);
-    return point;
-}
-
 }  // namespace
 
 void add_crowds_to(SceneClass& scene)
@@ -172,9 +165,9 @@ void add_crowds_to(SceneClass& scene)
             self.get().set_disc(id_of<BodyId>(body), disc);
         },
         py::arg("body"),
-        "Makes a planar body a disc, or another one than it is: radius (m), friction, category and mask, as "
-        "of "
-        "DiscDefinition.");
+        "Makes a planar body a disc, or another one than it is. Fields of DiscDefinition: radius (m), "
+        "friction, category,\n"
+        "mask.");
     scene.def(
         "clear_disc",
         [](PythonScene& self, std::uint64_t body) { self.get().clear_disc(id_of<BodyId>(body)); },
@@ -218,7 +211,7 @@ void add_queries_to(py::module_& module)
             "within",
             [](const CrowdIndex& self, const py::object& point, double radius) {
                 std::vector<BodyId> found;
-                self.centres_within(point_from("point", point), radius, found);
+                self.centres_within(value_of<Vec2<double>>("point", point), radius, found);
                 return handles_of<BodyId>(found);
             },
             py::arg("point"), py::arg("radius"), "Those whose centres are at most radius (m) away.")
@@ -226,7 +219,7 @@ void add_queries_to(py::module_& module)
             "nearest",
             [](const CrowdIndex& self, const py::object& point, std::size_t count) {
                 std::vector<NearPerson> found;
-                self.nearest(point_from("point", point), count, found);
+                self.nearest(value_of<Vec2<double>>("point", point), count, found);
                 std::vector<BodyId> ids;
                 py::array_t<double> distances(static_cast<py::ssize_t>(found.size()));
                 for (std::size_t i = 0; i < found.size(); ++i) {
@@ -256,7 +249,7 @@ void add_queries_to(py::module_& module)
         .def(
             "is_free",
             [](const WallIndex& self, const py::object& from, const py::object& to) {
-                return self.is_free(point_from("start", from), point_from("end", to));
+                return self.is_free(value_of<Vec2<double>>("start", from), value_of<Vec2<double>>("end", to));
             },
             py::arg("start"), py::arg("end"), "Whether no wall is on the straight way from start to end.");
 }

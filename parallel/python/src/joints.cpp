@@ -182,9 +182,7 @@ void add_joints_to(SceneClass& scene)
     scene.def(
         "set_iterations",
         [](PythonScene& self, std::uint64_t joint, const py::object& at_least) {
-            int least = 0;
-            set("at_least", at_least, least);
-            self.get().set_iterations(id_of<ConstraintId>(joint), least);
+            self.get().set_iterations(id_of<ConstraintId>(joint), value_of<int>("at_least", at_least));
         },
         py::arg("joint"), py::arg("at_least"),
         "The least number of sweeps a substep for a joint, 0 to 10000; 0: as the settings say.");

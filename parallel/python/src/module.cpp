@@ -58,8 +58,7 @@ void add_whole_scene_to(SceneClass& scene)
             all["friction"] = column(impulses, &ContactImpulse::friction);
             return all;
         },
-        "The impulses (N s) of the host's contacts of the last step, in their order, on body_b: arrays "
-        "normal, "
+        "The impulses (N s) on body_b of the host's contacts in the last step, in their order: arrays normal "
         "and friction\n"
         "(n x 3, world).");
 }
@@ -88,7 +87,7 @@ PYBIND11_MODULE(_motley, module)
     add_crowds_to(scene);
     add_joints_to(scene);
     add_shapes_to(scene);
-    add_six_dof_to(scene);
+    add_composed_joints_to(scene);
     add_assemblies_to(module, scene);
     add_queries_to(module);
     add_solver_to(module);

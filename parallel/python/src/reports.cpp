@@ -12,23 +12,39 @@ namespace {
 template <class C, class Cpp>
 py::dict dict_as(const Cpp& value);
 
-py::object value_of(const BodyId& body)
+py::object shown_value(const BodyId& body)
 {
     return py::cast(number_of(body));
 }
-py::object value_of(const double (&vector)[3])
+py::object shown_value(const Vec3<float>& vector)
+{
+    return tuple_of(vector);
+}
+py::object shown_value(Method value)
+{
+    return py::str(method_names[static_cast<std::size_t>(value)]);
+}
+py::object shown_value(DriftCorrection value)
+{
+    return py::str(drift_names[static_cast<std::size_t>(value)]);
+}
+py::object shown_value(BadContacts value)
+{
+    return py::str(bad_contact_names[static_cast<std::size_t>(value)]);
+}
+py::object shown_value(const double (&vector)[3])
 {
     return py::make_tuple(vector[0], vector[1], vector[2]);
 }
-py::object value_of(const SceneErrors& errors)
+py::object shown_value(const SceneErrors& errors)
 {
     return dict_of(errors);
 }
-py::object value_of(const StepMeasures& measures)
+py::object shown_value(const StepMeasures& measures)
 {
     return dict_as<motley_step_measures>(measures);
 }
-py::object value_of(const std::array<double, stage_count>& seconds)
+py::object shown_value(const std::array<double, stage_count>& seconds)
 {
     py::dict all;
     for (int stage = 0; stage < stage_count; ++stage)
@@ -36,7 +52,7 @@ py::object value_of(const std::array<double, stage_count>& seconds)
     return all;
 }
 template <class T>
-py::object value_of(const T& value)
+py::object shown_value(const T& value)
 {
     return py::cast(value);
 }
@@ -45,7 +61,7 @@ template <class C, class Cpp>
 py::dict dict_as(const Cpp& value)
 {
     py::dict all;
-    std::apply([&](const auto&... field) { ((all[field.name] = value_of(value.*field.cpp_member)), ...); },
+    std::apply([&](const auto&... field) { ((all[field.name] = shown_value(value.*field.cpp_member)), ...); },
                c::Mirror<C, Cpp>::fields);
     return all;
 }
@@ -55,6 +71,11 @@ py::dict dict_as(const Cpp& value)
 py::dict dict_of(const SceneErrors& errors)
 {
     return dict_as<motley_scene_errors>(errors);
+}
+
+py::dict dict_of(const SolverSettings& settings)
+{
+    return dict_as<motley_solver_settings>(settings);
 }
 
 py::dict dict_of(const StepReport& report)

@@ -1,4 +1,4 @@
-// What a step did, and the errors of a scene, as dicts with the names of the fields in C++.
+// Structs of the library as dicts with the names of their fields in C++.
 #pragma once
 
 #include "motley/core/step_report.h"
@@ -7,6 +7,7 @@
 namespace motley::python {
 
 py::dict dict_of(const SceneErrors& errors);
+py::dict dict_of(const SolverSettings& settings);
 /// `seconds` is of the whole step, and `stages` a dict of those of each stage.
 py::dict dict_of(const StepReport& report);
 

@@ -58,7 +58,7 @@ void add_bulk_calls_to(SceneClass& scene);
 void add_crowds_to(SceneClass& scene);
 void add_joints_to(SceneClass& scene);
 void add_shapes_to(SceneClass& scene);
-void add_six_dof_to(SceneClass& scene);
+void add_composed_joints_to(SceneClass& scene);
 void add_solver_to(py::module_& module);
 void add_queries_to(py::module_& module);
 

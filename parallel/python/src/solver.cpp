@@ -10,46 +10,7 @@
 #include "scene.h"
 
 namespace motley::python {
-static constexpr std::array method_names{"soft_step", "sequential_impulse", "direct"};
-static constexpr std::array drift_names{"by_method", "none", "baumgarte", "projection"};
-static constexpr std::array bad_contact_names{"refuse", "skip"};
-
-static void set(const std::string& name, const py::handle& value, Method& target)
-{
-    target = named<Method>(name, value, method_names);
-}
-static void set(const std::string& name, const py::handle& value, DriftCorrection& target)
-{
-    target = named<DriftCorrection>(name, value, drift_names);
-}
-static void set(const std::string& name, const py::handle& value, BadContacts& target)
-{
-    target = named<BadContacts>(name, value, bad_contact_names);
-}
-
 namespace {
-
-py::object shown_value(Method value)
-{
-    return py::str(method_names[static_cast<std::size_t>(value)]);
-}
-py::object shown_value(DriftCorrection value)
-{
-    return py::str(drift_names[static_cast<std::size_t>(value)]);
-}
-py::object shown_value(BadContacts value)
-{
-    return py::str(bad_contact_names[static_cast<std::size_t>(value)]);
-}
-py::object shown_value(const Vec3<float>& value)
-{
-    return tuple_of(value);
-}
-template <class T>
-py::object shown_value(const T& value)
-{
-    return py::cast(value);
-}
 
 constexpr auto& setting_fields = c::Mirror<motley_solver_settings, SolverSettings>::fields;
 
@@ -71,17 +32,6 @@ SolverSettings changed(SolverSettings settings, const py::kwargs& given)
         throw py::type_error("SolverSettings has no field '" +
                              py::cast<std::string>(py::str(left.begin()->first)) + "'");
     return settings;
-}
-
-py::dict settings_of(const Solver& solver)
-{
-    py::dict all;
-    std::apply(
-        [&](const auto&... field) {
-            ((all[field.name] = shown_value(solver.settings().*field.cpp_member)), ...);
-        },
-        setting_fields);
-    return all;
 }
 
 Solver make_solver(int threads, const py::object& isa, std::size_t alone_below, const py::kwargs& settings)
@@ -157,24 +107,23 @@ void add_solver_to(py::module_& module)
         "sleep_speed, ...")
         .def(py::init(&make_solver), py::arg("threads") = 1, py::arg("isa") = py::none(),
              py::arg("alone_below") = SolverOptions{}.alone_below)
-        .def(
-            "step", &step, py::arg("scene"), py::arg("dt"), py::arg("contacts") = py::none(),
-            "Advances the scene by dt seconds (0 to 1), with contacts of the host's own beside those that "
-            "are found: an array of\n"
-            "contact_dtype. Other threads of Python run meanwhile. Returns what the step did: a dict with "
-            "the "
-            "fields of StepReport,\n"
-            "of which seconds is of the whole step, stages a dict of those of each stage, and measures (with "
-            "measures=True) a\n"
-            "dict of residuals, penetrations and the errors before and after. A refused step raises "
-            "InvalidInput and changes nothing.")
+        .def("step", &step, py::arg("scene"), py::arg("dt"), py::arg("contacts") = py::none(),
+             "Advances the scene by dt seconds (0 to 1), with contacts of the host's own beside those that "
+             "are found: an array of\n"
+             "contact_dtype. Other threads of Python run meanwhile. A refused step raises InvalidInput and "
+             "changes nothing. Returns\n"
+             "the fields of StepReport as a dict: seconds is of the whole step, stages a dict of those of "
+             "each stage, measures a\n"
+             "dict of residuals, penetrations, and errors before and after.")
         .def(
             "change",
             [](Solver& self, const py::kwargs& settings) {
                 self.set_settings(changed(self.settings(), settings));
             },
             "Changes settings by name; if one is refused, all stay.")
-        .def_property_readonly("settings", &settings_of, "All settings, as a dict.")
+        .def_property_readonly(
+            "settings", [](const Solver& self) { return dict_of(self.settings()); },
+            "All settings, as a dict.")
         .def_property_readonly("isa", [](const Solver& self) { return std::string(isa_name(self.isa())); })
         .def_property_readonly("threads", &Solver::threads);
 }

@@ -137,6 +137,21 @@ inline void set(const std::string& name, const py::handle& value, BodyMotion& ta
 {
     target = named<BodyMotion>(name, value, motion_names);
 }
+inline constexpr std::array method_names{"soft_step", "sequential_impulse", "direct"};
+inline constexpr std::array drift_names{"by_method", "none", "baumgarte", "projection"};
+inline constexpr std::array bad_contact_names{"refuse", "skip"};
+inline void set(const std::string& name, const py::handle& value, Method& target)
+{
+    target = named<Method>(name, value, method_names);
+}
+inline void set(const std::string& name, const py::handle& value, DriftCorrection& target)
+{
+    target = named<DriftCorrection>(name, value, drift_names);
+}
+inline void set(const std::string& name, const py::handle& value, BadContacts& target)
+{
+    target = named<BadContacts>(name, value, bad_contact_names);
+}
 inline void set(const std::string& name, const py::handle& value, EulerAngle& target)
 {
     target = named<EulerAngle>(name, value, std::array{"x", "y", "z"});
@@ -151,6 +166,15 @@ void set(const std::string& name, const py::handle& value, JointFrame& target);
 void set(const std::string& name, const py::handle& value, JointStiffness& target);
 /// Three axes, of which each is "locked", "free", a pair of limits, or a dict with the fields of AxisSetup.
 void set(const std::string& name, const py::handle& value, AxisSetup (&target)[3]);
+
+/// An argument of a call.
+template <class T>
+T value_of(const char* name, const py::object& value)
+{
+    T target{};
+    set(name, value, target);
+    return target;
+}
 
 template <class Real>
 py::tuple tuple_of(const Vec2<Real>& v)

@@ -29,19 +29,10 @@ Quat<double> orientation_of(const BodyRows& rows, BodyRow where)
 struct Speeds {
     double linear = 0, angular = 0;  ///< m/s, rad/s
 };
-Speeds speeds_of(const BodyRows& rows, BodyRow where)
+Speeds speeds_of(const SceneCore& scene, BodyRow where)
 {
-    const float* v =
-        &rows.velocity[std::size_t{4} * static_cast<std::size_t>(quads_of(where.kind())) * where.row()];
-    const auto at = [v](int i) { return static_cast<double>(v[i]); };
-    switch (where.kind()) {
-        case BodyKind::particle:
-            return {length_of({at(0), at(1), at(2)}), 0};
-        case BodyKind::planar:
-            return {length_of({at(0), at(1), 0}), std::abs(at(2))};
-        default:
-            return {length_of({at(0), at(1), at(2)}), length_of({at(4), at(5), at(6)})};
-    }
+    const SceneCore::Velocity now = scene.velocity(where);
+    return {length_of(convert<double>(now.linear)), length_of(convert<double>(now.angular))};
 }
 
 }  // namespace
@@ -53,7 +44,7 @@ PlacedCapsule placed(const SceneCore& scene, const Capsule& capsule, double dt)
     const Quat<double> orientation = orientation_of(rows, where);
     const Vec3<double> from = convert<double>(capsule.from), to = convert<double>(capsule.to);
     const double arm = std::sqrt(std::max(dot(from, from), dot(to, to)));
-    const Speeds speeds = speeds_of(rows, where);
+    const Speeds speeds = speeds_of(scene, where);
     PlacedCapsule placed;
     placed.centre = convert<double>(rows.pose[where.row()].position);
     placed.axis = {placed.centre + rotate(orientation, from), rotate(orientation, to - from)};
@@ -71,7 +62,7 @@ PlacedHalfSpace placed(const SceneCore& scene, const HalfSpace& half_space, doub
     const BodyRow where = scene.bodies.row_of(half_space.body);
     const BodyRows& rows = scene.bodies.rows(where.kind());
     const Quat<double> orientation = orientation_of(rows, where);
-    const Speeds speeds = speeds_of(rows, where);
+    const Speeds speeds = speeds_of(scene, where);
     const Vec3<double> centre = convert<double>(rows.pose[where.row()].position);
     return {centre + rotate(orientation, half_space.point),
             rotate(orientation, convert<double>(half_space.normal)), centre, dt * speeds.linear,
@@ -85,7 +76,7 @@ PlacedCapsule placed_disc(const SceneCore& scene, std::uint32_t planar_row, cons
     placed.axis.from = convert<double>(rows.pose[planar_row].position);
     placed.middle = placed.centre = placed.axis.from;
     placed.radius = static_cast<double>(disc.radius);
-    placed.goes = dt * speeds_of(rows, {BodyKind::planar, planar_row}).linear;
+    placed.goes = dt * speeds_of(scene, {BodyKind::planar, planar_row}).linear;
     placed.is_flat = true;
     placed.can_move = true;
     return placed;

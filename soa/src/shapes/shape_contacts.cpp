@@ -105,6 +105,12 @@ double margin_of(const PlacedCapsule& a, const PlacedCapsule& b)
     return step_slack + a.goes + b.goes;
 }
 
+/// False where two capsules do not touch within the step for certain.
+bool may_touch(const PlacedCapsule& a, const PlacedCapsule& b)
+{
+    return may_be_within(a, b, a.radius + b.radius + margin_of(a, b));
+}
+
 /// Lists the contacts of two capsules that may touch within the step. `key` is that of the first one.
 void list_capsules(const TouchingBody& a, const TouchingBody& b, std::uint64_t key, Array<Contact>& contacts)
 {
@@ -338,7 +344,7 @@ void ShapeContacts::list_pair(const SceneCore& scene, const ShapePairs& pairs, c
                               Array<Contact>& contacts)
 {
     const PlacedCapsule &a = pairs.capsule(pair.capsule), &b = pairs.capsule(pair.partner);
-    if (!may_be_within(a, b, a.radius + b.radius + margin_of(a, b))) return;
+    if (!may_touch(a, b)) return;
     list_capsules(side_of(scene, pairs, pair.capsule), side_of(scene, pairs, pair.partner),
                   key_of(Partner::capsule, slot_of(scene, pair.capsule), slot_of(scene, pair.partner), 0),
                   contacts);
@@ -373,8 +379,7 @@ void ShapeContacts::list_disc(const SceneCore& scene, const ShapePairs& pairs, c
     const BodyId body = scene.bodies.id_of_slot(pair.partner);
     const DiscShape& shape = *scene.discs.shape_of(pair.partner);
     const PlacedCapsule disc = placed_disc(scene, scene.bodies.row_of(body).row(), shape, dt_);
-    const PlacedCapsule& capsule = pairs.capsule(pair.capsule);
-    if (!may_be_within(disc, capsule, disc.radius + capsule.radius + margin_of(disc, capsule))) return;
+    if (!may_touch(disc, pairs.capsule(pair.capsule))) return;
     const TouchingBody a{body, disc.axis.from, &disc, {shape.friction, 0, shape.category, shape.mask}};
     list_capsules(a, side_of(scene, pairs, pair.capsule),
                   key_of(Partner::disc, slot_of(scene, pair.capsule), pair.partner, 0), contacts);

@@ -1,4 +1,4 @@
-// Scene: joints that become several joints: of six degrees of freedom, and welds.
+// Scene: joints that are composed of several: those of six degrees of freedom, and welds.
 #include "motley/core/six_dof.h"
 
 #include "arrays.h"
@@ -59,7 +59,7 @@ SixDofDefinition six_dof_from(std::uint64_t body_a, std::uint64_t body_b, const 
     return definition;
 }
 
-void add_six_dof_to(SceneClass& scene)
+void add_composed_joints_to(SceneClass& scene)
 {
     scene.def(
         "add_six_dof",
@@ -92,10 +92,9 @@ void add_six_dof_to(SceneClass& scene)
             return py::make_tuple(number_of(weld.position), number_of(weld.rotation));
         },
         py::arg("body_a"), py::arg("body_b"),
-        "Adds a joint that holds frame_b on frame_a, in translation rigidly or by a spring of linear_hertz "
-        "and in "
-        "rotation by one\n"
-        "of angular_hertz (Hz; 0, the default: rigid), with linear_damping_ratio and angular_damping_ratio "
+        "Adds a joint that holds frame_b on frame_a, rigidly or by springs: of linear_hertz in translation "
+        "and of angular_hertz\n"
+        "in rotation (Hz; 0, the default: rigid), with linear_damping_ratio and angular_damping_ratio "
         "(default 1). Returns the\n"
         "handles of its two joints, of which the second is 0 where both are rigid.");
 }
